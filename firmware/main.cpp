@@ -1,0 +1,15 @@
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "firmware/options.hpp"
+#include "firmware/session.hpp"
+
+int main(int count, char** values) {
+  const auto parsed = hotfire::firmware::parse_options(std::vector<std::string>(values, values + count));
+  if (!parsed.options) {
+    std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
+    return parsed.status;
+  }
+  return hotfire::firmware::run_session(*parsed.options);
+}

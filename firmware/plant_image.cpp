@@ -1,0 +1,216 @@
+#include "firmware/plant_image.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "firmware/text.hpp"
+#include "model/key_text.hpp"
+
+namespace hotfire::firmware {
+namespace {
+
+struct Entry {
+  std::string key;
+  std::string value;
+  int line;
+  bool used = false;
+};
+
+/// The lines of an image, each to be used once, and the first thing found wrong with them.
+class Entries {
+ public:
+  Entries(const std::string& text, const std::string& name) : name_(name) {
+    std::istringstream lines(text);
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      add(line, number);
+    }
+  }
+
+  const std::string& error() const { return error_; }
+
+  void refuse(const std::string& what) {
+    if (error_.empty()) {
+      error_ = name_ + ": " + what;
+    }
+  }
+
+  void refuse(const Entry& entry, const std::string& allowed) {
+    refuse(text("line %d: %s = %s: %s", entry.line, entry.key.c_str(), entry.value.c_str(), allowed.c_str()));
+  }
+
+  bool has(const std::string& key) { return find(key) != nullptr; }
+
+  bool has_prefix(std::string_view prefix) const {
+    return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key.starts_with(prefix); });
+  }
+
+  /// The entry of a key that must be there; null after a refusal.
+  const Entry* take(const std::string& key) {
+    Entry* entry = find(key);
+    if (entry == nullptr) {
+      refuse("missing key " + key);
+    } else {
+      entry->used = true;
+    }
+    return entry;
+  }
+
+  void refuse_unused() {
+    for (const Entry& entry : entries_) {
+      if (!entry.used) {
+        refuse(entry, "unknown key for this topology, law or channel");
+      }
+    }
+  }
+
+ private:
+  void add(const std::string& line, int number) {
+    const std::size_t space = line.find(' ');
+    if (space == std::string::npos || space == 0 || line.find(' ', space + 1) != std::string::npos) {
+      refuse(text("line %d: \"%.60s\": expected `key value`, one space between them", number, line.c_str()));
+      return;
+    }
+    Entry entry{line.substr(0, space), line.substr(space + 1), number};
+    if (const Entry* first = find(entry.key)) {
+      refuse(entry, text("the key is already in line %d", first->line));
+      return;
+    }
+    entries_.push_back(entry);
+  }
+
+  Entry* find(const std::string& key) {
+    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key == key; });
+    return found == entries_.end() ? nullptr : &*found;
+  }
+
+  std::string name_;
+  std::vector<Entry> entries_;
+  std::string error_;
+};
+
+/// Fills the parameters it is shown (`model::visit_keys`) from the entries.
+class Filler {
+ public:
+  explicit Filler(Entries& entries) : entries_(entries) {}
+
+  template <class Field>
+  void number(const model::KeyText& key, const Field& field, double& value) {
+    value = bounded(std::string(key.view()), field.lower, field.upper, field.unit).value_or(value);
+  }
+
+  template <class E>
+  bool effect(const model::KeyText& prefix, bool& active) {
+    active = entries_.has_prefix(prefix.view());
+    return active;
+  }
+
+  template <class Options>
+  void option(const model::KeyText& key, const Options& options, int& option) {
+    const Entry* entry = entries_.take(std::string(key.view()));
+    if (entry == nullptr) {
+      return;
+    }
+    std::string allowed = "allowed are";
+    for (std::size_t i = 0; i < options.size(); ++i) {
+      if (entry->value == options[i]) {
+        option = static_cast<int>(i);
+        return;
+      }
+      allowed.append(" ").append(options[i]);
+    }
+    entries_.refuse(*entry, allowed);
+  }
+
+  template <class Field, class Table>
+  void table(const model::KeyText& x_key, const model::KeyText& y_key, const Field& field, Table& table) {
+    for (std::size_t i = 0; i < Table::kCapacity; ++i) {
+      const std::string x = std::string(x_key.view()) + "." + std::to_string(i);
+      const std::string y = std::string(y_key.view()) + "." + std::to_string(i);
+      if (!entries_.has(x) && !entries_.has(y)) {
+        return;
+      }
+      const double lowest = i == 0 ? -HUGE_VAL : std::nextafter(table.x[i - 1], HUGE_VAL);
+      table.x[i] = bounded(x, lowest, 1.7e308, field.x_unit).value_or(0.0);
+      table.y[i] = bounded(y, field.y_lower, field.y_upper, field.y_unit).value_or(0.0);
+      table.points = static_cast<int>(i) + 1;
+    }
+  }
+
+ private:
+  std::optional<double> bounded(const std::string& key, double lower, double upper, std::string_view unit) {
+    const Entry* entry = entries_.take(key);
+    if (entry == nullptr) {
+      return std::nullopt;
+    }
+    char* end = nullptr;
+    const double value = std::strtod(entry->value.c_str(), &end);
+    // Written so that NaN is refused as well.
+    if (*end == '\0' && value >= lower && value <= upper) {
+      return value;
+    }
+    const std::string shown(unit == "1" ? "" : unit);
+    entries_.refuse(*entry, text("allowed is a number from %g to %g %s", lower, upper, shown.c_str()));
+    return std::nullopt;
+  }
+
+  Entries& entries_;
+};
+
+template <class Parameters>
+PlantImage fill(Entries& entries) {
+  Parameters parameters;
+  Filler filler(entries);
+  model::visit_keys(parameters, filler);
+  entries.refuse_unused();
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
+    if constexpr (requires { E::broken_relation(values); }) {
+      const std::string_view broken = parameters.effects.active[index] ? E::broken_relation(values) : std::string_view{};
+      if (!broken.empty()) {
+        entries.refuse("effects." + std::string(E::name) + ": " + std::string(broken));
+      }
+    }
+  });
+  if (!entries.error().empty()) {
+    return {std::nullopt, entries.error()};
+  }
+  return {parameters, {}};
+}
+
+}  // namespace
+
+PlantImage parse_plant_image(const std::string& text, const std::string& name) {
+  Entries entries(text, name);
+  const Entry* schema = entries.take("schema");
+  if (schema != nullptr && schema->value != "1") {
+    entries.refuse(*schema, "this build reads schema 1; use hotfire and hotfire-rt of the same version");
+  }
+  const Entry* topology = entries.take("topology");
+  if (entries.error().empty() && topology->value == model::Simplex<double>::topology) {
+    return fill<model::Simplex<double>::Parameters>(entries);
+  }
+  if (entries.error().empty() && topology->value == model::Direct<double>::topology) {
+    return fill<model::Direct<double>::Parameters>(entries);
+  }
+  if (topology != nullptr) {
+    entries.refuse(*topology, "allowed are direct simplex");
+  }
+  return {std::nullopt, entries.error()};
+}
+
+PlantImage read_plant_image(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream content;
+  if (!file || !(content << file.rdbuf())) {
+    return {std::nullopt, path + ": cannot be read as a plant image: " + std::strerror(errno)};
+  }
+  return parse_plant_image(content.str(), path);
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "model/direct.hpp"
+#include "model/simplex.hpp"
+
+namespace hotfire::firmware {
+
+using PlantParameters = std::variant<model::Simplex<double>::Parameters, model::Direct<double>::Parameters>;
+
+/// A plant, or why there is none: file, line, key, value and what is allowed.
+struct PlantImage {
+  std::optional<PlantParameters> parameters;
+  std::string error;
+};
+
+/// Reads a plant image: what `hotfire plant` makes of a model file, so that the real-time executable needs no TOML and no
+/// units. Text, one `key value` a line, keys as in the model file, SI, numbers usually in hexadecimal floating point so that
+/// they arrive bit for bit:
+///
+///     schema 1
+///     topology simplex
+///     engine.inertia 0x1.289p+13
+///     effects.gimbal_friction.law lugre
+///     effects.gimbal_friction.coulomb_torque 0x1.77p+13
+///     effects.soft_stiffness.load.0 0x0p+0
+///
+/// Every parameter of every part is there, and every parameter of an effect that is active. Strict: an unknown, repeated or
+/// missing key, a value that is no number, NaN or outside its bounds, a table that does not rise, is refused with its line.
+PlantImage read_plant_image(const std::string& path);
+
+/// The same from text; `name` stands for the file in messages.
+PlantImage parse_plant_image(const std::string& text, const std::string& name);
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <tuple>
+
+#include "model/simplex.hpp"
+
+namespace hotfire::firmware {
+
+/// The reference axis with every effect active at its typical value: the most that one cycle can cost, which is what a
+/// timing check without a model file runs.
+inline model::Simplex<double>::Parameters reference_plant_with_every_effect() {
+  model::Simplex<double>::Parameters parameters;
+  parameters.effects.active.fill(true);
+  std::apply(
+      [](auto&... effect) {
+        const auto set_typical = [](auto& values) {
+          for (const auto& field : values.fields()) {
+            values.*field.member = field.typical;
+          }
+        };
+        (set_typical(effect), ...);
+      },
+      parameters.effects.values);
+  return parameters;
+}
+
+}  // namespace hotfire::firmware

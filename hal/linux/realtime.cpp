@@ -1,0 +1,120 @@
+#include "hal/realtime.hpp"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace hotfire::hal {
+namespace {
+
+constexpr std::size_t kPage = 4096;
+constexpr std::size_t kStackBlock = 64 * kPage;
+
+Failure failure(const std::string& call, int error, const std::string& mend) {
+  return {call + ": " + std::strerror(error), mend};
+}
+
+/// Touches one page after the other, a block a call. It uses its block after the call, so that the compiler cannot turn the
+/// recursion into a loop over one block.
+__attribute__((noinline)) char touch_stack(std::size_t bytes) noexcept {
+  volatile char block[kStackBlock];
+  for (std::size_t i = 0; i < kStackBlock; i += kPage) {
+    block[i] = 1;
+  }
+  const char deeper = bytes > kStackBlock ? touch_stack(bytes - kStackBlock) : '\0';
+  return static_cast<char>(deeper + block[0]);
+}
+
+}  // namespace
+
+std::optional<Failure> lock_memory(std::size_t stack_bytes) noexcept {
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_MMAP_MAX, 0);
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    return failure("memory is not locked: mlockall", errno,
+                   "allow it: 'ulimit -l unlimited', or '@realtime - memlock unlimited' in /etc/security/limits.d, or "
+                   "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitMEMLOCK=infinity in a systemd unit");
+  }
+  rlimit limit{};
+  getrlimit(RLIMIT_STACK, &limit);
+  static_cast<void>(touch_stack(std::min<std::size_t>(stack_bytes, limit.rlim_cur / 2)));
+  return std::nullopt;
+}
+
+std::optional<Failure> run_on_cpu(int cpu) noexcept {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (cpu >= 0 && cpu < CPU_SETSIZE) {
+    CPU_SET(static_cast<std::size_t>(cpu), &set);
+  }
+  if (sched_setaffinity(0, sizeof set, &set) != 0) {
+    return failure("not bound to CPU " + std::to_string(cpu) + ": sched_setaffinity", errno,
+                   "name one of the CPUs that this process may use, see 'taskset -p $$' and /sys/devices/system/cpu/online");
+  }
+  return std::nullopt;
+}
+
+std::optional<Failure> schedule_first(int priority) noexcept {
+  // An ordinary process, which this one stays if it is refused, is else woken up to 50 us late to save power.
+  prctl(PR_SET_TIMERSLACK, 1);
+  const sched_param parameter{priority};
+  if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0) {
+    return failure("no real-time scheduling at priority " + std::to_string(priority) + ": sched_setscheduler", errno,
+                   "allow it: 'ulimit -r 99', or '@realtime - rtprio 99' in /etc/security/limits.d, or "
+                   "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitRTPRIO=99 in a systemd unit");
+  }
+  return std::nullopt;
+}
+
+WakefulCpus::~WakefulCpus() {
+  if (file_ >= 0) {
+    close(file_);
+  }
+}
+
+std::optional<Failure> WakefulCpus::hold() noexcept {
+  const std::string mend =
+      "allow writing /dev/cpu_dma_latency, or boot with processor.max_cstate=1; matters only where the "
+      "wake-up latency is too long";
+  file_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+  if (file_ < 0) {
+    return failure("CPUs may fall into deep sleep: /dev/cpu_dma_latency", errno, mend);
+  }
+  const std::int32_t longest_us = 0;
+  if (write(file_, &longest_us, sizeof longest_us) != sizeof longest_us) {
+    return failure("CPUs may fall into deep sleep: write to /dev/cpu_dma_latency", errno, mend);
+  }
+  return std::nullopt;
+}
+
+ResourceUsage resource_usage() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return {usage.ru_minflt, usage.ru_majflt, usage.ru_nivcsw};
+}
+
+CpuPlace cpu_place() noexcept {
+  CpuPlace place;
+  getcpu(&place.cpu, &place.node);
+  return place;
+}
+
+SystemInfo system_info() {
+  utsname name{};
+  uname(&name);
+  char flag = '0';
+  std::ifstream("/sys/kernel/realtime") >> flag;
+  return {name.sysname, name.nodename, name.release, name.version, name.machine, flag == '1'};
+}
+
+}  // namespace hotfire::hal

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace hotfire::hal {
+
+/// Why a step of the real-time set-up was refused by the machine, and what a person does about it.
+struct Failure {
+  std::string what;
+  std::string mend;
+};
+
+/// The set-up of a real-time process, before its loop. Each returns nothing when done and never throws; after a failure the
+/// process goes on as it was. All of it is to be called from the thread that will run the loop, after everything the loop
+/// uses has been allocated: memory first, then CPU, then priority.
+
+/// Locks all present and future pages, touches `stack_bytes` of stack so that the loop faults none in, and keeps the heap
+/// from giving pages back to the kernel or taking mappings of its own (both take unbounded time).
+std::optional<Failure> lock_memory(std::size_t stack_bytes) noexcept;
+
+/// Runs this thread on one CPU only.
+std::optional<Failure> run_on_cpu(int cpu) noexcept;
+
+/// Schedules this thread first-in first-out at a priority of 1 to 99, above every ordinary process. Its sleeps end without
+/// slack even if that is refused.
+std::optional<Failure> schedule_first(int priority) noexcept;
+
+/// While it lives, the CPUs stay out of sleep states that take long to leave.
+class WakefulCpus {
+ public:
+  WakefulCpus() = default;
+  ~WakefulCpus();
+  WakefulCpus(const WakefulCpus&) = delete;
+  WakefulCpus& operator=(const WakefulCpus&) = delete;
+
+  std::optional<Failure> hold() noexcept;
+
+ private:
+  int file_ = -1;
+};
+
+/// What this thread has cost the kernel since it began.
+struct ResourceUsage {
+  std::int64_t minor_faults = 0;          ///< pages given without reading a disk
+  std::int64_t major_faults = 0;          ///< pages read from a disk
+  std::int64_t involuntary_switches = 0;  ///< times another thread took the CPU
+};
+
+/// Does not block or allocate.
+ResourceUsage resource_usage() noexcept;
+
+/// The CPU this thread runs on now, and its memory node.
+struct CpuPlace {
+  unsigned cpu = 0;
+  unsigned node = 0;
+};
+CpuPlace cpu_place() noexcept;
+
+/// The kernel and machine this runs on.
+struct SystemInfo {
+  std::string sysname;
+  std::string nodename;
+  std::string release;
+  std::string version;
+  std::string machine;
+  bool realtime_kernel = false;  ///< PREEMPT_RT
+};
+SystemInfo system_info();
+
+}  // namespace hotfire::hal

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string_view>
+
+#include "model/effects.hpp"
+#include "model/exact_hold.hpp"
+#include "model/parts.hpp"
+
+namespace hotfire::model {
+
+/// A mass driven by a measured force: inertia x'' + damping x' + stiffness x = force - effects. The modal hammer test of
+/// [SD] eq. 8, a bench mass, an electromechanical stage. Units are whatever consistent set the record has.
+///
+/// Discretised as `Simplex` is: exact hold of the linear part, effects held at the mean of the step's ends, two passes.
+template <class S, class List = DirectEffects>
+class Direct {
+ public:
+  using Scalar = S;
+  using Effects = List;
+  static constexpr std::string_view topology = "direct";
+  static constexpr std::string_view input_channel = "force";
+  static constexpr std::array<std::string_view, 1> channels{"position"};
+  static constexpr std::array<std::string_view, 1> channel_units{""};
+  static constexpr std::string_view input_unit = "";
+  static constexpr int kPasses = 2;
+
+  struct Parameters {
+    Mass<S> mass;
+    EffectParameters<S, List> effects;
+
+    template <class Self, class F>
+    static void for_each_part(Self& self, F&& f) {
+      f(self.mass);
+    }
+  };
+
+  struct State {
+    Eigen::Matrix<S, 2, 1> y = Eigen::Matrix<S, 2, 1>::Zero();  ///< position, velocity
+    Eigen::Matrix<S, 2, 1> inputs = Eigen::Matrix<S, 2, 1>::Zero();
+    EffectStates<S, List> effects{};
+    std::array<S, 1> measured{};
+  };
+
+  Direct(const Parameters& parameters, double h) : parameters_(parameters), h_(h) {
+    Eigen::Matrix<S, 2, 2> linear = Eigen::Matrix<S, 2, 2>::Zero();
+    linear(0, 1) = S{1.0};
+    linear(1, 0) = -parameters_.mass.stiffness / parameters_.mass.inertia;
+    linear(1, 1) = -parameters_.mass.damping / parameters_.mass.inertia;
+    Eigen::Matrix<S, 2, 2> driven = Eigen::Matrix<S, 2, 2>::Zero();
+    driven(1, 0) = 1.0 / parameters_.mass.inertia;
+    driven(1, 1) = -1.0 / parameters_.mass.inertia;
+    hold_ = exact_hold<S, 2, 2>(linear, driven, h);
+    compliance_ = -hold_.response(0, 1) / h;
+  }
+
+  const Parameters& parameters() const noexcept { return parameters_; }
+  double step_size() const noexcept { return h_; }
+
+  /// At rest at a position.
+  State at_rest(const S& position) const { return moving(position, S{0.0}); }
+
+  /// At a position with a velocity.
+  State moving(const S& position, const S& velocity) const {
+    State state;
+    state.y(0) = position;
+    state.y(1) = velocity;
+    state.measured[0] = position;
+    return state;
+  }
+
+  /// Advances by one step with the force held.
+  void step(State& state, const S& force) const noexcept {
+    state.inputs(0) = force;
+    const Eigen::Matrix<S, 2, 1> start = state.y;
+    const Eigen::Matrix<S, 2, 1> free = times(hold_.transition, start);
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const Eigen::Matrix<S, 2, 1> end = free + times(hold_.response, state.inputs);
+      const S velocity = (end(0) - start(0)) / h_;
+      state.inputs(1) = sum_over<Site::mass_force>(
+          parameters_.effects, state.effects, Motion<S>{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_},
+          pass + 1 == kPasses ? Keep::yes : Keep::no);
+    }
+    state.y = free + times(hold_.response, state.inputs);
+    state.measured[0] = state.y(0);
+  }
+
+  static const std::array<S, 1>& measured(const State& state) noexcept { return state.measured; }
+
+ private:
+  Parameters parameters_;
+  double h_;
+  ExactHold<S, 2, 2> hold_;
+  S compliance_{0.0};
+};
+
+}  // namespace hotfire::model

@@ -1,0 +1,198 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+
+#include "model/field.hpp"
+#include "model/sites.hpp"
+
+namespace hotfire::model {
+
+/// An effect is what a declared model may lack: one file, one name, one site, a few parameters.
+///
+/// - `Params<S>`: neutral by default, one scalar a field, and `option` (an index into `options`) if the effect has laws or
+///   channels to choose from.
+/// - `State<S>`: what it remembers.
+/// - `step(params, state, input)`: advances the state over one step and returns the site's output. It never throws,
+///   allocates or blocks.
+///
+/// Optional: `settle(params, state, input)` puts the state where a constant input leaves it; `broken_relation(params)` names
+/// a relation between fields that the values break, empty if none.
+template <class E, class S>
+concept Effect = requires(const typename E::template Params<S>& params, typename E::template State<S>& state,
+                          const typename SiteInput<E::site, S>::type& input) {
+  { E::name } -> std::convertible_to<std::string_view>;
+  { E::options.size() } -> std::convertible_to<std::size_t>;
+  { E::template Params<S>::fields().size() } -> std::convertible_to<std::size_t>;
+  { E::step(params, state, input) }
+  noexcept;
+};
+
+/// For effects that have nothing to choose.
+using NoOptions = std::array<std::string_view, 0>;
+
+/// A compile-time list of effects. The order is the order of application at serial sites; elsewhere it has no meaning.
+template <class... Es>
+struct EffectList {
+  static constexpr std::size_t size = sizeof...(Es);
+
+  /// Calls `f.template operator()<E, index>()` for every effect.
+  template <class F>
+  static constexpr void for_each(F&& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (f.template operator()<Es, I>(), ...); }
+    (std::make_index_sequence<size>{});
+  }
+};
+
+/// Parameters of every effect of a list, and which of them are active.
+template <class S, class List>
+struct EffectParameters;
+
+template <class S, class... Es>
+struct EffectParameters<S, EffectList<Es...>> {
+  static_assert((Effect<Es, S> && ...));
+  std::tuple<typename Es::template Params<S>...> values{};
+  std::array<bool, sizeof...(Es)> active{};
+};
+
+/// States of every effect of a list, and the output each one gave last (the first guess of the next step).
+template <class S, class List>
+struct EffectStates;
+
+template <class S, class... Es>
+struct EffectStates<S, EffectList<Es...>> {
+  std::tuple<typename Es::template State<S>...> values{};
+  std::array<S, sizeof...(Es)> outputs{};
+};
+
+/// Whether an evaluation keeps the states it reaches. A step evaluates its effects more than once and keeps the last.
+enum class Keep { no, yes };
+
+namespace detail {
+
+template <class S>
+void pass_on(Signal<S>& input, const S& output) noexcept {
+  input.value = output;
+}
+template <class S>
+void pass_on(Spring<S>& input, const Spring<S>& output) noexcept {
+  input = output;
+}
+
+/// What the body does without the force that an effect gave last; other sites have no such thing.
+template <class S>
+Motion<S> without_force(Motion<S> input, const S& force) noexcept {
+  input.free_velocity = input.velocity + input.compliance * force;
+  return input;
+}
+template <class Input, class S>
+const Input& without_force(const Input& input, const S&) noexcept {
+  return input;
+}
+
+template <class E, class Params, class State, class Input>
+auto evaluate(const Params& params, State& state, const Input& input, Keep keep) noexcept {
+  if (keep == Keep::yes) {
+    return E::step(params, state, input);
+  }
+  State trial = state;
+  return E::step(params, trial, input);
+}
+
+}  // namespace detail
+
+/// Passes `input` through the active effects of a serial site, in the order of the list.
+template <Site site, class S, class List>
+typename SiteInput<site, S>::type pass_through(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+                                               typename SiteInput<site, S>::type input, Keep keep) noexcept {
+  static_assert(is_serial(site) && site != Site::sensor);
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site) {
+      if (parameters.active[I]) {
+        detail::pass_on(input, detail::evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values), input, keep));
+      }
+    }
+  });
+  return input;
+}
+
+/// Passes a measured value through the active sensor effects of one channel.
+template <class S, class List>
+S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+                      const S& value, double h) noexcept {
+  Signal<S> input{value, h};
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == Site::sensor) {
+      if (parameters.active[I] && std::get<I>(parameters.values).option == channel) {
+        input.value = E::step(std::get<I>(parameters.values), std::get<I>(states.values), input);
+      }
+    }
+  });
+  return input.value;
+}
+
+/// Puts the states of the active sensor effects of one channel where a constant reading leaves them, each under the steady
+/// output of the one before it.
+template <class S, class List>
+void settle_channel(int channel, const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+                    Signal<S> input) noexcept {
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == Site::sensor) {
+      if (parameters.active[I] && std::get<I>(parameters.values).option == channel) {
+        if constexpr (requires { E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input); }) {
+          E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input);
+        }
+        input.value = E::step(std::get<I>(parameters.values), std::get<I>(states.values), input);
+      }
+    }
+  });
+}
+
+/// Sum of the active effects of an additive site.
+template <Site site, class S, class List>
+S sum_over(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+           const typename SiteInput<site, S>::type& input, Keep keep) noexcept {
+  static_assert(!is_serial(site));
+  S total{0.0};
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site) {
+      if (parameters.active[I]) {
+        states.outputs[I] = detail::evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values),
+                                                detail::without_force(input, states.outputs[I]), keep);
+        total += states.outputs[I];
+      }
+    }
+  });
+  return total;
+}
+
+/// Puts the states of the active effects of one site where a constant input leaves them.
+template <Site site, class S, class List>
+void settle(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+            const typename SiteInput<site, S>::type& input) noexcept {
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site &&
+                  requires { E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input); }) {
+      if (parameters.active[I]) {
+        E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input);
+      }
+    }
+  });
+}
+
+/// True if an active effect of the list enters at `site`.
+template <Site site, class S, class List>
+bool any_active(const EffectParameters<S, List>& parameters) noexcept {
+  bool any = false;
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site) {
+      any = any || parameters.active[I];
+    }
+  });
+  return any;
+}
+
+}  // namespace hotfire::model

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "model/effects/backlash.hpp"
+#include "model/effects/command_delay.hpp"
+#include "model/effects/cubic_stiffness.hpp"
+#include "model/effects/duct_hardening.hpp"
+#include "model/effects/force_offset.hpp"
+#include "model/effects/gimbal_friction.hpp"
+#include "model/effects/leakage.hpp"
+#include "model/effects/piston_friction.hpp"
+#include "model/effects/position_damping.hpp"
+#include "model/effects/quadratic_stiffness.hpp"
+#include "model/effects/rate_limit.hpp"
+#include "model/effects/sensor_lag.hpp"
+#include "model/effects/sensor_nonlinearity.hpp"
+#include "model/effects/sliding_friction.hpp"
+#include "model/effects/soft_stiffness.hpp"
+#include "model/effects/structural_mode.hpp"
+#include "model/effects/torque_offset.hpp"
+#include "model/effects/valve_asymmetry.hpp"
+#include "model/effects/valve_deadband.hpp"
+#include "model/effects/valve_hysteresis.hpp"
+#include "model/effects/variable_moment_arm.hpp"
+
+namespace hotfire::model {
+
+/// Every effect a hydraulic axis knows. At serial sites the order is the order of application: along the signal path for
+/// command and valve; at the load spring geometry first, then play, then the spring itself.
+using SimplexEffects = EffectList<RateLimit, CommandDelay, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage,
+                                  PistonFriction, VariableMomentArm, Backlash, SoftStiffness, StructuralMode, GimbalFriction,
+                                  DuctHardening, TorqueOffset, SensorNonlinearity, SensorLag>;
+
+/// Every effect a force-driven mass knows.
+using DirectEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, PositionDamping>;
+
+}  // namespace hotfire::model

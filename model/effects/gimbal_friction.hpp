@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cmath>
+
+#include "model/effect.hpp"
+#include "model/friction.hpp"
+
+namespace hotfire::model {
+
+/// Friction of the gimbal bearing, by one of three laws: `coulomb` (rigid), `dahl` (bristle, one level), `lugre` (bristle,
+/// Stribeck level, bristle damping). The bearing's viscous part is the engine's `viscous_damping`.
+///
+/// Passivity of LuGre needs viscous > damping (static_ratio - 1) [Astrom and Canudas de Wit 2008, Revisiting the LuGre
+/// Friction Model, IEEE Control Systems 28(6), p. 107]; the bristle damping here dies with speed, damping e^{-(v/v_d)^2}
+/// with v_d = 2 sqrt(2e) T_c / damping, half of their sufficient bound, so that the law is passive for any values. Source of
+/// the laws: [GF] slides Coulomb, Dahl, LuGre; bristle step in friction.hpp.
+struct GimbalFriction {
+  static constexpr std::string_view name = "gimbal_friction";
+  static constexpr Site site = Site::engine_torque;
+  static constexpr std::array<std::string_view, 3> options{"coulomb", "dahl", "lugre"};
+  static constexpr std::string_view option_key = "law";
+  static constexpr unsigned kBristle = 0b110;
+  static constexpr unsigned kLugre = 0b100;
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 2;
+    S coulomb_torque{0.0};
+    S stiffness{1e7};
+    S static_ratio{1.0};
+    S stribeck_velocity{0.01};
+    S damping{0.0};
+    static constexpr auto fields() {
+      return std::array{
+          Field<Params>{"coulomb_torque", "N.m", 0.0, 1e7, 8e3, "friction torque of steady sliding",
+                        &Params::coulomb_torque},
+          Field<Params>{"stiffness", "N.m/rad", 1e4, 1e11, 1e7, "bristle stiffness sigma0, before sliding",
+                        &Params::stiffness, kBristle},
+          Field<Params>{"static_ratio", "1", 1.0, 5.0, 1.2, "break-away torque over sliding torque", &Params::static_ratio,
+                        kLugre},
+          Field<Params>{"stribeck_velocity", "rad/s", 1e-6, 1.0, 0.01, "speed at which static friction dies out",
+                        &Params::stribeck_velocity, kLugre},
+          Field<Params>{"damping", "N.m.s/rad", 0.0, 1e8, 1e3, "bristle damping sigma1", &Params::damping, kLugre}};
+    }
+  };
+
+  template <class S>
+  struct State {
+    S deflection{0.0};
+  };
+
+  template <class S>
+  static S step(const Params<S>& params, State<S>& state, const Motion<S>& input) noexcept {
+    if (params.option == 0) {
+      return coulomb_force<S>(input, params.coulomb_torque);
+    }
+    // A level of zero is no friction: the bristle is not divided by it.
+    if (!(value_of(params.coulomb_torque) > 0.0)) {
+      return S{0.0};
+    }
+    if (params.option == 1) {
+      return bristle_force<S>(state.deflection, input, params.coulomb_torque, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
+    }
+    const S level = stribeck_level<S>(input.velocity, params.coulomb_torque, params.static_ratio, params.stribeck_velocity);
+    return bristle_force<S>(state.deflection, input, level,
+                            Bristle<S>{params.stiffness, passive_damping(params, input.velocity), S{0.0}});
+  }
+
+ private:
+  template <class S>
+  static S passive_damping(const Params<S>& params, const S& velocity) noexcept {
+    constexpr double kHalfOfSufficientBound = 4.663288;  // 2 sqrt(2 e)
+    const S relative = velocity * params.damping / (params.coulomb_torque * kHalfOfSufficientBound);
+    return params.damping * fading_exponential<S>(relative * relative);
+  }
+};
+
+}  // namespace hotfire::model

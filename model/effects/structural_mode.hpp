@@ -1,0 +1,70 @@
+#pragma once
+
+#include <numbers>
+
+#include "model/effect.hpp"
+#include "model/scalar.hpp"
+
+namespace hotfire::model {
+
+/// One more lightly damped mode at the attach point:
+///   eta'' + 2 zeta w eta' + w^2 eta = shape F,   motion = shape eta,   w = 2 pi frequency.
+///
+/// Advanced exactly with F held over the step (2x2 block), never by an explicit rule. Returns the mean motion over the step,
+/// (eta + eta+)/2. The mode adds shape^2 / w^2 to the static compliance of the load.
+/// [Hurty and Rubinstein 1964] Dynamics of Structures, ch. 8.
+struct StructuralMode {
+  static constexpr std::string_view name = "structural_mode";
+  static constexpr Site site = Site::structure;
+  static constexpr NoOptions options{};
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 0;
+    S frequency{1.0};
+    S damping_ratio{0.02};
+    S shape{0.0};
+    static constexpr auto fields() {
+      return std::array{
+          Field<Params>{"frequency", "Hz", 0.1, 200.0, 6.0, "natural frequency of the mode", &Params::frequency},
+          Field<Params>{"damping_ratio", "1", 1e-4, 0.9, 0.02, "damping ratio of the mode", &Params::damping_ratio},
+          Field<Params>{"shape", "kg^-0.5", 0.0, 1.0, 3e-3, "mass-normalised shape at the attach point", &Params::shape}};
+    }
+  };
+
+  template <class S>
+  struct State {
+    S displacement{0.0};  ///< eta [m kg^0.5]
+    S velocity{0.0};
+  };
+
+  template <class S>
+  static S step(const Params<S>& params, State<S>& state, const AttachPoint<S>& input) noexcept {
+    using std::cos;
+    using std::sin;
+    const S w = params.frequency * (2.0 * std::numbers::pi);
+    const S decay_rate = params.damping_ratio * w;
+    const S damped = w * sqrt(1.0 - params.damping_ratio * params.damping_ratio);
+    const S envelope = exp(-decay_rate * input.h);
+    const S c = cos(damped * input.h) * envelope;
+    const S s = sin(damped * input.h) * envelope;
+    const S rest = params.shape * input.force / (w * w);
+    const S start = state.displacement - rest;
+    const S end = start * c + (state.velocity + decay_rate * start) / damped * s;
+    const S velocity = state.velocity * c - (state.velocity * decay_rate + start * (w * w)) / damped * s;
+    const S mean = rest + 0.5 * (start + end);
+    state.displacement = rest + end;
+    state.velocity = velocity;
+    return params.shape * mean;
+  }
+
+  template <class S>
+  static void settle(const Params<S>& params, State<S>& state, const AttachPoint<S>& input) noexcept {
+    const S w = params.frequency * (2.0 * std::numbers::pi);
+    state.displacement = params.shape * input.force / (w * w);
+    state.velocity = S{0.0};
+  }
+};
+
+}  // namespace hotfire::model

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace hotfire::model {
+
+/// The one description of a parameter: the configuration key and its check, the documentation, the report's wording and
+/// the fit all read it, so that no number is described twice.
+///
+/// `unit` is a UDUNITS-2 string ("1" for none, "" for a unit that follows the record's own). Bounds are inclusive.
+/// `typical` is where a search starts: inside the region where the parameter acts, because a neutral value has no
+/// gradient. `options` has one bit for each option (law, channel) of the owner that uses the field.
+template <class Owner>
+struct Field {
+  std::string_view name;
+  std::string_view unit;
+  double lower = 0.0;
+  double upper = 0.0;
+  double typical = 0.0;
+  std::string_view meaning;
+  typename Owner::Scalar Owner::*member;
+  unsigned options = ~0U;
+};
+
+/// A curve given by points: `x_name` strictly increasing, `y_name` one value a point, at most `Owner::kTablePoints`.
+template <class Owner, class Table>
+struct TableField {
+  std::string_view x_name;
+  std::string_view x_unit;
+  std::string_view y_name;
+  std::string_view y_unit;
+  double y_lower = 0.0;
+  double y_upper = 0.0;
+  std::string_view meaning;
+  Table Owner::*member;
+  unsigned options = ~0U;
+};
+
+/// A bounded field whose range does not include negative values is searched in logarithms, others linearly.
+template <class Owner>
+constexpr bool searched_in_logarithms(const Field<Owner>& field) {
+  return field.lower >= 0.0;
+}
+
+/// True if the value lies inside the field's bounds; false for NaN.
+template <class Owner>
+constexpr bool inside_bounds(const Field<Owner>& field, double value) {
+  return value >= field.lower && value <= field.upper;
+}
+
+}  // namespace hotfire::model

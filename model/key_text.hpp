@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <type_traits>
+
+#include "model/keys.hpp"
+
+namespace hotfire::model {
+
+/// The full name of a parameter as plant images and messages write it: "engine.inertia",
+/// "effects.gimbal_friction.coulomb_torque". Without heap, so that the model can hand it out.
+class KeyText {
+ public:
+  constexpr KeyText(bool is_effect, std::string_view section, std::string_view name) {
+    append(is_effect ? "effects." : "");
+    append(section);
+    append(".");
+    append(name);
+  }
+
+  constexpr std::string_view view() const noexcept { return {text_.data(), size_}; }
+
+ private:
+  constexpr void append(std::string_view part) {
+    for (const char letter : part) {
+      text_.at(size_++) = letter;
+    }
+  }
+
+  std::array<char, 96> text_{};
+  std::size_t size_ = 0;
+};
+
+namespace detail {
+
+template <class Owner, class Visitor>
+void visit_owner(bool is_effect, std::string_view section, Owner& owner, Visitor& visitor) {
+  for (const auto& field : std::remove_cvref_t<Owner>::fields()) {
+    visitor.number(KeyText(is_effect, section, field.name), field, owner.*field.member);
+  }
+  if constexpr (requires { std::remove_cvref_t<Owner>::tables(); }) {
+    for (const auto& field : std::remove_cvref_t<Owner>::tables()) {
+      visitor.table(KeyText(is_effect, section, field.x_name), KeyText(is_effect, section, field.y_name), field,
+                    owner.*field.member);
+    }
+  }
+}
+
+}  // namespace detail
+
+/// Shows everything that makes a plant to a visitor, under its full key: the parts, then the effects that are wanted.
+/// - `number(key, field, value)`: a parameter and its description;
+/// - `table(x_key, y_key, field, table)`: a curve; its point i has the keys followed by ".i";
+/// - `effect<E>(prefix, active)`: before an effect's own parameters, which are shown if it returns true; `prefix` is
+///   "effects.gimbal_friction.";
+/// - `option(key, options, option)`: an effect's law or channel.
+/// Set-up only. The values that the visitor sees are const if `parameters` is.
+template <class Parameters, class Visitor>
+void visit_keys(Parameters& parameters, Visitor& visitor) {
+  std::remove_const_t<Parameters>::for_each_part(parameters,
+                                                 [&](auto& part) { detail::visit_owner(false, part.name, part, visitor); });
+  visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    if (!visitor.template effect<E>(KeyText(true, E::name, ""), parameters.effects.active[index])) {
+      return;
+    }
+    if constexpr (E::options.size() > 0) {
+      visitor.option(KeyText(true, E::name, E::option_key), E::options, values.option);
+    }
+    detail::visit_owner(true, E::name, values, visitor);
+  });
+}
+
+}  // namespace hotfire::model

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace hotfire::model {
+
+/// Where in the equations an effect enters. `sensor` is followed by the channel's name in configuration and report.
+enum class Site { command, valve_command, valve, flow, piston, load_spring, structure, engine_torque, mass_force, sensor };
+
+constexpr std::string_view site_name(Site site) noexcept {
+  constexpr std::array<std::string_view, 10> names{"command",     "valve_command", "valve",         "flow",       "piston",
+                                                   "load_spring", "structure",     "engine_torque", "mass_force", "sensor"};
+  return names[static_cast<std::size_t>(site)];
+}
+
+/// Sites at which effects are applied one after the other, in the order of the effect list; at all others they add up.
+constexpr bool is_serial(Site site) noexcept {
+  return site == Site::command || site == Site::valve_command || site == Site::valve || site == Site::load_spring ||
+         site == Site::sensor;
+}
+
+/// What an effect sees at the sites `command`, `valve_command`, `valve` and `sensor`, over one step of `h` [s].
+/// The effect returns what the value becomes.
+template <class S>
+struct Signal {
+  using Scalar = S;
+  S value;
+  double h;
+};
+
+/// What an effect sees at the site `flow`: it returns flow added into the extend chamber [m^3/s].
+template <class S>
+struct Hydraulics {
+  using Scalar = S;
+  S load_pressure;  ///< mean over the step [Pa]
+  S opening;        ///< mean spool position after the valve's effects [-]
+  S supply_pressure;
+  double h;
+};
+
+/// What an effect sees at the sites `piston`, `engine_torque` and `mass_force`: it returns the force or torque that opposes
+/// the motion, mean over the step.
+///
+/// `velocity` is the mean velocity over the step as the last pass found it. `free_velocity` is what it would be without this
+/// effect and `compliance` how much a unit of mean force slows it, so that a stiff law can solve
+/// velocity = free_velocity - compliance * force in closed form instead of being stepped explicitly.
+template <class S>
+struct Motion {
+  using Scalar = S;
+  S position;  ///< mean over the step
+  S velocity;
+  S free_velocity;
+  S compliance;
+  double h;
+};
+
+/// What an effect sees at the site `load_spring`, and returns with its change. The spring's force is
+/// `stiffness * deflection`, so a nonlinear spring returns the deflection that gives its force.
+template <class S>
+struct Spring {
+  using Scalar = S;
+  S deflection;          ///< x_a - stroke(beta) - w, mean over the step [m]
+  S angle;               ///< engine angle beta, mean over the step [rad]
+  S nominal_arm;         ///< moment arm of the declared model [m]
+  S arm;                 ///< moment arm that turns force into torque, as the effects leave it [m]
+  S stiffness;           ///< K_T of the declared model [N/m]
+  S actuator_stiffness;  ///< K_act [N/m]
+  S load_stiffness;      ///< K_L [N/m]
+  double h;
+};
+
+/// What an effect sees at the site `structure`: it returns the further motion of the attach point, mean over the step [m].
+template <class S>
+struct AttachPoint {
+  using Scalar = S;
+  S force;  ///< F of the load spring, mean over the step [N]
+  double h;
+};
+
+/// The input type of a site.
+template <Site site, class S>
+struct SiteInput {
+  using type = Signal<S>;
+};
+template <class S>
+struct SiteInput<Site::flow, S> {
+  using type = Hydraulics<S>;
+};
+template <class S>
+struct SiteInput<Site::piston, S> {
+  using type = Motion<S>;
+};
+template <class S>
+struct SiteInput<Site::engine_torque, S> {
+  using type = Motion<S>;
+};
+template <class S>
+struct SiteInput<Site::mass_force, S> {
+  using type = Motion<S>;
+};
+template <class S>
+struct SiteInput<Site::load_spring, S> {
+  using type = Spring<S>;
+};
+template <class S>
+struct SiteInput<Site::structure, S> {
+  using type = AttachPoint<S>;
+};
+
+}  // namespace hotfire::model

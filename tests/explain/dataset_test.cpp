@@ -1,0 +1,74 @@
+#include "tools/explain/dataset.hpp"
+
+#include <cmath>
+
+#include "tools/files/error.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace {
+
+hotfire::Record record(std::vector<hotfire::Channel> channels, double period) {
+  hotfire::Record result;
+  result.name = "record.csv";
+  result.path = result.name;
+  result.period = period;
+  result.rows = channels.front().values.size();
+  result.channels = std::move(channels);
+  return result;
+}
+
+hotfire::ModelFile axis() {
+  hotfire::ModelFile model;
+  model.parameters = hotfire::SimplexParameters{};
+  model.noise = {{"piston", 8e-6}};
+  return model;
+}
+
+}  // namespace
+
+TEST_GROUP(Dataset){};
+
+TEST(Dataset, AQuarterOfEveryRecordIsHeldOutAndNeverItsStart) {
+  const std::vector<double> values(26001, 0.001);
+  const auto data =
+      hotfire::explain::make_dataset(axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002),
+                                              record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)});
+  for (const auto& experiment : data.experiments) {
+    std::size_t held = 0;
+    for (const auto& block : experiment.held_out) {
+      CHECK(block.first > 0);
+      CHECK(block.last <= experiment.rows());
+      held += block.last - block.first;
+    }
+    // 13 blocks of 4 s: three or four of them.
+    CHECK(held >= experiment.rows() * 3 / 13 - 1);
+    CHECK(held <= experiment.rows() * 4 / 13 + 1);
+  }
+  // Blocks are shifted from record to record, so that the same profile is not blind to the same part twice.
+  CHECK(data.experiments[0].held_out.front().first != data.experiments[1].held_out.front().first);
+}
+
+TEST(Dataset, ADeclaredNoiseIsTakenAndAnUndeclaredOneIsEstimated) {
+  std::vector<double> wave(5000);
+  for (std::size_t i = 0; i < wave.size(); ++i) {
+    wave[i] = std::sin(0.01 * static_cast<double>(i)) + (i % 2 == 0 ? 1e-4 : -1e-4);
+  }
+  const auto data = hotfire::explain::make_dataset(
+      axis(), {record({{"command", "rad", wave}, {"piston", "m", wave}, {"engine", "rad", wave}}, 0.002)});
+  DOUBLES_EQUAL(8e-6, data.noise[0], 0.0);
+  CHECK(data.noise_declared[0]);
+  CHECK(!data.noise_declared[1]);
+  // An alternation of +-a has third differences of 8 a: seen as noise of 8 a / sqrt(20) = 1.79 a, up to the median's bias.
+  DOUBLES_EQUAL(1.79e-4, data.noise[1], 0.05e-4);
+}
+
+TEST(Dataset, ARecordWithoutTheModelsInputIsRefusedByName) {
+  try {
+    hotfire::explain::make_dataset(axis(), {record({{"piston", "m", std::vector<double>(100, 0.0)}}, 0.002)});
+    FAIL("a record without a command was taken");
+  } catch (const hotfire::FileError& error) {
+    STRCMP_CONTAINS("record.csv", error.what());
+    STRCMP_CONTAINS("command", error.what());
+  }
+}

@@ -1,0 +1,100 @@
+#include "tools/explain/evaluator.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "tools/explain/candidates.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace {
+
+using namespace hotfire::explain;
+
+/// Two records of an axis under a smooth command, measured as zero: what counts are derivatives.
+Dataset smooth_dataset() {
+  Dataset data;
+  data.channels = {"piston", "engine", "load_pressure"};
+  data.used = {true, true, false};
+  data.noise = {8e-6, 6e-5, 1.0};
+  data.noise_declared = {true, true, false};
+  for (int e = 0; e < 2; ++e) {
+    Experiment experiment;
+    experiment.name = "smooth";
+    experiment.period = 0.002;
+    for (int i = 0; i < 500; ++i) {
+      experiment.input.push_back(0.01 * std::sin((e + 2.0) * 3.0 * i * 0.002));
+    }
+    experiment.measured = {std::vector<double>(500, 0.0), std::vector<double>(500, 0.0), {}};
+    experiment.held_out = {{100, 200}};
+    data.experiments.push_back(experiment);
+  }
+  return data;
+}
+
+}  // namespace
+
+TEST_GROUP(Evaluator){};
+
+TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAndAnEffect) {
+  const Dataset data = smooth_dataset();
+  const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
+  PlainParameters<SimplexFamily> base;
+  std::map<std::string, double> tolerance;
+  hotfire::model::visit_parameters(base, [&](const hotfire::model::Key& key, const auto& field, const double&) {
+    if (!key.is_effect) {
+      tolerance[std::string(key.section) + "." + std::string(field.name)] = 0.05;
+    }
+  });
+  std::vector<FreeParameter> free = declared_parameters<SimplexFamily>(base, tolerance);
+  for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
+    if (candidate.name == "structural_mode") {
+      activate<SimplexFamily>(base, candidate);
+      const auto own = effect_parameters<SimplexFamily>(base, candidate, {});
+      free.insert(free.end(), own.begin(), own.end());
+    }
+  }
+  std::vector<double> u;
+  u.reserve(free.size());
+  for (const FreeParameter& parameter : free) {
+    u.push_back(parameter.is_declared() ? 0.1 : parameter.coordinate(parameter.unit_size));
+  }
+  std::vector<std::size_t> all(free.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+  CHECK(evaluator.differentiate(base, free, u, all, 2, residual, jacobian));
+  LONGS_EQUAL(2 * 2 * 400, residual.size());
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    // Central differences: truncation h^2 = 1e-8 of the third derivative; rounding of a simulation, 1e-13 of a residual of a
+    // thousand, over 2 h in 1600 rows is 2e-5.
+    const double h = 1e-4;
+    Prediction high;
+    Prediction low;
+    std::vector<double> moved = u;
+    moved[k] = u[k] + h;
+    CHECK(evaluator.predict(base, free, moved, 1, high));
+    moved[k] = u[k] - h;
+    CHECK(evaluator.predict(base, free, moved, 1, low));
+    const Eigen::VectorXd difference = (evaluator.residuals(high) - evaluator.residuals(low)) / (2.0 * h);
+    const Eigen::VectorXd exact = jacobian.col(static_cast<Eigen::Index>(k));
+    CHECK_TEXT((difference - exact).norm() <= 1e-5 * exact.norm() + 1e-4, free[k].key.c_str());
+  }
+}
+
+TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
+  const Dataset data = smooth_dataset();
+  const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
+  const PlainParameters<SimplexFamily> base;
+  const auto free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  const std::vector<double> u{0.3, -0.2};
+  const std::vector<std::size_t> all{0, 1};
+  Eigen::VectorXd one_residual;
+  Eigen::VectorXd two_residual;
+  Eigen::MatrixXd one;
+  Eigen::MatrixXd two;
+  evaluator.differentiate(base, free, u, all, 1, one_residual, one);
+  evaluator.differentiate(base, free, u, all, 2, two_residual, two);
+  CHECK((one.array() == two.array()).all());
+  CHECK((one_residual.array() == two_residual.array()).all());
+}

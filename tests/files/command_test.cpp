@@ -1,0 +1,110 @@
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tests/files/expect.hpp"
+#include "tests/files/scratch.hpp"
+
+namespace hotfire {
+
+using test::expect_message;
+
+TEST_GROUP(Command) {
+  test::Scratch scratch;
+  std::string out;
+  std::string err;
+
+  /// Runs `hotfire` with these arguments and keeps what it prints. Returns its exit status.
+  int status_of(const std::string& arguments) {
+    const auto read = [](const std::filesystem::path& path) {
+      std::ifstream file(path);
+      return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    const auto printed = scratch.path("out");
+    const auto complained = scratch.path("err");
+    const std::string line =
+        std::string{HOTFIRE_PROGRAM} + " " + arguments + " >" + printed.string() + " 2>" + complained.string();
+    const int status = std::system(line.c_str());
+    out = read(printed);
+    err = read(complained);
+    return WEXITSTATUS(status);
+  }
+
+  std::string record() const { return scratch.write("good.csv", "time[s],command[deg]\n0,0\n0.002,1\n0.004,1\n").string(); }
+  std::string model() const {
+    return scratch
+        .write("good.toml",
+               "schema = 1\nname = \"bench\"\ntopology = \"simplex\"\n[effects.backlash]\nhalf_width = \"0.1 mm\"\n")
+        .string();
+  }
+};
+
+TEST(Command, check_says_what_each_file_is_in_one_line_and_nothing_else) {
+  LONGS_EQUAL(0, status_of("check " + model() + " " + record()));
+  expect_message(out, {"good.toml: model \"bench\", topology simplex, effects: backlash", "engine.inertia",
+                       "good.csv: record, 3 rows, period 0.002 s (500 Hz)", "command[rad]"});
+  LONGS_EQUAL(2, std::count(out.begin(), out.end(), '\n'));
+  STRCMP_EQUAL("", err.c_str());
+}
+
+TEST(Command, check_looks_at_every_file_before_it_exits_with_6) {
+  const std::string bad = scratch.write("bad.csv", "time[s],piston[m]\n0,x\n").string();
+  LONGS_EQUAL(6, status_of("check " + bad + " " + record() + " none.toml odd.xls"));
+  expect_message(out, {"bad.csv: refused", "good.csv: record", "none.toml: refused", "odd.xls: refused"});
+  expect_message(err, {"hotfire: ", "bad.csv:2: column piston: \"x\"", "none.toml: cannot be opened",
+                       ".toml (a model), .csv (a record)"});
+}
+
+TEST(Command, check_prints_json_on_request) {
+  LONGS_EQUAL(6, status_of("check --json " + model() + " " + record() + " none.csv"));
+  expect_message(out, {"\"kind\": \"model\"", "\"effects\": [\n      \"backlash\"\n    ]", "\"rows\": 3",
+                       "\"period\": 0.002", "\"good\": false", "\"error\": \"none.csv: cannot be opened"});
+}
+
+TEST(Command, a_misspelt_word_is_wrong_use_and_named_with_the_nearest_known_one) {
+  LONGS_EQUAL(2, status_of("chekc x"));
+  expect_message(err, {"hotfire: unknown word \"chekc\"", "did you mean \"check\"?", "'hotfire --help'"});
+  LONGS_EQUAL(2, status_of("simulate --modl x"));
+  expect_message(err, {"unknown word \"--modl\"", "did you mean \"--model\"?", "'hotfire simulate --help'"});
+  STRCMP_EQUAL("", out.c_str());
+}
+
+TEST(Command, without_what_it_needs_is_wrong_use) {
+  LONGS_EQUAL(2, status_of(""));
+  LONGS_EQUAL(2, status_of("check"));
+  expect_message(err, {"hotfire: FILE is required", "'hotfire check --help'"});
+  LONGS_EQUAL(2, status_of("simulate --model m --input i --output o --fit-start=-3"));
+}
+
+TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
+  for (const std::string command : {"", "check ", "simulate "}) {
+    LONGS_EQUAL(0, status_of(command + "--help"));
+    expect_message(out, {"Example: hotfire"});
+    LONGS_EQUAL(0, status_of(command + "--version"));
+    expect_message(out, {"0."});
+  }
+}
+
+TEST(Command, simulate_writes_a_record_on_the_grid_of_its_input_and_one_line) {
+  const std::string output = scratch.path("model.csv").string();
+  LONGS_EQUAL(0, status_of("simulate --model " + model() + " --input " + record() + " --output " + output));
+  expect_message(out, {"model.csv: 3 rows", "times faster than real time"});
+  LONGS_EQUAL(1, std::count(out.begin(), out.end(), '\n'));
+  LONGS_EQUAL(0, status_of("check " + output));
+  expect_message(out, {"3 rows, period 0.002 s", "command[rad], piston[m], engine[rad], load_pressure[Pa]"});
+}
+
+TEST(Command, simulate_refuses_bad_data_with_6_and_leaves_no_output) {
+  const std::string output = scratch.path("model.csv").string();
+  const std::string no_command = scratch.write("no_command.csv", "time[s],piston[m]\n0,0\n0.002,1\n").string();
+  LONGS_EQUAL(6, status_of("simulate --model " + model() + " --input " + no_command + " --output " + output));
+  expect_message(err, {"no_command.csv", "command", "piston"});
+  STRCMP_EQUAL("", out.c_str());
+  CHECK(!std::filesystem::exists(output));
+}
+
+}  // namespace hotfire

@@ -1,0 +1,81 @@
+#include "firmware/options.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace hotfire::firmware {
+
+TEST_GROUP(Options){
+    static Options accepted(std::vector<std::string> arguments){arguments.insert(arguments.begin(), "hotfire-rt");
+const ParsedOptions parsed = parse_options(arguments);
+STRCMP_EQUAL("", parsed.message.c_str());
+CHECK(parsed.options.has_value());
+return *parsed.options;
+}  // namespace hotfire::firmware
+
+static void refused(std::vector<std::string> arguments, const char* message) {
+  arguments.insert(arguments.begin(), "hotfire-rt");
+  const ParsedOptions parsed = parse_options(arguments);
+  CHECK(!parsed.options);
+  LONGS_EQUAL(2, parsed.status);
+  STRCMP_CONTAINS(message, parsed.message.c_str());
+}
+}
+;
+
+TEST(Options, TimingRunsTenThousandCyclesAndAllowsNoOverrunByDefault) {
+  const Options options = accepted({"timing"});
+  UNSIGNED_LONGS_EQUAL(10'000, options.loop.cycles);
+  CHECK(options.max_overruns == std::uint64_t{0});
+  CHECK(!options.max_latency_us);
+}
+
+TEST(Options, PlantRunsUntilAskedToStopAndHasNoLimitByDefault) {
+  const Options options = accepted({"plant", "--image", "p.image"});
+  UNSIGNED_LONGS_EQUAL(0, options.loop.cycles);
+  CHECK(!options.max_overruns);
+}
+
+TEST(Options, ValuesAreTakenFromTheNextArgumentOrAfterAnEqualsSign) {
+  const Options options = accepted({"timing", "--period-us", "250", "--policy=skip", "--cpu", "1", "--max-latency-us=12.5",
+                                    "--command", "sine", "--amplitude", "-0.02", "--json"});
+  LONGS_EQUAL(250'000, options.loop.period_ns);
+  CHECK(options.loop.policy == OverrunPolicy::skip);
+  LONGS_EQUAL(1, *options.cpu);
+  DOUBLES_EQUAL(12.5, *options.max_latency_us, 0.0);
+  CHECK(options.source.shape == hotfire::hal::sim::CommandSource::Shape::sine);
+  DOUBLES_EQUAL(-0.02, options.source.amplitude, 0.0);
+  CHECK(options.json);
+}
+
+TEST(Options, PeriodOutsideItsRangeIsRefusedWithTheRange) {
+  refused({"timing", "--period-us", "249"}, "--period-us 249: allowed is a whole number from 250 to 10000");
+  refused({"timing", "--period-us", "10001"}, "from 250 to 10000");
+}
+
+TEST(Options, BusThatThisBuildDoesNotHaveIsRefusedNamingWhatItHas) {
+  refused({"plant", "--image", "p", "--bus", "can0"}, "--bus can0: allowed is sim");
+}
+
+TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
+  refused({}, "plant or timing");
+  refused({"fly"}, "plant or timing");
+  refused({"plant"}, "hotfire plant --model");
+  refused({"timing", "--perod-us", "500"}, "unknown argument --perod-us");
+  refused({"timing", "--cycles"}, "--cycles needs a value");
+  refused({"timing", "--json=yes"}, "--json takes no value");
+  refused({"timing", "--policy", "hope"}, "catch-up, skip, stop");
+  refused({"timing", "--amplitude", "nan"}, "a number from");
+  refused({"timing", "--cycles", "-1"}, "a whole number");
+  refused({"timing", "--cycles", "10x"}, "a whole number");
+  refused({"timing", "--priority", "0", "--require-realtime"}, "exclude each other");
+}
+
+TEST(Options, HelpNamesEveryOptionAndAnExample) {
+  const ParsedOptions parsed = parse_options({"hotfire-rt", "timing", "--help"});
+  LONGS_EQUAL(0, parsed.status);
+  for (const char* part : {"--image", "--bus", "--policy", "--require-realtime", "hotfire timing --cycles"}) {
+    STRCMP_CONTAINS(part, parsed.message.c_str());
+  }
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,278 @@
+#include <CppUTest/TestHarness.h>
+
+#include <cstdio>
+#include <numbers>
+
+#include "tests/model/plants.hpp"
+#include "tests/model/reference_axis.hpp"
+
+namespace hotfire::test {
+namespace {
+
+using Plant = model::Simplex<double>;
+using Rows = std::vector<std::array<double, 3>>;
+
+constexpr double kSample = 1e-3;
+// The figure asked for: half a percent of the signal's rms, in piston and engine.
+constexpr double kLimit = 5e-3;
+
+/// The same axis told twice.
+struct Case {
+  const char* name = "";
+  ReferenceAxis reference{};
+  Plant::Parameters parameters{};
+  double settling = 0.0;
+};
+
+/// 1.5 s of command: sines from 1 to 9 Hz and two steps, 0.3 deg each, so that friction sticks, breaks away and turns round.
+std::vector<double> command_profile() {
+  constexpr double degree = std::numbers::pi / 180.0;
+  std::vector<double> commands;
+  for (int i = 0; i < 1500; ++i) {
+    const double t = i * kSample;
+    const double sines = 0.5 * std::sin(2.0 * std::numbers::pi * t) + 0.25 * std::sin(2.0 * std::numbers::pi * 4.0 * t) +
+                         0.15 * std::sin(2.0 * std::numbers::pi * 9.0 * t);
+    commands.push_back(degree * (sines + (t >= 0.5 ? 0.3 : 0.0) - (t >= 1.1 ? 0.3 : 0.0)));
+  }
+  return commands;
+}
+
+Rows run_model(const Plant::Parameters& parameters, int parts) {
+  const Plant plant(parameters, kSample / parts);
+  Plant::State state = plant.steady(0.0);
+  Rows rows;
+  for (const double command : command_profile()) {
+    for (int part = 0; part < parts; ++part) {
+      plant.step(state, command);
+    }
+    rows.push_back({state.y(Plant::kPiston), state.y(Plant::kAngle), state.y(Plant::kPressure)});
+  }
+  return rows;
+}
+
+/// Checks the error at the two steps a sample that the tools take, and prints it beside that of one step a sample.
+void check_agreement(const Case& test) {
+  const Rows reference = integrate_reference(test.reference, command_profile(), kSample, test.settling);
+  const Rows fine = run_model(test.parameters, 2);
+  const Rows coarse = run_model(test.parameters, 1);
+  std::printf("\n%-28s 0.5 ms: piston %.4f %% engine %.4f %%   1 ms: piston %.4f %% engine %.4f %%", test.name,
+              100.0 * relative_rms(fine, reference, 0), 100.0 * relative_rms(fine, reference, 1),
+              100.0 * relative_rms(coarse, reference, 0), 100.0 * relative_rms(coarse, reference, 1));
+  CHECK_TRUE_TEXT(relative_rms(fine, reference, 0) < kLimit, test.name);
+  CHECK_TRUE_TEXT(relative_rms(fine, reference, 1) < kLimit, test.name);
+}
+
+/// LuGre at the gimbal on both sides. v_d is half of the bound in physics.md section 3.
+void add_lugre(Case& test, double level, double stiffness, double ratio, double stribeck, double damping) {
+  activate<model::GimbalFriction, Plant>(
+      test.parameters, {option_named<model::GimbalFriction>("lugre"), level, stiffness, ratio, stribeck, damping});
+  const double dies_at = damping > 0.0 ? 2.0 * std::sqrt(2.0 * std::numbers::e) * level / damping : 1.0;
+  test.reference.bristle = {level, stiffness, ratio, stribeck, damping, dies_at};
+}
+
+void add_soft(Case& test, double low, double scale) {
+  activate<model::SoftStiffness, Plant>(test.parameters, {option_named<model::SoftStiffness>("compliance"), low, scale, {}});
+  test.reference.soft = ReferenceAxis::Soft::compliance;
+  test.reference.low_stiffness = low;
+  test.reference.load_scale = scale;
+}
+
+void add_deadband(Case& test, double half_width) {
+  activate<model::ValveDeadband, Plant>(test.parameters, {0, half_width});
+  test.reference.deadband = half_width;
+}
+
+}  // namespace
+
+TEST_GROUP(AgreesWithCvode){};
+
+TEST(AgreesWithCvode, OnTheDeclaredModel) { check_agreement({"declared"}); }
+
+TEST(AgreesWithCvode, WhereTheValveSaturates) {
+  Case test{"saturation"};
+  test.parameters.servovalve.position_gain = 3000.0;
+  test.parameters.servovalve.rated_flow = 1.5e-3;
+  test.reference.position_gain = 3000.0;
+  test.reference.rated_flow = 1.5e-3;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnFrictionSoftStiffnessAndDeadbandTogether) {
+  Case test{"friction + soft + deadband"};
+  add_lugre(test, 8e3, 1e7, 1.2, 0.01, 1e3);
+  add_soft(test, 4e7, 8e3);
+  add_deadband(test, 0.02);
+  check_agreement(test);
+}
+
+// The stiff gimbal of physics.md section 3: the piston is held so tight that the notch is gone.
+TEST(AgreesWithCvode, OnHotFireFrictionOfARigidGimbal) {
+  Case test{"hot fire, rigid gimbal"};
+  test.parameters.structure.stiffness = 1.05e8;
+  test.reference.load_stiffness = 1.05e8;
+  add_lugre(test, 45e3, 5e8, 1.0, 0.01, 0.0);
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnLugreFriction) {
+  Case test{"gimbal_friction lugre"};
+  add_lugre(test, 8e3, 1e7, 1.2, 0.01, 1e3);
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnDahlFriction) {
+  Case test{"gimbal_friction dahl"};
+  activate<model::GimbalFriction, Plant>(test.parameters,
+                                         {option_named<model::GimbalFriction>("dahl"), 8e3, 1e7, 1.0, 0.01, 0.0});
+  test.reference.bristle = {8e3, 1e7, 1.0, 1.0, 0.0, 1.0};
+  check_agreement(test);
+}
+
+// A spring of 1e11 N.m/rad that slips stands for the rigid law: it yields 8e-8 rad at the level, 1e-5 of the motion.
+TEST(AgreesWithCvode, OnRigidCoulombFriction) {
+  Case test{"gimbal_friction coulomb"};
+  activate<model::GimbalFriction, Plant>(test.parameters,
+                                         {option_named<model::GimbalFriction>("coulomb"), 8e3, 1e7, 1.0, 0.01, 0.0});
+  test.reference.coulomb = {8e3, 1e11, 1.0, 1.0, 1e9};
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnPistonFrictionOfAnElasticSeal) {
+  Case test{"piston_friction elastoplastic"};
+  activate<model::PistonFriction, Plant>(test.parameters,
+                                         {option_named<model::PistonFriction>("elastoplastic"), 5e3, 1.2, 0.01, 5e8});
+  test.reference.seal = {5e3, 5e8, 1.2, 0.01};
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnPistonFrictionOfABristle) {
+  Case test{"piston_friction lugre"};
+  activate<model::PistonFriction, Plant>(test.parameters,
+                                         {option_named<model::PistonFriction>("lugre"), 5e3, 1.2, 0.01, 5e8});
+  test.reference.seal_bristle = {5e3, 5e8, 1.2, 0.01, 0.0, 1.0};
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnSoftStiffnessByCompliance) {
+  Case test{"soft_stiffness compliance"};
+  add_soft(test, 4e7, 8e3);
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnSoftStiffnessByStiffness) {
+  Case test{"soft_stiffness stiffness"};
+  activate<model::SoftStiffness, Plant>(test.parameters, {option_named<model::SoftStiffness>("stiffness"), 4e7, 8e3, {}});
+  test.reference.soft = ReferenceAxis::Soft::stiffness;
+  test.reference.low_stiffness = 4e7;
+  test.reference.load_scale = 8e3;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnSoftStiffnessThatSaturates) {
+  Case test{"soft_stiffness saturation"};
+  activate<model::SoftStiffness, Plant>(test.parameters, {option_named<model::SoftStiffness>("saturation"), 4e7, 8e3, {}});
+  test.reference.soft = ReferenceAxis::Soft::saturation;
+  test.reference.low_stiffness = 4e7;
+  test.reference.load_scale = 8e3;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnSoftStiffnessByTable) {
+  Case test{"soft_stiffness table"};
+  activate<model::SoftStiffness, Plant>(test.parameters,
+                                        typical<model::SoftStiffness, double>(option_named<model::SoftStiffness>("table")));
+  test.reference.soft = ReferenceAxis::Soft::table;
+  test.reference.stiffness_table = {{0.0, 4e7}, {4e3, 6e7}, {1.2e4, 1e8}, {3e4, 1.2e8}};
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnBacklash) {
+  Case test{"backlash"};
+  activate<model::Backlash, Plant>(test.parameters, {0, 1e-4});
+  test.reference.backlash = 1e-4;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnAVariableMomentArm) {
+  Case test{"variable_moment_arm"};
+  activate<model::VariableMomentArm, Plant>(test.parameters, {0, 1.0, -0.5});
+  test.reference.arm_linear = 1.0;
+  test.reference.arm_quadratic = -0.5;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnAStructuralMode) {
+  Case test{"structural_mode"};
+  activate<model::StructuralMode, Plant>(test.parameters, {0, 6.0, 0.02, 3e-3});
+  test.reference.mode_frequency = 6.0;
+  test.reference.mode_damping = 0.02;
+  test.reference.mode_shape = 3e-3;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnDuctHardening) {
+  Case test{"duct_hardening"};
+  activate<model::DuctHardening, Plant>(test.parameters, {0, 1e8});
+  test.reference.duct_cubic = 1e8;
+  check_agreement(test);
+}
+
+// The reference waits for the constant torque to settle, 20 s against the slowest mode of the loop, 1/17 s and the washout's
+// 1/6.3 s; the model starts from its steady state.
+TEST(AgreesWithCvode, OnATorqueOffset) {
+  Case test{"torque_offset"};
+  activate<model::TorqueOffset, Plant>(test.parameters, {0, 2e4});
+  test.reference.torque_offset = 2e4;
+  test.settling = 20.0;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnAValveDeadband) {
+  Case test{"valve_deadband"};
+  add_deadband(test, 0.02);
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnAValveAsymmetry) {
+  Case test{"valve_asymmetry"};
+  activate<model::ValveAsymmetry, Plant>(test.parameters, {0, 0.2});
+  test.reference.asymmetry = 0.2;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnValveHysteresis) {
+  Case test{"valve_hysteresis"};
+  activate<model::ValveHysteresis, Plant>(test.parameters, {0, 0.01});
+  test.reference.play = 0.01;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnLaminarLeakage) {
+  Case test{"leakage laminar"};
+  activate<model::Leakage, Plant>(test.parameters, {option_named<model::Leakage>("laminar"), 5e-11});
+  test.reference.laminar_leak = 5e-11;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnLeakageThroughAnOrifice) {
+  Case test{"leakage orifice"};
+  activate<model::Leakage, Plant>(test.parameters, {option_named<model::Leakage>("orifice"), 5e-11});
+  test.reference.orifice_leak = 5e-11;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnACommandDelay) {
+  Case test{"command_delay"};
+  activate<model::CommandDelay, Plant>(test.parameters, {0, 5.3e-3});
+  test.reference.delay = 5.3e-3;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnARateLimit) {
+  Case test{"rate_limit"};
+  activate<model::RateLimit, Plant>(test.parameters, {0, 0.1});
+  test.reference.rate_limit = 0.1;
+  check_agreement(test);
+}
+
+}  // namespace hotfire::test

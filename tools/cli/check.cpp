@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/cli/commands.hpp"
+#include "tools/files/error.hpp"
+#include "tools/files/model_file.hpp"
+#include "tools/files/model_layout.hpp"
+#include "tools/files/record.hpp"
+
+namespace hotfire {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describe_model(const std::filesystem::path& path) {
+  ModelFile model = load_model(path);
+  const ModelLayout layout = layout_of(model);
+  std::vector<std::string> effects;
+  for (const KeyGroup& effect : layout.effects) {
+    if (*effect.active) {
+      effects.emplace_back(effect.name);
+    }
+  }
+  std::vector<std::string> toleranced;
+  for (const auto& [key, relative] : model.tolerance) {
+    toleranced.push_back(key);
+  }
+  return {{"kind", "model"},    {"name", model.name},       {"topology", layout.topology},
+          {"effects", effects}, {"tolerances", toleranced}, {"reference_values", model.left_out}};
+}
+
+Json describe_record(const std::filesystem::path& path) {
+  const Record record = load_record(path);
+  Json channels = Json::array();
+  for (const Channel& channel : record.channels) {
+    channels.push_back({{"name", channel.name}, {"unit", channel.unit}});
+  }
+  return {
+      {"kind", "record"}, {"rows", record.rows}, {"start", record.start}, {"period", record.period}, {"channels", channels}};
+}
+
+Json describe(const std::filesystem::path& path) {
+  if (path.extension() == ".toml") {
+    return describe_model(path);
+  }
+  if (path.extension() == ".csv") {
+    return describe_record(path);
+  }
+  throw FileError(fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model), .csv (a record)",
+                              path.string(), path.extension().string()));
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string line_of(const Json& result) {
+  if (!result["good"].get<bool>()) {
+    return "refused";
+  }
+  if (result["kind"] == "model") {
+    const auto reference = result["reference_values"].get<std::vector<std::string>>();
+    return fmt::format("model \"{}\", topology {}, effects: {}, values with a tolerance: {}{}",
+                       result["name"].get<std::string>(), result["topology"].get<std::string>(),
+                       joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].size(),
+                       reference.empty() ? "" : ", left to their reference values: " + joined(reference));
+  }
+  std::vector<std::string> channels;
+  for (const Json& channel : result["channels"]) {
+    channels.push_back(fmt::format("{}[{}]", channel["name"].get<std::string>(), channel["unit"].get<std::string>()));
+  }
+  const double period = result["period"].get<double>();
+  const auto rows = result["rows"].get<std::size_t>();
+  return fmt::format("record, {} rows, period {:.6g} s ({:.6g} Hz), {:.6g} s long, channels: {}", rows, period, 1.0 / period,
+                     static_cast<double>(rows - 1) * period, joined(channels));
+}
+
+void check(const std::vector<std::string>& files, bool as_json) {
+  Json results = Json::array();
+  bool all_good = true;
+  for (const std::string& file : files) {
+    Json result{{"file", file}, {"good", true}};
+    try {
+      result.update(describe(file));
+    } catch (const FileError& error) {
+      result["good"] = all_good = false;
+      result["error"] = error.what();
+      std::cerr << "hotfire: " << error.what() << '\n';
+    }
+    if (!as_json) {
+      std::cout << file << ": " << line_of(result) << std::endl;
+    }
+    results.push_back(std::move(result));
+  }
+  if (as_json) {
+    std::cout << results.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+  if (!all_good) {
+    throw CLI::RuntimeError(static_cast<int>(ExitStatus::bad_data));
+  }
+}
+
+}  // namespace
+
+void add_check(CLI::App& program) {
+  struct Options {
+    std::vector<std::string> files;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "check", "Check model files (.toml) and records (.csv): what each is, or what is wrong, where, and the mend");
+  command->add_option("FILE", options->files, "model files and records")->required();
+  command->add_flag("--json", options->json, "print the results as a JSON array");
+  command->footer(
+      "Example: hotfire check declared.toml steps.csv sweep.csv\nExit status: 0 all good, 6 any refused; all are checked "
+      "first.");
+  command->callback([options] { check(options->files, options->json); });
+}
+
+}  // namespace hotfire

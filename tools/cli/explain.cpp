@@ -1,0 +1,146 @@
+#include "tools/explain/explain.hpp"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "tools/cli/commands.hpp"
+#include "tools/files/error.hpp"
+#include "tools/files/whole_file.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct ExplainArguments {
+  std::string model;
+  std::string out;
+  std::vector<std::string> records;
+  unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+  int most_effects = 4;
+  bool json = false;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// One line on standard error that is written over, if that is a terminal.
+class Progress {
+ public:
+  void say(const std::string& what) {
+    if (isatty(STDERR_FILENO) == 0) {
+      return;
+    }
+    const std::lock_guard guard(mutex_);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+    std::cerr << fmt::format("\r\x1b[K[{:5.1f} s] {}", seconds, what) << std::flush;
+  }
+  ~Progress() {
+    if (isatty(STDERR_FILENO) != 0) {
+      std::cerr << "\r\x1b[K" << std::flush;
+    }
+  }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+
+ private:
+  std::mutex mutex_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+std::string number(const nlohmann::json& value) { return fmt::format("{:.4g}", value.get<double>()); }
+
+/// What a person wants to read first, in a dozen lines.
+std::string summary(const nlohmann::json& report, const std::filesystem::path& out) {
+  std::string text = report["verdict"].get<std::string>() + ": " + report["sentence"].get<std::string>() + "\n\n";
+  text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   (rms error on held-out data)\n", "channel", "unit", "declared",
+                      "calibrated", "explained");
+  for (const auto& [name, channel] : report["channels"].items()) {
+    text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   noise {}\n", name, channel["unit"].get<std::string>(),
+                        number(channel["before"]["rms"]), number(channel["calibrated"]["rms"]),
+                        number(channel["after"]["rms"]), number(channel["noise"]));
+  }
+  for (const auto& effect : report["effects"]) {
+    text += fmt::format("\n{} at {}{}\n", effect["name"].get<std::string>(), effect["site"].get<std::string>(),
+                        effect.contains("law") ? ", " + effect["law"].get<std::string>() : "");
+    for (const auto& [name, parameter] : effect["parameters"].items()) {
+      const auto& interval = parameter["ci95"];
+      text +=
+          fmt::format("  {:<20} {:>12} {:<10} {}\n", name, number(parameter["value"]), parameter["unit"].get<std::string>(),
+                      interval.is_null() ? "not determined by the data"
+                                         : fmt::format("95 % {} .. {}", number(interval[0]), number(interval[1])));
+    }
+  }
+  for (const auto& warning : report["warnings"]) {
+    text += "\nwarning: " + warning.get<std::string>();
+  }
+  return text + fmt::format("\n{}: explained.toml, report.json, report.html\n", out.string());
+}
+
+void run_explain(const ExplainArguments& arguments, const std::string& command_line) {
+  const ModelFile model = load_model(arguments.model);
+  std::vector<Record> records;
+  for (const std::string& path : arguments.records) {
+    records.push_back(load_record(path));
+  }
+  const std::filesystem::path out(arguments.out);
+  std::error_code failed;
+  std::filesystem::create_directories(out, failed);
+  if (failed) {
+    throw UsageError(fmt::format("--out {}: {}; give a folder that can be written", arguments.out, failed.message()));
+  }
+  google::SetCommandLineOption("minloglevel", "3");
+
+  std::signal(SIGINT, [](int) { interrupted = 1; });
+  Progress progress;
+  explain::ExplainOptions options;
+  options.threads = arguments.threads;
+  options.most_effects = arguments.most_effects;
+  options.watch.progress = [&](const std::string& what) { progress.say(what); };
+  options.watch.interrupted = [] { return interrupted != 0; };
+  explain::Explanation explanation = explain::explain(model, records, options);
+  explanation.report["hotfire"] = HOTFIRE_VERSION;
+  explanation.report["command_line"] = command_line;
+  explanation.report["seconds"] = progress.seconds();
+
+  write_whole_file(out / "explained.toml", model_text(explanation.model));
+  write_whole_file(out / "report.json", explanation.report.dump(1) + "\n");
+  write_whole_file(out / "report.html", report_page(explanation.report, explanation.series));
+  std::cout << (arguments.json ? explanation.report.dump(1) + "\n" : summary(explanation.report, out));
+  if (interrupted != 0) {
+    throw CLI::RuntimeError(130);
+  }
+}
+
+}  // namespace
+
+void add_explain(CLI::App& program) {
+  const auto arguments = std::make_shared<ExplainArguments>();
+  CLI::App* command = program.add_subcommand("explain", "Find what a declared model lacks against measured records");
+  command->add_option("--model", arguments->model, "declared model (.toml)")->required();
+  command->add_option("--out", arguments->out, "folder for explained.toml, report.json and report.html")->required();
+  command->add_option("records", arguments->records, "measured records (.csv)")->required();
+  command->add_option("--threads", arguments->threads, "threads to use")->check(CLI::Range(1U, 256U))->capture_default_str();
+  command->add_option("--most-effects", arguments->most_effects, "most effects to add")
+      ->check(CLI::Range(0, 8))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "print report.json instead of the summary");
+  command->footer(
+      "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv ramps.csv\n"
+      "Ctrl-C ends the search and reports what is known so far (exit status 130).");
+  command->callback([arguments] {
+    std::string line = "hotfire explain --model " + arguments->model + " --out " + arguments->out;
+    for (const std::string& record : arguments->records) {
+      line += " " + record;
+    }
+    run_explain(*arguments, line);
+  });
+}
+
+}  // namespace hotfire

@@ -1,0 +1,97 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "tools/cli/commands.hpp"
+#include "tools/files/error.hpp"
+#include "tools/files/suggestion.hpp"
+
+namespace hotfire {
+
+namespace {
+
+int complain(const std::string& problem, ExitStatus status) {
+  std::cerr << "hotfire: " << problem << '\n';
+  return static_cast<int>(status);
+}
+
+/// What the program takes at this place: the names of its commands or the options of the chosen one.
+std::vector<std::string> known_words(const CLI::App& command) {
+  std::vector<std::string> words;
+  for (const CLI::App* child : command.get_subcommands(nullptr)) {
+    words.push_back(child->get_name());
+  }
+  for (const CLI::Option* option : command.get_options()) {
+    words.push_back(option->get_name());
+  }
+  return words;
+}
+
+const CLI::App& chosen_command(const CLI::App& program) {
+  const std::vector<CLI::App*> chosen = program.get_subcommands();
+  return chosen.empty() ? program : *chosen.front();
+}
+
+int complain_of_use(const CLI::App& program, const std::string& problem) {
+  const CLI::App& command = chosen_command(program);
+  const std::string name = &command == &program ? "hotfire" : "hotfire " + command.get_name();
+  return complain(problem + "; see '" + name + " --help'", ExitStatus::wrong_use);
+}
+
+/// What the parser has against the words of the command line.
+std::string problem_of(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App& command = chosen_command(program);
+  const std::vector<std::string> strangers = program.remaining(true);
+  if (strangers.empty() || command.get_allow_extras()) {
+    return error.what();
+  }
+  // A misspelt word also leaves out something that is required, which is what the parser complains of.
+  const std::vector<std::string> known = known_words(command);
+  return "unknown word \"" + strangers.front() + "\"; " + suggestion(strangers.front(), {known.begin(), known.end()});
+}
+
+int run(int argc, char** argv) {
+  CLI::App program{"Hotfire explains what a test record has and a declared model lacks, and runs the explained model.",
+                   "hotfire"};
+  program.set_version_flag("--version", HOTFIRE_VERSION);
+  program.require_subcommand(1);
+  program.footer(
+      "Example: hotfire check declared.toml steps.csv\nExit status: 0 good, 1 the verdict is bad, 2 wrong use, 3 hardware, "
+      "4 real-time contract not met, 5 interlock, 6 bad data.");
+  add_explain(program);
+  add_check(program);
+  add_simulate(program);
+  add_plant(program);
+  add_timing(program);
+  for (CLI::App* command : program.get_subcommands(nullptr)) {
+    command->set_version_flag("--version", HOTFIRE_VERSION);
+  }
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::RuntimeError& error) {
+    return error.get_exit_code();
+  } catch (const CLI::Success& help_or_version) {
+    return program.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    return complain_of_use(program, problem_of(program, error));
+  } catch (const UsageError& error) {
+    return complain_of_use(program, error.what());
+  }
+  return static_cast<int>(ExitStatus::good);
+}
+
+}  // namespace
+
+}  // namespace hotfire
+
+int main(int argc, char** argv) {
+  try {
+    return hotfire::run(argc, argv);
+  } catch (const hotfire::FileError& error) {
+    return hotfire::complain(error.what(), hotfire::ExitStatus::bad_data);
+  } catch (const std::exception& error) {
+    return hotfire::complain(std::string{"internal error: "} + error.what(), hotfire::ExitStatus::bad_verdict);
+  }
+}

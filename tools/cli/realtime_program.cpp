@@ -1,0 +1,76 @@
+#include "tools/cli/realtime_program.hpp"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "tools/cli/plant_image_text.hpp"
+#include "tools/files/error.hpp"
+#include "tools/files/model_file.hpp"
+
+namespace hotfire {
+
+namespace {
+
+/// Puts the image into memory that the next program inherits, and returns the path under which it finds it.
+std::string share_image(const std::string& image) {
+  const int file = memfd_create("plant-image", 0);
+  if (file < 0 || write(file, image.data(), image.size()) != static_cast<ssize_t>(image.size())) {
+    throw UsageError(fmt::format("the plant image cannot be kept in memory: {}", std::strerror(errno)));
+  }
+  return fmt::format("/proc/self/fd/{}", file);
+}
+
+[[noreturn]] void become_realtime_program(const std::vector<std::string>& arguments) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "hotfire-rt";
+  std::vector<std::string> words = arguments;
+  words.insert(words.begin(), program);
+  std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
+  for (std::string& word : words) {
+    pointers.push_back(word.data());
+  }
+  pointers.push_back(nullptr);
+  std::fflush(nullptr);
+  execv(program.c_str(), pointers.data());
+  throw UsageError(
+      fmt::format("cannot start {}: {}; build or install hotfire-rt beside hotfire", program, std::strerror(errno)));
+}
+
+bool asks_for_text_only(const std::vector<std::string>& arguments) {
+  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
+    return argument == "--help" || argument == "-h" || argument == "--version";
+  });
+}
+
+}  // namespace
+
+void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model) {
+  const auto path = std::make_shared<std::string>();
+  CLI::App* command = program.add_subcommand(name, description);
+  command->set_help_flag();
+  command->allow_extras();
+  command->add_option("--model", *path, "model file (.toml)");
+  command->callback([command, path, name, needs_model] {
+    std::vector<std::string> arguments = command->remaining();
+    arguments.insert(arguments.begin(), name);
+    if (!asks_for_text_only(arguments)) {
+      if (!path->empty()) {
+        arguments.insert(arguments.end(), {"--image", share_image(plant_image_text(load_model(*path)))});
+      } else if (needs_model) {
+        throw UsageError("--model FILE is needed");
+      }
+    }
+    become_realtime_program(arguments);
+  });
+}
+
+}  // namespace hotfire

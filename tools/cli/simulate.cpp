@@ -1,0 +1,66 @@
+#include "tools/simulate/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/cli/commands.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct SimulateOptions {
+  std::string model;
+  std::string input;
+  std::string output;
+  std::size_t fit_start = 0;
+  bool json = false;
+};
+
+void run_simulation(const SimulateOptions& options) {
+  const ModelFile model = load_model(options.model);
+  const Record inputs = load_record(options.input);
+
+  const auto before = std::chrono::steady_clock::now();
+  const Record outputs = simulate(model, inputs, options.fit_start);
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  write_record(outputs, options.output);
+
+  const double simulated = static_cast<double>(outputs.rows) * outputs.period;
+  if (options.json) {
+    const nlohmann::ordered_json result{{"output", options.output},
+                                        {"rows", outputs.rows},
+                                        {"simulated_seconds", simulated},
+                                        {"seconds", took},
+                                        {"times_real_time", simulated / took}};
+    std::cout << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << fmt::format("{}: {} rows, {:.6g} s simulated in {:.3g} s, {:.0f} times faster than real time\n",
+                             options.output, outputs.rows, simulated, took, simulated / took);
+  }
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program) {
+  const auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command = program.add_subcommand("simulate", "Run a model open loop on the commands (or forces) of a record");
+  command->add_option("--model", options->model, "model file (.toml)")->required();
+  command->add_option("--input", options->input, "record with the input channel: command, or force for a direct model")
+      ->required();
+  command->add_option("--output", options->output, "record to write: time, input and every model channel")->required();
+  command
+      ->add_option("--fit-start", options->fit_start,
+                   "fit the initial state of a direct mass on this many rows (0: start at rest)")
+      ->check(CLI::Range(std::size_t{0}, kMostRows));
+  command->add_flag("--json", options->json, "print the result as JSON");
+  command->footer("Example: hotfire simulate --model declared.toml --input steps.csv --output model.csv");
+  command->callback([options] { run_simulation(*options); });
+}
+
+}  // namespace hotfire

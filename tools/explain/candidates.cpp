@@ -1,0 +1,205 @@
+#include "tools/explain/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Largest factor by which a start lies above or below a field's typical value.
+constexpr double kStartSpan = 4.0;
+
+/// Standard deviation of the logarithm of an effect's parameter about its typical value before any data: a factor of ten.
+/// Worth less than one effective sample; it keeps a parameter that the data do not determine from wandering off to a bound.
+constexpr double kWeakPrior = 2.302585;
+
+/// Calls `f(index, effect's values)` for one effect of the list.
+template <class Parameters, class F>
+void visit_effect(Parameters& parameters, std::size_t wanted, F&& f) {
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    if (index == wanted) {
+      f.template operator()<E>(values);
+    }
+  });
+}
+
+/// Value of the van der Corput sequence in a base: the cover of [0, 1) behind a Halton sequence.
+double van_der_corput(std::size_t n, std::size_t base) {
+  double value = 0.0;
+  double part = 1.0;
+  while (n > 0) {
+    part /= static_cast<double>(base);
+    value += part * static_cast<double>(n % base);
+    n /= base;
+  }
+  return value;
+}
+
+bool is_frequency(const FreeParameter& parameter) { return parameter.unit == "Hz"; }
+
+}  // namespace
+
+template <class Family>
+std::vector<Candidate> all_candidates(const Dataset& data) {
+  std::vector<Candidate> candidates;
+  const PlainParameters<Family> neutral;
+  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto& values) {
+    const int variants = std::max<int>(1, static_cast<int>(E::options.size()));
+    for (int option = 0; option < variants; ++option) {
+      Candidate candidate{index, option, std::string(E::name), "", std::string(model::site_name(E::site))};
+      if constexpr (E::options.size() > 0) {
+        candidate.option_name = E::options[static_cast<std::size_t>(option)];
+      }
+      if constexpr (E::site == model::Site::sensor) {
+        if (!data.used[static_cast<std::size_t>(option)]) {
+          continue;
+        }
+        candidate.site += "." + candidate.option_name;
+      }
+      const auto fields = std::remove_cvref_t<decltype(values)>::fields();
+      const bool any =
+          std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return (f.options >> option & 1U) != 0; });
+      if (any) {
+        candidates.push_back(std::move(candidate));
+      }
+    }
+  });
+  return candidates;
+}
+
+template <class Family>
+std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,
+                                               const std::map<std::string, double>& tolerance) {
+  std::vector<FreeParameter> free;
+  std::size_t index = 0;
+  model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double& value) {
+    const std::string name = std::string(key.section) + "." + std::string(field.name);
+    const auto found = tolerance.find(name);
+    if (!key.is_effect && found != tolerance.end() && value != 0.0) {
+      FreeParameter parameter;
+      parameter.index = index;
+      parameter.key = name;
+      parameter.unit = field.unit;
+      parameter.scale = FreeParameter::Scale::tolerance;
+      parameter.declared = value;
+      parameter.tolerance = found->second;
+      parameter.prior_deviation = 1.0;
+      parameter.lower = field.lower;
+      parameter.upper = field.upper;
+      free.push_back(std::move(parameter));
+    }
+    ++index;
+  });
+  return free;
+}
+
+template <class Family>
+std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base, const Candidate& candidate,
+                                             const Scales& scales) {
+  std::vector<FreeParameter> free;
+  std::size_t index = 0;
+  model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
+    if (key.is_effect && key.effect_index == candidate.effect && (field.options >> candidate.option & 1U) != 0) {
+      FreeParameter parameter;
+      parameter.index = index;
+      parameter.key = "effects." + std::string(key.section) + "." + std::string(field.name);
+      parameter.unit = field.unit;
+      parameter.unit_size = field.typical * size_of_unit(field.unit, scales);
+      parameter.lower = field.lower;
+      parameter.upper = field.upper;
+      if (model::searched_in_logarithms(field)) {
+        parameter.scale = FreeParameter::Scale::logarithmic;
+        // A logarithm needs a floor; a millionth of the typical value is neutral to any sensor.
+        parameter.lower = std::max(field.lower, 1e-6 * parameter.unit_size);
+        parameter.prior_center = std::log(parameter.unit_size);
+        parameter.prior_deviation = kWeakPrior;
+      }
+      free.push_back(std::move(parameter));
+    }
+    ++index;
+  });
+  return free;
+}
+
+std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& scales, std::vector<double>& u) {
+  std::vector<FreeParameter> free;
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const Experiment& experiment = data.experiments[e];
+    if (experiment.at_rest) {
+      continue;
+    }
+    const auto& x = experiment.measured.front();
+    for (int state = 0; state < 2; ++state) {
+      FreeParameter parameter;
+      parameter.key = experiment.name + (state == 0 ? ".initial_position" : ".initial_velocity");
+      parameter.unit = state == 0 ? "position" : "position/time";
+      parameter.unit_size = size_of_unit(parameter.unit, scales);
+      parameter.experiment = static_cast<int>(e);
+      parameter.state = state;
+      parameter.lower = -1e3 * parameter.unit_size;
+      parameter.upper = 1e3 * parameter.unit_size;
+      free.push_back(parameter);
+      u.push_back(parameter.coordinate(state == 0 ? x.front() : (x[1] - x[0]) / experiment.period));
+    }
+  }
+  return free;
+}
+
+std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& own,
+                                              const std::vector<double>& frequencies) {
+  constexpr std::array<std::size_t, 8> kPrimes{2, 3, 5, 7, 11, 13, 17, 19};
+  std::vector<double> tried{1.0};
+  const bool has_frequency = std::any_of(own.begin(), own.end(), is_frequency);
+  if (has_frequency) {
+    // A missing mode shows in the closed loop a little beside its own frequency.
+    tried.clear();
+    for (const double frequency : frequencies) {
+      for (const double ratio : {0.8, 0.9, 0.96, 1.0, 1.04, 1.1, 1.2}) {
+        tried.push_back(frequency * ratio);
+      }
+    }
+  }
+  const std::size_t covers = has_frequency ? 2 : (own.size() == 1 ? 6 : 10);
+  std::vector<std::vector<double>> starts;
+  for (const double frequency : tried) {
+    for (std::size_t n = 0; n < covers; ++n) {
+      std::vector<double> u;
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        const FreeParameter& parameter = own[k];
+        // The first point is the typical value itself.
+        const double place = n == 0 ? 0.5 : van_der_corput(n, kPrimes[k % kPrimes.size()]);
+        const double factor = std::pow(kStartSpan, 2.0 * place - 1.0);
+        if (is_frequency(parameter)) {
+          u.push_back(parameter.coordinate(std::clamp(frequency, parameter.lower, parameter.upper)));
+        } else if (parameter.scale == FreeParameter::Scale::linear) {
+          u.push_back(n % 2 == 0 ? factor : -factor);
+        } else {
+          u.push_back(parameter.coordinate(std::clamp(parameter.unit_size * factor, parameter.lower, parameter.upper)));
+        }
+      }
+      starts.push_back(std::move(u));
+    }
+  }
+  return starts;
+}
+
+template <class Family>
+void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
+  visit_effect(parameters, candidate.effect, [&]<class E>(auto& values) { values.option = candidate.option; });
+  parameters.effects.active[candidate.effect] = true;
+}
+
+#define HOTFIRE_INSTANTIATE(Family)                                                                               \
+  template std::vector<Candidate> all_candidates<Family>(const Dataset&);                                         \
+  template std::vector<FreeParameter> declared_parameters<Family>(const PlainParameters<Family>&,                 \
+                                                                  const std::map<std::string, double>&);          \
+  template std::vector<FreeParameter> effect_parameters<Family>(const PlainParameters<Family>&, const Candidate&, \
+                                                                const Scales&);                                   \
+  template void activate<Family>(PlainParameters<Family>&, const Candidate&);
+
+HOTFIRE_INSTANTIATE(SimplexFamily)
+HOTFIRE_INSTANTIATE(DirectFamily)
+#undef HOTFIRE_INSTANTIATE
+
+}  // namespace hotfire::explain

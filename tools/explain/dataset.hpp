@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/files/model_file.hpp"
+#include "tools/files/record.hpp"
+
+namespace hotfire::explain {
+
+/// A stretch of rows [first, last).
+struct Block {
+  std::size_t first;
+  std::size_t last;
+};
+
+/// One record as the finder sees it.
+struct Experiment {
+  std::string name;
+  double start = 0.0;
+  double period = 0.0;
+  std::vector<double> input;
+  std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record lacks the channel
+  std::vector<Block> held_out;                ///< rows that no fit sees
+  bool at_rest = true;                        ///< false: the initial state is fitted with the parameters
+
+  std::size_t rows() const { return input.size(); }
+};
+
+/// All records of one run of the finder.
+struct Dataset {
+  std::vector<std::string> channels;  ///< of the model, in its order
+  std::vector<bool> used;             ///< channels that at least one record has
+  std::vector<double> noise;          ///< rms by channel; 1 where unused
+  std::vector<bool> noise_declared;
+  std::vector<Experiment> experiments;
+};
+
+/// Puts records into the model's channels, estimates noise where it is not declared, and holds out every fourth block of
+/// about four seconds (at least eight blocks a record), so that each kind of motion is in both parts.
+/// Throws FileError if a record lacks the input or has none of the model's channels.
+Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records);
+
+/// "steps.csv@8.0-12.0" for every held-out block.
+std::vector<std::string> held_out_names(const Dataset& data);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,297 @@
+#include "tools/explain/evaluator.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "model/step_size.hpp"
+#include "tools/explain/parallel.hpp"
+#include "tools/simulate/run.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+template <class Plant, class S>
+typename Plant::State initial_state(const Plant& plant, const Experiment& experiment, const S& position, const S& velocity) {
+  if constexpr (Plant::topology == "direct") {
+    return plant.moving(position, velocity);
+  } else {
+    static_cast<void>(position);
+    static_cast<void>(velocity);
+    return plant.steady(S(experiment.input.front()));
+  }
+}
+
+/// Constants of a run for every sampling period that occurs.
+template <class Plant, class Steps>
+std::map<double, std::unique_ptr<Plant>> plants_by_period(const Dataset& data, const typename Plant::Parameters& parameters,
+                                                          Steps&& steps) {
+  std::map<double, std::unique_ptr<Plant>> plants;
+  for (const Experiment& experiment : data.experiments) {
+    auto& plant = plants[experiment.period];
+    if (!plant) {
+      plant = std::make_unique<Plant>(parameters, experiment.period / steps(experiment));
+    }
+  }
+  return plants;
+}
+
+/// The initial state of an experiment: as measured and at rest, or what free parameters say.
+template <class S, class Value>
+std::pair<S, S> start_of(const Dataset& data, std::size_t experiment, std::span<const FreeParameter> free, Value&& value) {
+  std::pair<S, S> start{S(0.0), S(0.0)};
+  const auto& first = data.experiments[experiment].measured.front();
+  if (!first.empty()) {
+    start.first = S(first.front());
+  }
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (free[k].experiment == static_cast<int>(experiment)) {
+      (free[k].state == 0 ? start.first : start.second) = value(k);
+    }
+  }
+  return start;
+}
+
+/// The parameters whose derivatives one simulation carries, a lane each.
+template <int Lanes>
+struct Chunk {
+  using Dual = ceres::Jet<double, Lanes>;
+  std::span<const FreeParameter> free;
+  std::span<const double> u;
+  std::span<const std::size_t> wanted;  ///< at most Lanes of them
+  Eigen::Index first_column = 0;
+
+  /// Parameter k as a dual number.
+  Dual value(std::size_t k) const {
+    Dual dual(free[k].value(u[k]));
+    seed(k, dual);
+    return dual;
+  }
+
+  void seed(std::size_t k, Dual& dual) const {
+    for (std::size_t lane = 0; lane < wanted.size(); ++lane) {
+      if (wanted[lane] == k) {
+        dual.v[static_cast<Eigen::Index>(lane)] = free[k].slope(u[k]);
+      }
+    }
+  }
+
+  template <class Parameters>
+  void seed_all(Parameters& parameters) const {
+    std::size_t index = 0;
+    model::visit_parameters(parameters, [&](const model::Key&, const auto&, Dual& value) {
+      for (const std::size_t k : wanted) {
+        if (!free[k].is_initial_state() && free[k].index == index) {
+          seed(k, value);
+        }
+      }
+      ++index;
+    });
+  }
+};
+
+/// Puts the readings of one experiment where they belong in residual and Jacobian, row by row in ascending order.
+class Writer {
+ public:
+  Writer(const Dataset& data, const std::vector<Stretch>& stretches, std::size_t experiment, Eigen::VectorXd& residual,
+         Eigen::MatrixXd& jacobian)
+      : data_(data),
+        experiment_(data.experiments[experiment]),
+        residual_(residual),
+        jacobian_(jacobian),
+        next_(data.channels.size(), 0),
+        by_channel_(data.channels.size()) {
+    for (const Stretch& s : stretches) {
+      if (s.experiment == experiment) {
+        by_channel_[s.channel].push_back(&s);
+      }
+    }
+  }
+
+  /// False if a derivative is not finite.
+  template <int Lanes>
+  bool write(std::size_t row, std::size_t channel, const ceres::Jet<double, Lanes>& reading, const Chunk<Lanes>& chunk) {
+    const auto& stretches = by_channel_[channel];
+    std::size_t& next = next_[channel];
+    while (next < stretches.size() && row >= stretches[next]->last) {
+      ++next;
+    }
+    if (next >= stretches.size() || row < stretches[next]->first) {
+      return true;
+    }
+    const auto i = static_cast<Eigen::Index>(stretches[next]->offset + row - stretches[next]->first);
+    const double weight = 1.0 / data_.noise[channel];
+    if (chunk.first_column == 0) {
+      residual_(i) = (reading.a - experiment_.measured[channel][row]) * weight;
+    }
+    const auto lanes = static_cast<Eigen::Index>(chunk.wanted.size());
+    for (Eigen::Index lane = 0; lane < lanes; ++lane) {
+      jacobian_(i, chunk.first_column + lane) = reading.v[lane] * weight;
+    }
+    return reading.v.allFinite();
+  }
+
+ private:
+  const Dataset& data_;
+  const Experiment& experiment_;
+  Eigen::VectorXd& residual_;
+  Eigen::MatrixXd& jacobian_;
+  std::vector<std::size_t> next_;
+  std::vector<std::vector<const Stretch*>> by_channel_;
+};
+
+}  // namespace
+
+template <class Family>
+Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution) : data_(data), resolution_(resolution) {
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const Experiment& experiment = data.experiments[e];
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      if (experiment.measured[c].empty()) {
+        continue;
+      }
+      std::size_t first = 0;
+      const auto add = [&](std::size_t last) {
+        if (last > first) {
+          stretches_.push_back({e, c, first, last, fit_rows_});
+          fit_rows_ += last - first;
+        }
+      };
+      for (const Block& block : experiment.held_out) {
+        add(block.first);
+        first = block.last;
+      }
+      add(experiment.rows());
+    }
+  }
+}
+
+template <class Family>
+typename Evaluator<Family>::Parameters Evaluator<Family>::with_values(const Parameters& base,
+                                                                      std::span<const FreeParameter> free,
+                                                                      std::span<const double> u) {
+  Parameters parameters = base;
+  std::size_t index = 0;
+  model::visit_parameters(parameters, [&](const model::Key&, const auto&, double& value) {
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      if (!free[k].is_initial_state() && free[k].index == index) {
+        value = free[k].value(u[k]);
+      }
+    }
+    ++index;
+  });
+  return parameters;
+}
+
+template <class Family>
+bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                                unsigned threads, Prediction& prediction) const {
+  using Plant = typename Family::template Plant<double>;
+  const auto plants =
+      plants_by_period<Plant>(data_, with_values(base, free, u), [this](const Experiment& e) { return steps_of(e); });
+  prediction.resize(data_.experiments.size());
+  std::atomic<bool> finite{true};
+  parallel_for(data_.experiments.size(), threads, [&](std::size_t e) {
+    const Experiment& experiment = data_.experiments[e];
+    auto& channels = prediction[e];
+    channels.resize(data_.channels.size());
+    for (std::vector<double>& channel : channels) {
+      channel.resize(experiment.rows());
+    }
+    const auto& plant = *plants.at(experiment.period);
+    const auto [position, velocity] = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
+    auto state = initial_state(plant, experiment, position, velocity);
+    if (!run(plant, experiment.input, state, steps_of(experiment), [&](std::size_t row, const auto& readings) {
+          for (std::size_t c = 0; c < readings.size(); ++c) {
+            channels[c][row] = readings[c];
+          }
+        })) {
+      finite = false;
+    }
+  });
+  return finite;
+}
+
+template <class Family>
+Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const {
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(fit_rows_));
+  for (const Stretch& s : stretches_) {
+    const auto& measured = data_.experiments[s.experiment].measured[s.channel];
+    const auto& predicted = prediction[s.experiment][s.channel];
+    for (std::size_t row = s.first; row < s.last; ++row) {
+      residual(static_cast<Eigen::Index>(s.offset + row - s.first)) =
+          (predicted[row] - measured[row]) / data_.noise[s.channel];
+    }
+  }
+  return residual;
+}
+
+template <class Family>
+int Evaluator<Family>::steps_of(const Experiment& experiment) const {
+  const int fine = model::steps_per_period(experiment.period);
+  return resolution_ == Resolution::fine ? fine : (fine + 1) / 2;
+}
+
+template <class Family>
+bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                                      std::span<const std::size_t> wanted, unsigned threads, Eigen::VectorXd& residual,
+                                      Eigen::MatrixXd& jacobian) const {
+  // Derivatives carried by one simulation: wide enough to amortise it, narrow enough for the registers.
+  return wanted.size() <= 4 ? differentiate_by<4>(base, free, u, wanted, threads, residual, jacobian)
+                            : differentiate_by<8>(base, free, u, wanted, threads, residual, jacobian);
+}
+
+template <class Family>
+template <int Lanes>
+bool Evaluator<Family>::differentiate_by(const Parameters& base, std::span<const FreeParameter> free,
+                                         std::span<const double> u, std::span<const std::size_t> wanted, unsigned threads,
+                                         Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) const {
+  using Dual = ceres::Jet<double, Lanes>;
+  using Plant = typename Family::template Plant<Dual>;
+  residual.resize(static_cast<Eigen::Index>(fit_rows_));
+  jacobian.resize(static_cast<Eigen::Index>(fit_rows_), static_cast<Eigen::Index>(wanted.size()));
+  std::vector<Chunk<Lanes>> chunks;
+  for (std::size_t first = 0; first == 0 || first < wanted.size(); first += Lanes) {
+    const std::size_t count = std::min<std::size_t>(Lanes, wanted.size() - first);
+    chunks.push_back({free, u, wanted.subspan(first, count), static_cast<Eigen::Index>(first)});
+  }
+  const auto plain = with_values(base, free, u);
+  std::vector<std::map<double, std::unique_ptr<Plant>>> plants(chunks.size());
+  parallel_for(chunks.size(), threads, [&](std::size_t c) {
+    auto parameters = with_scalar<typename Plant::Parameters>(plain);
+    chunks[c].seed_all(parameters);
+    plants[c] = plants_by_period<Plant>(data_, parameters, [this](const Experiment& e) { return steps_of(e); });
+  });
+
+  std::atomic<bool> finite{true};
+  parallel_for(chunks.size() * data_.experiments.size(), threads, [&](std::size_t task) {
+    const Chunk<Lanes>& chunk = chunks[task % chunks.size()];
+    const std::size_t e = task / chunks.size();
+    const Experiment& experiment = data_.experiments[e];
+    const auto& plant = *plants[task % chunks.size()].at(experiment.period);
+    const auto [position, velocity] = start_of<Dual>(data_, e, free, [&](std::size_t k) { return chunk.value(k); });
+    // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
+    auto state = std::make_unique<typename Plant::State>(initial_state(plant, experiment, position, velocity));
+    Writer writer(data_, stretches_, e, residual, jacobian);
+    bool good = true;
+    const bool ran = run(plant, experiment.input, *state, steps_of(experiment), [&](std::size_t row, const auto& readings) {
+      for (std::size_t channel = 0; channel < readings.size(); ++channel) {
+        good = writer.write(row, channel, readings[channel], chunk) && good;
+      }
+    });
+    if (!ran || !good) {
+      finite = false;
+    }
+  });
+  return finite;
+}
+
+template class Evaluator<SimplexFamily>;
+template class Evaluator<DirectFamily>;
+
+}  // namespace hotfire::explain

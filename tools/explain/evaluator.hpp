@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "tools/explain/dataset.hpp"
+#include "tools/explain/parameter_space.hpp"
+#include "tools/explain/plants.hpp"
+
+namespace hotfire::explain {
+
+/// What a model predicts: by experiment, by channel, a value a row.
+using Prediction = std::vector<std::vector<std::vector<double>>>;
+
+/// A run of consecutive rows of one channel that a fit sees, and where its residuals start in the residual vector.
+struct Stretch {
+  std::size_t experiment;
+  std::size_t channel;
+  std::size_t first;
+  std::size_t last;
+  std::size_t offset;
+};
+
+/// How finely experiments are stepped: `fine` is what `hotfire simulate` and the rig do; `coarse` takes half as many steps
+/// and ranks candidates, a step of 1 ms being right to a hundredth of sensor noise on smooth effects.
+enum class Resolution { fine, coarse };
+
+/// Simulates every experiment of a dataset under given parameters, and differentiates the simulation exactly by dual
+/// numbers.
+template <class Family>
+class Evaluator {
+ public:
+  using Parameters = PlainParameters<Family>;
+
+  Evaluator(const Dataset& data, Resolution resolution);
+
+  const Dataset& data() const { return data_; }
+  const std::vector<Stretch>& stretches() const { return stretches_; }
+  /// Residuals a fit sees, over all experiments and channels.
+  std::size_t fit_rows() const { return fit_rows_; }
+
+  /// Simulates all experiments. False if a state became non-finite.
+  bool predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u, unsigned threads,
+               Prediction& prediction) const;
+
+  /// (prediction - measured) / noise on the rows a fit sees.
+  Eigen::VectorXd residuals(const Prediction& prediction) const;
+
+  /// Residuals as above, and their derivatives with respect to the coordinates `u` of the parameters `wanted`, a column
+  /// each.
+  bool differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                     std::span<const std::size_t> wanted, unsigned threads, Eigen::VectorXd& residual,
+                     Eigen::MatrixXd& jacobian) const;
+
+  /// Puts the coordinates `u` into parameters.
+  static Parameters with_values(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u);
+
+ private:
+  template <int Lanes>
+  bool differentiate_by(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                        std::span<const std::size_t> wanted, unsigned threads, Eigen::VectorXd& residual,
+                        Eigen::MatrixXd& jacobian) const;
+  int steps_of(const Experiment& experiment) const;
+
+  const Dataset& data_;
+  Resolution resolution_;
+  std::vector<Stretch> stretches_;
+  std::size_t fit_rows_ = 0;
+};
+
+extern template class Evaluator<SimplexFamily>;
+extern template class Evaluator<DirectFamily>;
+
+}  // namespace hotfire::explain

@@ -1,0 +1,55 @@
+#include "tools/explain/explain.hpp"
+
+#include "tools/explain/report_json.hpp"
+#include "tools/explain/search.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+template <class Family>
+ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, const SearchResult<Family>& found) {
+  ReportSeries series;
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const Experiment& experiment = data.experiments[e];
+    ReportRecord record;
+    record.name = experiment.name;
+    record.start = experiment.start;
+    record.period = experiment.period;
+    for (const Block& block : experiment.held_out) {
+      record.held_out.emplace_back(experiment.start + static_cast<double>(block.first) * experiment.period,
+                                   experiment.start + static_cast<double>(block.last) * experiment.period);
+    }
+    record.input_name = Family::template Plant<double>::input_channel;
+    record.input_unit = records[e].find(record.input_name)->unit;
+    record.input = experiment.input;
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      if (!experiment.measured[c].empty()) {
+        record.channels.push_back({data.channels[c], records[e].find(data.channels[c])->unit, experiment.measured[c],
+                                   found.declared.prediction[e][c], found.calibrated.prediction[e][c],
+                                   found.explained.prediction[e][c]});
+      }
+    }
+    series.records.push_back(std::move(record));
+  }
+  return series;
+}
+
+template <class Family>
+Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
+  const Dataset data = make_dataset(model, records);
+  const SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
+  Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model};
+  const Fitted<Family>& fitted = found.explained.model;
+  explanation.model.parameters = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);
+  return explanation;
+}
+
+}  // namespace
+
+Explanation explain(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
+  return std::holds_alternative<SimplexParameters>(model.parameters) ? explain_as<SimplexFamily>(model, records, options)
+                                                                     : explain_as<DirectFamily>(model, records, options);
+}
+
+}  // namespace hotfire::explain

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/explain/screening.hpp"
+#include "tools/files/model_file.hpp"
+#include "tools/files/record.hpp"
+#include "tools/report/report_page.hpp"
+
+namespace hotfire::explain {
+
+/// What the finder hands out.
+struct Explanation {
+  nlohmann::json report;  ///< report.json, docs/report.md
+  ReportSeries series;    ///< what the page draws
+  ModelFile model;        ///< the explained model: what the rig runs next
+};
+
+struct ExplainOptions {
+  unsigned threads = 1;
+  int most_effects = 4;
+  Watch watch;
+};
+
+/// Closes the loop: calibrates the declared model within its tolerances, traces what is left, adds the effects that the data
+/// support, and judges all of it on data that no fit has seen. Throws FileError if a record does not suit the model.
+Explanation explain(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,209 @@
+#include "tools/explain/fit.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tools/explain/statistics.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// A least-squares problem of n values with the same cost, gradient and J^T J as one of any number of rows: n + 1 residuals
+/// whatever the length of the records, so that the solver's own work does not grow with them.
+struct Compressed {
+  Eigen::MatrixXd jacobian;  ///< (n + 1) x n
+  Eigen::VectorXd residual;  ///< n + 1
+};
+
+Compressed compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient, double cost) {
+  const Eigen::Index n = normal.rows();
+  Eigen::VectorXd scale = normal.diagonal().cwiseMax(0.0).cwiseSqrt();
+  scale = (scale.array() > 0.0).select(scale, 1.0);
+  const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  Compressed compressed{Eigen::MatrixXd::Zero(n + 1, n), Eigen::VectorXd::Zero(n + 1)};
+  const Eigen::VectorXd rotated = eigen.eigenvectors().transpose() * gradient.cwiseQuotient(scale);
+  double explained = 0.0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double value = eigen.eigenvalues()(i);
+    // Below rounding of the largest (at most n) a direction carries no information.
+    if (value > 1e-14 * static_cast<double>(n)) {
+      const double root = std::sqrt(value);
+      compressed.jacobian.row(i) = root * (eigen.eigenvectors().col(i).cwiseProduct(scale)).transpose();
+      compressed.residual(i) = rotated(i) / root;
+      explained += compressed.residual(i) * compressed.residual(i);
+    }
+  }
+  compressed.residual(n) = std::sqrt(std::max(0.0, cost - explained));
+  return compressed;
+}
+
+/// Simulation error of all experiments and the priors, as one block of Ceres.
+template <class Family>
+class SimulationError : public ceres::CostFunction {
+ public:
+  SimulationError(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options)
+      : evaluator_(evaluator), fitted_(fitted), options_(options) {
+    for (std::size_t k = options.frozen != nullptr ? options.frozen->u.size() : 0; k < fitted.free.size(); ++k) {
+      simulated_.push_back(k);
+    }
+    weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
+    for (const Stretch& s : evaluator.stretches()) {
+      weight_.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
+          .setConstant(1.0 / std::sqrt(fitted.temper[s.channel]));
+    }
+    set_num_residuals(static_cast<int>(fitted.free.size()) + 1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(fitted.free.size()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const auto count = static_cast<Eigen::Index>(fitted_.free.size());
+    const std::span<const double> u(parameters[0], fitted_.free.size());
+    const bool want_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+    // With bounds, Ceres asks for the same point again after its line search; a simulation is dearer than a comparison.
+    if (want_jacobian && std::equal(u.begin(), u.end(), last_u_.begin(), last_u_.end())) {
+      Eigen::Map<Eigen::VectorXd>(residuals, count + 1) = last_.residual;
+      Eigen::Map<RowMajor>(jacobians[0], count + 1, count) = last_.jacobian;
+      return true;
+    }
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd own;
+    if (!simulate(u, want_jacobian, residual, own)) {
+      return false;
+    }
+    residual = residual.cwiseProduct(weight_);
+    double cost = residual.squaredNorm();
+    for (std::size_t k = 0; k < fitted_.free.size(); ++k) {
+      cost += fitted_.free[k].surprise(u[k]) * fitted_.free[k].surprise(u[k]);
+    }
+    Eigen::Map<Eigen::VectorXd> out(residuals, count + 1);
+    if (!want_jacobian) {
+      out.setZero();
+      out(count) = std::sqrt(cost);
+      return true;
+    }
+    Eigen::MatrixXd full(residual.size(), count);
+    const Eigen::Index frozen = count - own.cols();
+    if (frozen > 0) {
+      full.leftCols(frozen) = weight_.asDiagonal() * options_.frozen->jacobian;
+    }
+    full.rightCols(own.cols()) = weight_.asDiagonal() * own;
+    Eigen::MatrixXd normal = full.transpose() * full;
+    Eigen::VectorXd gradient = full.transpose() * residual;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const FreeParameter& parameter = fitted_.free[static_cast<std::size_t>(k)];
+      if (parameter.has_prior()) {
+        normal(k, k) += 1.0 / (parameter.prior_deviation * parameter.prior_deviation);
+        gradient(k) += parameter.surprise(u[static_cast<std::size_t>(k)]) / parameter.prior_deviation;
+      }
+    }
+    last_ = compress(normal, gradient, cost);
+    last_u_.assign(u.begin(), u.end());
+    out = last_.residual;
+    Eigen::Map<RowMajor>(jacobians[0], count + 1, count) = last_.jacobian;
+    fitted_.normal = std::move(normal);
+    return true;
+  }
+
+ private:
+  /// Residuals over noise, with the frozen parameters moved linearly, and the derivatives of the simulated ones.
+  bool simulate(std::span<const double> u, bool want_jacobian, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) const {
+    std::vector<double> at(u.begin(), u.end());
+    if (options_.frozen != nullptr) {
+      std::copy(options_.frozen->u.begin(), options_.frozen->u.end(), at.begin());
+    }
+    if (want_jacobian) {
+      if (!evaluator_.differentiate(fitted_.base, fitted_.free, at, simulated_, options_.threads, residual, jacobian)) {
+        return false;
+      }
+    } else {
+      Prediction prediction;
+      if (!evaluator_.predict(fitted_.base, fitted_.free, at, options_.threads, prediction)) {
+        return false;
+      }
+      residual = evaluator_.residuals(prediction);
+    }
+    if (options_.frozen != nullptr && !options_.frozen->u.empty()) {
+      const auto frozen = static_cast<Eigen::Index>(options_.frozen->u.size());
+      residual += options_.frozen->jacobian * (Eigen::Map<const Eigen::VectorXd>(u.data(), frozen) -
+                                               Eigen::Map<const Eigen::VectorXd>(options_.frozen->u.data(), frozen));
+    }
+    return true;
+  }
+
+  const Evaluator<Family>& evaluator_;
+  Fitted<Family>& fitted_;
+  FitOptions options_;
+  std::vector<std::size_t> simulated_;
+  Eigen::VectorXd weight_;
+  mutable std::vector<double> last_u_;  ///< where `last_` holds
+  mutable Compressed last_;
+};
+
+}  // namespace
+
+template <class Family>
+bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options) {
+  if (fitted.free.empty()) {
+    fitted.converged = true;
+    return true;
+  }
+  ceres::Problem problem;
+  problem.AddResidualBlock(new SimulationError<Family>(evaluator, fitted, options), nullptr, fitted.u.data());
+  for (std::size_t k = 0; k < fitted.free.size(); ++k) {
+    const FreeParameter& parameter = fitted.free[k];
+    const double a = parameter.coordinate(parameter.lower);
+    const double b = parameter.coordinate(parameter.upper);
+    const int position = static_cast<int>(k);
+    problem.SetParameterLowerBound(fitted.u.data(), position, std::min(a, b));
+    problem.SetParameterUpperBound(fitted.u.data(), position, std::max(a, b));
+    fitted.u[k] = std::clamp(fitted.u[k], std::min(a, b), std::max(a, b));
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.iterations;
+  solver.function_tolerance = options.tolerance;
+  solver.parameter_tolerance = 1e-7;
+  solver.gradient_tolerance = 1e-12;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  fitted.converged = summary.termination_type == ceres::CONVERGENCE;
+  return summary.IsSolutionUsable();
+}
+
+template <class Family>
+Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& residual) {
+  const std::size_t channels = evaluator.data().channels.size();
+  std::vector<double> square(channels, 0.0);
+  std::vector<double> inflated(channels, 0.0);
+  std::vector<double> count(channels, 0.0);
+  for (const Stretch& s : evaluator.stretches()) {
+    const std::span<const double> part(residual.data() + s.offset, s.last - s.first);
+    const double sum = std::inner_product(part.begin(), part.end(), part.begin(), 0.0);
+    square[s.channel] += sum;
+    inflated[s.channel] += sum * statistical_inefficiency(part);
+    count[s.channel] += static_cast<double>(part.size());
+  }
+  Temper temper(channels, 1.0);
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (count[c] > 0.0) {
+      temper[c] = std::max(1.0, inflated[c] / count[c]);
+    }
+  }
+  return temper;
+}
+
+template bool fit(const Evaluator<SimplexFamily>&, Fitted<SimplexFamily>&, const FitOptions&);
+template bool fit(const Evaluator<DirectFamily>&, Fitted<DirectFamily>&, const FitOptions&);
+template Temper temper_of(const Evaluator<SimplexFamily>&, const Eigen::VectorXd&);
+template Temper temper_of(const Evaluator<DirectFamily>&, const Eigen::VectorXd&);
+
+}  // namespace hotfire::explain

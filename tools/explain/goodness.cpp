@@ -1,0 +1,141 @@
+#include "tools/explain/goodness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tools/explain/statistics.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Sums over blocks of rows, turned into a ChannelFit at the end.
+struct Sums {
+  double rows = 0.0;
+  double square = 0.0;
+  double inflated = 0.0;
+  double sum = 0.0;
+  double max = 0.0;
+  double measured = 0.0;
+  double measured_square = 0.0;
+
+  void add(const std::vector<double>& predicted, const std::vector<double>& measured_values, Block block) {
+    std::vector<double> residual;
+    residual.reserve(block.last - block.first);
+    double block_square = 0.0;
+    for (std::size_t row = block.first; row < block.last; ++row) {
+      const double r = predicted[row] - measured_values[row];
+      residual.push_back(r);
+      block_square += r * r;
+      sum += r;
+      max = std::max(max, std::abs(r));
+      measured += measured_values[row];
+      measured_square += measured_values[row] * measured_values[row];
+    }
+    rows += static_cast<double>(residual.size());
+    square += block_square;
+    inflated += block_square * statistical_inefficiency(residual);
+  }
+
+  ChannelFit result(double noise) const {
+    ChannelFit fit;
+    if (rows <= 0.0) {
+      return fit;
+    }
+    fit.rows = rows;
+    fit.effective_rows = inflated > 0.0 ? rows * square / inflated : rows;
+    fit.mean_square = square / rows / (noise * noise);
+    fit.rms = std::sqrt(square / rows);
+    fit.max = max;
+    fit.bias = sum / rows;
+    const double spread = measured_square - measured * measured / rows;
+    fit.fit_percent = spread > 0.0 ? 100.0 * (1.0 - std::sqrt(square / spread)) : 0.0;
+    return fit;
+  }
+};
+
+std::vector<Block> complement(const std::vector<Block>& blocks, std::size_t rows) {
+  std::vector<Block> rest;
+  std::size_t first = 0;
+  for (const Block& block : blocks) {
+    if (block.first > first) {
+      rest.push_back({first, block.first});
+    }
+    first = block.last;
+  }
+  if (rows > first) {
+    rest.push_back({first, rows});
+  }
+  return rest;
+}
+
+}  // namespace
+
+double Goodness::combined(const std::vector<ChannelFit>& part) {
+  double square = 0.0;
+  double rows = 0.0;
+  for (const ChannelFit& channel : part) {
+    square += channel.mean_square * channel.rows;
+    rows += channel.rows;
+  }
+  return rows > 0.0 ? std::sqrt(square / rows) : 0.0;
+}
+
+Goodness goodness(const Dataset& data, const Prediction& prediction) {
+  Goodness result;
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    Sums fitted;
+    Sums held;
+    for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+      const Experiment& experiment = data.experiments[e];
+      if (experiment.measured[c].empty()) {
+        continue;
+      }
+      for (const Block& block : complement(experiment.held_out, experiment.rows())) {
+        fitted.add(prediction[e][c], experiment.measured[c], block);
+      }
+      for (const Block& block : experiment.held_out) {
+        held.add(prediction[e][c], experiment.measured[c], block);
+      }
+    }
+    result.fitted.push_back(fitted.result(data.noise[c]));
+    result.held_out.push_back(held.result(data.noise[c]));
+  }
+  return result;
+}
+
+double information_criterion(const std::vector<ChannelFit>& part, const std::vector<ChannelFit>& effective,
+                             std::size_t parameters) {
+  double criterion = 0.0;
+  double samples = 0.0;
+  for (std::size_t c = 0; c < part.size(); ++c) {
+    if (part[c].rows > 0.0 && part[c].mean_square > 0.0) {
+      criterion += effective[c].effective_rows * std::log(part[c].mean_square);
+      samples += effective[c].effective_rows;
+    }
+  }
+  return criterion + static_cast<double>(parameters) * std::log(std::max(2.0, samples));
+}
+
+double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel) {
+  double square = 0.0;
+  double floor = 0.0;
+  double rows = 0.0;
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const auto& measured = data.experiments[e].measured[channel];
+    if (measured.empty()) {
+      continue;
+    }
+    std::vector<double> residual(measured.size());
+    std::transform(measured.begin(), measured.end(), prediction[e][channel].begin(), residual.begin(), std::minus<>());
+    const auto count = static_cast<double>(residual.size());
+    const double noise = noise_from_differences(residual);
+    square += std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
+    floor += noise * noise * count;
+    rows += count;
+  }
+  return rows > 0.0 && floor > 0.0 ? std::sqrt(std::max(0.0, square / floor - 1.0)) : 0.0;
+}
+
+}  // namespace hotfire::explain

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "tools/explain/evaluator.hpp"
+
+namespace hotfire::explain {
+
+/// How well a prediction meets one part (fitted or held out) of the records, by channel.
+struct ChannelFit {
+  double rows = 0.0;
+  double effective_rows = 0.0;  ///< rows over the statistical inefficiency of the residual
+  double mean_square = 0.0;     ///< of residual over noise
+  double rms = 0.0;             ///< in the channel's unit
+  double max = 0.0;
+  double bias = 0.0;
+  double fit_percent = 0.0;  ///< 100 (1 - |residual| / |measured - mean|)
+};
+
+/// Fitted and held-out rows of every channel.
+struct Goodness {
+  std::vector<ChannelFit> fitted;
+  std::vector<ChannelFit> held_out;
+
+  /// Root mean square of residual over noise, all channels together.
+  static double combined(const std::vector<ChannelFit>& part);
+};
+
+Goodness goodness(const Dataset& data, const Prediction& prediction);
+
+/// Bayesian information criterion of a model with `parameters` free values on the fitted rows, by the concentrated Gaussian
+/// likelihood with the effective number of samples: sum over channels of n_eff ln(mean square) + parameters ln(n_eff)
+/// [Schwarz 1978]. `effective` gives the sample sizes, so that two models are compared on the same ones.
+double information_criterion(const std::vector<ChannelFit>& part, const std::vector<ChannelFit>& effective,
+                             std::size_t parameters);
+
+/// What of the residual on all rows is not sensor noise: its rms over the noise, where the noise is told from the residual's
+/// own third differences. Zero where the model reaches the noise, whatever was declared of it.
+double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel);
+
+}  // namespace hotfire::explain

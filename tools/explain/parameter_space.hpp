@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace hotfire::explain {
+
+/// One parameter that a fit may move, as the fit sees it: a number u without unit, with the parameter p = value(u).
+struct FreeParameter {
+  enum class Scale {
+    tolerance,    ///< p = declared (1 + tolerance u), u ~ N(0, 1): a declared value within its tolerance
+    logarithmic,  ///< p = e^u: an effect's parameter that can't be negative
+    linear        ///< p = unit u
+  };
+
+  std::size_t index = 0;  ///< in the order of model::visit_parameters; for an initial state see `initial_state`
+  std::string key;        ///< "engine.inertia", "effects.gimbal_friction.coulomb_torque"
+  std::string unit;
+  Scale scale = Scale::linear;
+  double declared = 0.0;
+  double tolerance = 0.0;
+  double unit_size = 1.0;
+  double lower = 0.0;  ///< bounds of p
+  double upper = 0.0;
+  double prior_center = 0.0;     ///< in u
+  double prior_deviation = 0.0;  ///< in u; 0: no prior
+  int experiment = -1;           ///< for an initial state: which record; -1 otherwise
+  int state = -1;                ///< for an initial state: 0 position, 1 velocity
+
+  double value(double u) const {
+    switch (scale) {
+      case Scale::tolerance:
+        return declared * (1.0 + tolerance * u);
+      case Scale::logarithmic:
+        return std::exp(u);
+      case Scale::linear:
+        break;
+    }
+    return unit_size * u;
+  }
+
+  double slope(double u) const {
+    switch (scale) {
+      case Scale::tolerance:
+        return declared * tolerance;
+      case Scale::logarithmic:
+        return std::exp(u);
+      case Scale::linear:
+        break;
+    }
+    return unit_size;
+  }
+
+  double coordinate(double p) const {
+    switch (scale) {
+      case Scale::tolerance:
+        return (p / declared - 1.0) / tolerance;
+      case Scale::logarithmic:
+        return std::log(p);
+      case Scale::linear:
+        break;
+    }
+    return p / unit_size;
+  }
+
+  bool has_prior() const { return prior_deviation > 0.0; }
+  /// Distance from the prior in its deviations; 0 without one.
+  double surprise(double u) const { return has_prior() ? (u - prior_center) / prior_deviation : 0.0; }
+  bool is_declared() const { return scale == Scale::tolerance; }
+  bool is_initial_state() const { return experiment >= 0; }
+};
+
+}  // namespace hotfire::explain

@@ -1,0 +1,376 @@
+#include "tools/explain/report_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "tools/explain/curve.hpp"
+#include "tools/explain/statistics.hpp"
+#include "tools/explain/trace.hpp"
+#include "tools/explain/uncertainty.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+using nlohmann::json;
+
+/// Alternatives closer than this in BIC can't be told from what was found.
+constexpr double kTied = 10.0;
+/// Lags of the residual's autocorrelation, in rows.
+constexpr std::size_t kLags = 100;
+/// Points of a trace that the page draws: more hide each other.
+constexpr std::size_t kTracePoints = 3000;
+
+json interval_of(const Estimate& estimate) {
+  return estimate.interval ? json{estimate.interval->first, estimate.interval->second} : json(nullptr);
+}
+
+json errors_of(const ChannelFit& fit) {
+  return {{"rms", fit.rms}, {"max", fit.max}, {"bias", fit.bias}, {"fit_percent", fit.fit_percent}};
+}
+
+template <class Family>
+json channels_json(const Dataset& data, const std::vector<Record>& records, const SearchResult<Family>& found) {
+  json channels = json::object();
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (!data.used[c]) {
+      continue;
+    }
+    std::string unit;
+    for (const Record& record : records) {
+      if (const Channel* channel = record.find(data.channels[c])) {
+        unit = channel->unit;
+      }
+    }
+    channels[data.channels[c]] = {{"unit", unit},
+                                  {"noise", data.noise[c]},
+                                  {"noise_source", data.noise_declared[c] ? "declared" : "estimated"},
+                                  {"before", errors_of(found.declared.goodness.held_out[c])},
+                                  {"calibrated", errors_of(found.calibrated.goodness.held_out[c])},
+                                  {"after", errors_of(found.explained.goodness.held_out[c])}};
+  }
+  return channels;
+}
+
+/// Meaning of a field by the key that a free parameter carries.
+template <class Family>
+std::map<std::string, std::string> meanings() {
+  std::map<std::string, std::string> result;
+  const PlainParameters<Family> neutral;
+  model::visit_parameters(neutral, [&](const model::Key& key, const auto& field, const double&) {
+    result[(key.is_effect ? "effects." : "") + std::string(key.section) + "." + std::string(field.name)] = field.meaning;
+  });
+  return result;
+}
+
+template <class Family>
+json effects_json(const Dataset& data, const SearchResult<Family>& found, const std::vector<Estimate>& estimated) {
+  json effects = json::array();
+  const auto parameters =
+      Evaluator<Family>::with_values(found.explained.model.base, found.explained.model.free, found.explained.model.u);
+  const Reach reach = reach_of(data, parameters);
+  const auto meaning = meanings<Family>();
+  for (const Kept& kept : found.kept) {
+    const Candidate& candidate = kept.trial.candidate;
+    json effect{{"name", candidate.name}, {"site", candidate.site}, {"parameters", json::object()}};
+    if (!candidate.option_name.empty()) {
+      effect["law"] = candidate.option_name;
+    }
+    const std::string prefix = "effects." + candidate.name + ".";
+    for (std::size_t k = 0; k < estimated.size(); ++k) {
+      const FreeParameter& free = found.explained.model.free[k];
+      if (free.key.starts_with(prefix)) {
+        effect["parameters"][free.key.substr(prefix.size())] = {{"value", estimated[k].value},
+                                                                {"unit", free.unit},
+                                                                {"ci95", interval_of(estimated[k])},
+                                                                {"identified", estimated[k].interval.has_value()},
+                                                                {"meaning", meaning.at(free.key)}};
+      }
+    }
+    effect["evidence"] = {{"held_out_error_drop_percent", 100.0 * (1.0 - kept.trial.held_out_ratio)},
+                          {"delta_bic", kept.trial.delta_criterion}};
+    effect["alternatives"] = json::array();
+    for (const Trial& other : kept.alternatives) {
+      if (other.refined && other.delta_criterion < 0.0) {
+        json alternative{{"name", other.candidate.name},
+                         {"delta_bic", other.delta_criterion - kept.trial.delta_criterion},
+                         {"held_out_error_drop_percent", 100.0 * (1.0 - other.held_out_ratio)}};
+        if (!other.candidate.option_name.empty()) {
+          alternative["law"] = other.candidate.option_name;
+        }
+        effect["alternatives"].push_back(alternative);
+      }
+    }
+    effect["curve"] = curve_of<Family>(parameters, candidate.effect, reach);
+    effects.push_back(std::move(effect));
+  }
+  return effects;
+}
+
+template <class Family>
+json calibration_json(const SearchResult<Family>& found, const std::vector<Estimate>& estimated) {
+  json calibration = json::object();
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    const FreeParameter& free = found.explained.model.free[k];
+    if (free.is_declared()) {
+      calibration[free.key] = {
+          {"declared", free.declared},   {"value", estimated[k].value}, {"ci95", interval_of(estimated[k])},
+          {"tolerance", free.tolerance}, {"unit", free.unit},           {"pressed", estimated[k].pressed}};
+    }
+  }
+  return calibration;
+}
+
+/// Autocorrelation of one channel's residual over all experiments, weighted by their rows.
+std::vector<double> residual_autocorrelation(const Dataset& data, const Prediction& prediction, std::size_t channel) {
+  std::vector<double> mean(kLags + 1, 0.0);
+  double rows = 0.0;
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const auto& measured = data.experiments[e].measured[channel];
+    if (measured.size() <= 2 * kLags) {
+      continue;
+    }
+    std::vector<double> residual(measured.size());
+    std::transform(measured.begin(), measured.end(), prediction[e][channel].begin(), residual.begin(), std::minus<>());
+    const auto rho = autocorrelation(residual, kLags);
+    for (std::size_t lag = 0; lag <= kLags; ++lag) {
+      mean[lag] += rho[lag] * static_cast<double>(residual.size());
+    }
+    rows += static_cast<double>(residual.size());
+  }
+  for (double& value : mean) {
+    value = rows > 0.0 ? value / rows : 0.0;
+  }
+  return mean;
+}
+
+template <class Family>
+json residual_json(const Dataset& data, const SearchResult<Family>& found) {
+  json autocorrelations = json::object();
+  bool white = true;
+  double unexplained = 0.0;
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (!data.used[c]) {
+      continue;
+    }
+    double rows = 0.0;
+    for (const Experiment& experiment : data.experiments) {
+      rows += static_cast<double>(experiment.measured[c].size());
+    }
+    const double bound = 2.576 / std::sqrt(std::max(1.0, rows));
+    const auto before = residual_autocorrelation(data, found.declared.prediction, c);
+    const auto after = residual_autocorrelation(data, found.explained.prediction, c);
+    // At 99 % bounds one lag in a hundred is outside by chance; three are not.
+    white = white && std::count_if(after.begin() + 1, after.end(), [&](double r) { return std::abs(r) > bound; }) <= 3;
+    std::vector<double> lags;
+    for (std::size_t lag = 0; lag < after.size(); ++lag) {
+      lags.push_back(static_cast<double>(lag) * data.experiments.front().period);
+    }
+    autocorrelations[data.channels[c]] = {{"lag_s", lags}, {"before", before}, {"after", after}, {"bound99", bound}};
+    const double declared = excess_over_noise(data, found.declared.prediction, c);
+    const double left = excess_over_noise(data, found.explained.prediction, c);
+    unexplained = std::max(unexplained, declared > 0.0 ? 100.0 * std::min(1.0, left / declared) : 0.0);
+  }
+  return {{"white", white}, {"unexplained_percent", unexplained}, {"autocorrelation", autocorrelations}};
+}
+
+/// Equation in which an effect of a site shows.
+std::string equation_of(const std::string& site) {
+  if (site == "mass_force") {
+    return "mass";
+  }
+  return site == "engine_torque" || site == "load_spring" || site == "structure" ? "engine" : "flow";
+}
+
+/// What each equation leaves over, in words, and the points of the one in which the first effect found shows; of the loudest
+/// where none was found.
+json trace_json(const std::vector<Trace>& traces, const std::vector<Kept>& kept) {
+  if (traces.empty()) {
+    return nullptr;
+  }
+  const auto own = std::find_if(traces.begin(), traces.end(), [&](const Trace& trace) {
+    return !kept.empty() && trace.equation == equation_of(kept.front().trial.candidate.site);
+  });
+  const Trace& strongest = own == traces.end() ? traces.front() : *own;
+  json points{{"x_label", strongest.depends_on.label},
+              {"x_unit", strongest.depends_on.unit},
+              {"y_label", strongest.missing.label},
+              {"y_unit", strongest.missing.unit},
+              {"x", json::array()},
+              {"y", json::array()}};
+  const std::size_t rows = strongest.depends_on.values.size();
+  const std::size_t every = std::max<std::size_t>(1, rows / kTracePoints);
+  for (std::size_t i = 0; i < rows; i += every) {
+    points["x"].push_back(strongest.depends_on.values[i]);
+    points["y"].push_back(strongest.missing.values[i]);
+  }
+  std::string text;
+  for (const Trace& trace : traces) {
+    text += (text.empty() ? "" : " ") + in_words(trace);
+  }
+  const std::string site = strongest.equation == "engine" ? "engine_torque"
+                           : strongest.equation == "mass" ? "mass_force"
+                                                          : "flow";
+  return {{"site", site}, {"text", text}, {"points", points}};
+}
+
+json search_json(const std::vector<Trial>& trials) {
+  json search = json::array();
+  for (const Trial& trial : trials) {
+    json row{{"round", trial.round},     {"candidate", trial.candidate.name}, {"delta_bic", trial.delta_criterion},
+             {"seconds", trial.seconds}, {"decision", trial.decision},        {"reason", trial.reason}};
+    if (!trial.candidate.option_name.empty()) {
+      row["law"] = trial.candidate.option_name;
+    }
+    if (trial.refined) {
+      row["held_out_rms_ratio"] = trial.held_out_ratio;
+    }
+    search.push_back(std::move(row));
+  }
+  return search;
+}
+
+template <class Family>
+std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
+  if (reaches_noise(data, found.explained.prediction)) {
+    return found.kept.empty() ? "nothing-missing" : "explained";
+  }
+  return found.kept.empty() ? "unlisted-effect" : "partly-explained";
+}
+
+/// "a gimbal friction (lugre) at the engine torque".
+std::string phrase(const Candidate& candidate) {
+  std::string name = candidate.name;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return fmt::format("{}{} at {}", name, candidate.option_name.empty() ? "" : " (" + candidate.option_name + ")",
+                     candidate.site);
+}
+
+template <class Family>
+std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found) {
+  const double before = Goodness::combined(found.declared.goodness.held_out);
+  const double after = Goodness::combined(found.explained.goodness.held_out);
+  if (verdict == "nothing-missing") {
+    return fmt::format(
+        "Nothing is missing: within its tolerances the declared model meets the records down to the sensor noise "
+        "({:.2f} times its rms on held-out data).",
+        after);
+  }
+  if (verdict == "unlisted-effect") {
+    return fmt::format(
+        "The records hold an effect that is in no list: the calibrated model is still {:.1f} times the noise "
+        "off on held-out data, and no candidate is supported.",
+        after);
+  }
+  std::string names;
+  for (std::size_t i = 0; i < found.kept.size(); ++i) {
+    names += (i == 0 ? "" : i + 1 == found.kept.size() ? " and " : ", ") + phrase(found.kept[i].trial.candidate);
+  }
+  return fmt::format(
+      "The declared model lacks {}: with {} the error on held-out data falls from {:.1f} to {:.2f} times the noise{}.",
+      names, found.kept.size() == 1 ? "it" : "them", before, after,
+      verdict == "explained" ? ", close to what the sensors can tell" : "; a part is left unexplained");
+}
+
+template <class Family>
+json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult<Family>& found,
+                 const std::vector<Estimate>& estimated) {
+  json warnings = json::array();
+  if (found.interrupted) {
+    warnings.push_back("The search was interrupted: what is reported is what was known by then.");
+  }
+  for (const std::string& key : model.left_out) {
+    warnings.push_back(key + " is not in the model file: its reference value was taken, and held exact.");
+  }
+  if (found.explained.model.free.empty() || !found.explained.model.free.front().is_declared()) {
+    warnings.push_back("No declared parameter has a tolerance: a wrong declared value will look like a missing effect.");
+  }
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    const FreeParameter& free = found.explained.model.free[k];
+    if (free.is_initial_state()) {
+      continue;
+    }
+    if (estimated[k].pressed) {
+      warnings.push_back(free.is_declared() ? fmt::format("{} was moved {:.1f} tolerances from its declared value.",
+                                                          free.key, std::abs(found.explained.model.u[k]))
+                                            : fmt::format("{} ended at the edge of what the effect allows.", free.key));
+    } else if (!estimated[k].interval && !free.is_declared()) {
+      warnings.push_back(free.key + " is not determined by the data.");
+    }
+  }
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (!data.used[c] || !data.noise_declared[c]) {
+      continue;
+    }
+    std::vector<double> residual;
+    for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+      const auto& measured = data.experiments[e].measured[c];
+      for (std::size_t i = 0; i < measured.size(); ++i) {
+        residual.push_back(measured[i] - found.explained.prediction[e][c][i]);
+      }
+    }
+    const double seen = noise_from_differences(residual);
+    if (seen > 1.5 * data.noise[c] || seen < data.noise[c] / 1.5) {
+      warnings.push_back(
+          fmt::format("{} noise is declared as {:.3g} but the records show {:.3g}.", data.channels[c], data.noise[c], seen));
+    }
+  }
+  return warnings;
+}
+
+std::string next_experiment(const std::vector<Kept>& kept) {
+  for (const Kept& one : kept) {
+    for (const Trial& other : one.alternatives) {
+      if (other.refined && other.candidate.name != one.trial.candidate.name &&
+          other.delta_criterion - one.trial.delta_criterion < kTied) {
+        return fmt::format(
+            "{} and {} explain these records equally well: record more amplitudes of the same profile to tell them apart.",
+            label(one.trial.candidate), label(other.candidate));
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+template <class Family>
+json report_json(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
+                 const SearchResult<Family>& found) {
+  const auto estimated = estimates(found.explained.model.free, found.explained.model.u, found.explained.model.normal);
+  const std::string verdict = verdict_of(data, found);
+  const auto calibrated =
+      Evaluator<Family>::with_values(found.calibrated.model.base, found.calibrated.model.free, found.calibrated.model.u);
+  json report{{"schema", 1},
+              {"model", model.path.string()},
+              {"name", model.name},
+              {"verdict", verdict},
+              {"sentence", sentence_of(verdict, found)},
+              {"records", json::array()},
+              {"held_out", held_out_names(data)},
+              {"warnings", warnings_of(model, data, found, estimated)},
+              {"channels", channels_json(data, records, found)},
+              {"calibration", calibration_json(found, estimated)},
+              {"effects", effects_json(data, found, estimated)},
+              {"residual", residual_json(data, found)},
+              {"search", search_json(found.trials)}};
+  for (const Record& record : records) {
+    report["records"].push_back({{"path", record.path.string()}, {"rows", record.rows}, {"period", record.period}});
+  }
+  // What the calibrated model lacks: against the declared one a wrong value would show as well.
+  if (const json trace = trace_json(reconstruct(data, calibrated), found.kept); !trace.is_null()) {
+    report["trace"] = trace;
+  }
+  if (const std::string next = next_experiment(found.kept); !next.empty()) {
+    report["residual"]["next_experiment"] = next;
+  }
+  return report;
+}
+
+template json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&, const SearchResult<SimplexFamily>&);
+template json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&, const SearchResult<DirectFamily>&);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "tools/explain/search.hpp"
+#include "tools/files/record.hpp"
+
+namespace hotfire::explain {
+
+/// report.json (docs/report.md) of a search, without the keys that only the caller knows (command line, seconds, version).
+template <class Family>
+nlohmann::json report_json(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
+                           const SearchResult<Family>& found);
+
+extern template nlohmann::json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&,
+                                           const SearchResult<SimplexFamily>&);
+extern template nlohmann::json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&,
+                                           const SearchResult<DirectFamily>&);
+
+}  // namespace hotfire::explain

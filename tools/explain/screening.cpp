@@ -1,0 +1,296 @@
+#include "tools/explain/screening.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "tools/explain/parallel.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Names that go on to the full fit, starts of an effect with several parameters, and the lengths of the fits.
+constexpr std::size_t kSemifinalists = 6;
+constexpr std::size_t kStarts = 3;
+constexpr int kShortFit = 3;
+constexpr int kFullFit = 6;
+/// How far a parameter is set off when a fit is started again.
+constexpr double kRestartFactor = 5.0;
+/// Relative change of the cost at which a candidate is ranked well enough.
+constexpr double kRankingTolerance = 1e-4;
+
+double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+template <class Family>
+void sort_best_first(std::vector<Screened<Family>>& screened) {
+  std::erase_if(screened, [](const Screened<Family>& s) { return !s.good; });
+  std::sort(screened.begin(), screened.end(),
+            [](const Screened<Family>& a, const Screened<Family>& b) { return a.criterion < b.criterion; });
+}
+
+}  // namespace
+
+template <class Family>
+Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Family>& current, const Scales& scales,
+                             unsigned threads)
+    : evaluator_(evaluator), current_(current), scales_(scales), threads_(threads) {
+  frozen_.u = current.u;
+  std::vector<std::size_t> all(current.free.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::VectorXd residual;
+  evaluator.differentiate(current.base, current.free, current.u, all, threads, residual, frozen_.jacobian);
+  Prediction prediction;
+  evaluator.predict(current.base, current.free, current.u, threads, prediction);
+  goodness_ = goodness(evaluator.data(), prediction);
+  const std::size_t first_used = evaluator.data().used.front() ? 0 : 1;
+  frequencies_ = strongest_frequencies(evaluator.data(), prediction, first_used, 3);
+
+  weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
+  for (const Stretch& s : evaluator.stretches()) {
+    weight_.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
+        .setConstant(1.0 / std::sqrt(current.temper[s.channel]));
+  }
+  prior_.setZero(static_cast<Eigen::Index>(current.free.size()));
+  prior_gradient_ = prior_;
+  for (std::size_t k = 0; k < current.free.size(); ++k) {
+    const FreeParameter& parameter = current.free[k];
+    if (parameter.has_prior()) {
+      prior_(static_cast<Eigen::Index>(k)) = 1.0 / (parameter.prior_deviation * parameter.prior_deviation);
+      prior_gradient_(static_cast<Eigen::Index>(k)) = parameter.surprise(current.u[k]) / parameter.prior_deviation;
+    }
+  }
+  const Eigen::MatrixXd weighted = weight_.asDiagonal() * frozen_.jacobian;
+  Eigen::MatrixXd matrix = weighted.transpose() * weighted;
+  matrix.diagonal() += prior_;
+  if (matrix.size() > 0) {
+    // A parameter that the data do not touch and that has no prior must not make the matrix singular.
+    matrix.diagonal().array() += 1e-9 * std::max(1e-30, matrix.diagonal().maxCoeff());
+  }
+  normal_.compute(matrix);
+}
+
+template <class Family>
+std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate>& candidates, const std::string& stage,
+                                                     const Watch& watch) const {
+  std::vector<Screened<Family>> screened(candidates.size());
+  std::atomic<std::size_t> done{0};
+  parallel_for(candidates.size(), threads_, [&](std::size_t i) {
+    if (!watch.interrupted()) {
+      screened[i] = start(candidates[i]);
+    }
+    watch.progress(fmt::format("{}: {} of {} candidates screened", stage, ++done, candidates.size()));
+  });
+  sort_best_first(screened);
+
+  std::vector<std::string> names;
+  std::vector<std::size_t> semifinalists;
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const std::string& name = screened[i].candidate.name;
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      names.push_back(name);
+    }
+    if (names.size() <= kSemifinalists) {
+      semifinalists.push_back(i);
+    }
+  }
+  done = 0;
+  parallel_for(semifinalists.size(), threads_, [&](std::size_t i) {
+    for (int pass = 0; pass < 2 && !watch.interrupted(); ++pass) {
+      improve(screened[semifinalists[i]], kFullFit);
+    }
+    watch.progress(fmt::format("{}: {} of {} best candidates fitted", stage, ++done, semifinalists.size()));
+  });
+  sort_best_first(screened);
+  start_from_siblings(screened, watch);
+  return screened;
+}
+
+template <class Family>
+Eigen::VectorXd Screening<Family>::residuals_at_frozen(const Fitted<Family>& fitted) const {
+  std::vector<double> u = fitted.u;
+  std::copy(frozen_.u.begin(), frozen_.u.end(), u.begin());
+  Prediction prediction;
+  if (!evaluator_.predict(fitted.base, fitted.free, u, 1, prediction)) {
+    return {};
+  }
+  return evaluator_.residuals(prediction);
+}
+
+template <class Family>
+double Screening<Family>::eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const {
+  const Eigen::VectorXd weighted = residual.cwiseProduct(weight_);
+  const Eigen::VectorXd gradient = frozen_.jacobian.transpose() * weighted.cwiseProduct(weight_) + prior_gradient_;
+  move = -normal_.solve(gradient);
+  return weighted.squaredNorm() + gradient.dot(move);
+}
+
+template <class Family>
+Fitted<Family> Screening<Family>::with_candidate(const Candidate& candidate) const {
+  Fitted<Family> fitted = current_;
+  activate<Family>(fitted.base, candidate);
+  const auto own = effect_parameters<Family>(fitted.base, candidate, scales_);
+  fitted.free.insert(fitted.free.end(), own.begin(), own.end());
+  return fitted;
+}
+
+template <class Family>
+std::vector<typename Screening<Family>::Start> Screening<Family>::scan(
+    Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const {
+  std::vector<Start> starts;
+  Eigen::VectorXd move;
+  for (const auto& point : points) {
+    fitted.u = frozen_.u;
+    fitted.u.insert(fitted.u.end(), point.begin(), point.end());
+    const Eigen::VectorXd residual = residuals_at_frozen(fitted);
+    if (residual.size() == 0 || !residual.allFinite()) {
+      continue;
+    }
+    const double cost = eliminated_cost(residual, move);
+    for (std::size_t k = 0; k < frozen_.u.size(); ++k) {
+      fitted.u[k] += move(static_cast<Eigen::Index>(k));
+    }
+    starts.push_back({fitted.u, cost});
+  }
+  std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  return starts;
+}
+
+template <class Family>
+Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
+  const double began = seconds_now();
+  Screened<Family> best;
+  best.candidate = candidate;
+  const Fitted<Family> fitted = with_candidate(candidate);
+  const std::vector<FreeParameter> own(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
+                                       fitted.free.end());
+  // One or two parameters have one valley; more have several.
+  const std::size_t valleys = own.size() > 2 ? kStarts : 1;
+  const std::vector<Start> starts = scan(fitted, start_points(own, frequencies_));
+  for (std::size_t i = 0; i < starts.size() && i < valleys; ++i) {
+    Screened<Family> screened{candidate, fitted, 0.0, 0.0, true};
+    screened.fitted.u = starts[i].u;
+    improve(screened, kShortFit);
+    if (screened.good && (!best.good || screened.criterion < best.criterion)) {
+      best = std::move(screened);
+    }
+  }
+  best.seconds = seconds_now() - began;
+  return best;
+}
+
+template <class Family>
+Screened<Family> Screening<Family>::restart(const Candidate& candidate, const std::vector<double>& own,
+                                            const Watch& watch) const {
+  const Fitted<Family> fitted = with_candidate(candidate);
+  const std::size_t first = current_.free.size();
+  const std::vector<FreeParameter> parameters(fitted.free.begin() + static_cast<std::ptrdiff_t>(first), fitted.free.end());
+  std::vector<Screened<Family>> restarts;
+  const auto add = [&](const std::vector<double>& u) {
+    restarts.push_back({candidate, fitted, 0.0, 0.0, true});
+    restarts.back().fitted.u = u;
+  };
+  const std::vector<Start> starts = scan(fitted, start_points(parameters, frequencies_));
+  for (std::size_t i = 0; i < starts.size() && i < kStarts; ++i) {
+    add(starts[i].u);
+  }
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    for (const double factor : {1.0 / kRestartFactor, kRestartFactor}) {
+      std::vector<double> u = frozen_.u;
+      u.insert(u.end(), own.begin(), own.end());
+      u[first + k] = parameters[k].coordinate(
+          std::clamp(parameters[k].value(own[k]) * factor, parameters[k].lower, parameters[k].upper));
+      add(u);
+    }
+  }
+  parallel_for(restarts.size(), threads_, [&](std::size_t i) {
+    if (!watch.interrupted()) {
+      improve(restarts[i], kShortFit);
+    }
+  });
+  sort_best_first(restarts);
+  restarts.resize(std::min<std::size_t>(restarts.size(), 2));
+  parallel_for(restarts.size(), threads_, [&](std::size_t i) {
+    for (int pass = 0; pass < 2 && !watch.interrupted(); ++pass) {
+      improve(restarts[i], kFullFit);
+    }
+  });
+  sort_best_first(restarts);
+  return restarts.empty() ? Screened<Family>{candidate, fitted, 0.0, 0.0, false} : restarts.front();
+}
+
+/// Laws of one effect share parameters and some contain others: each is fitted once more from where the best one ended.
+template <class Family>
+void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& screened, const Watch& watch) const {
+  const std::size_t first = current_.free.size();
+  const std::vector<Screened<Family>> ended = screened;
+  parallel_for(screened.size(), threads_, [&](std::size_t i) {
+    const auto best = std::find_if(ended.begin(), ended.end(),
+                                   [&](const Screened<Family>& s) { return s.candidate.name == ended[i].candidate.name; });
+    if (best == ended.begin() + static_cast<std::ptrdiff_t>(i) || watch.interrupted()) {
+      return;
+    }
+    Screened<Family> again{ended[i].candidate, ended[i].fitted, 0.0, ended[i].seconds, true};
+    for (std::size_t k = first; k < again.fitted.free.size(); ++k) {
+      FreeParameter& parameter = again.fitted.free[k];
+      again.fitted.u[k] = parameter.coordinate(std::clamp(parameter.unit_size, parameter.lower, parameter.upper));
+      for (std::size_t j = first; j < best->fitted.free.size(); ++j) {
+        if (best->fitted.free[j].key == parameter.key) {
+          again.fitted.u[k] = best->fitted.u[j];
+        }
+      }
+    }
+    std::copy(best->fitted.u.begin(), best->fitted.u.begin() + static_cast<std::ptrdiff_t>(first), again.fitted.u.begin());
+    improve(again, kFullFit);
+    if (again.good && again.criterion < screened[i].criterion) {
+      screened[i] = std::move(again);
+    } else {
+      screened[i].seconds = again.seconds;
+    }
+  });
+  sort_best_first(screened);
+}
+
+template <class Family>
+void Screening<Family>::improve(Screened<Family>& screened, int iterations) const {
+  if (!screened.good) {
+    return;
+  }
+  const double began = seconds_now();
+  Fitted<Family>& fitted = screened.fitted;
+  screened.good = fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, &frozen_});
+  Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
+  if (residual.size() == 0) {
+    screened.good = false;
+    return;
+  }
+  const auto count = static_cast<Eigen::Index>(frozen_.u.size());
+  residual += frozen_.jacobian * (Eigen::Map<const Eigen::VectorXd>(fitted.u.data(), count) -
+                                  Eigen::Map<const Eigen::VectorXd>(frozen_.u.data(), count));
+  fitted.temper = temper_of<Family>(evaluator_, residual);
+  screened.criterion = information_criterion(mean_squares(residual), goodness_.fitted, fitted.free.size()) -
+                       information_criterion(goodness_.fitted, goodness_.fitted, current_.free.size());
+  screened.seconds += seconds_now() - began;
+}
+
+template <class Family>
+std::vector<ChannelFit> Screening<Family>::mean_squares(const Eigen::VectorXd& residual) const {
+  std::vector<ChannelFit> part(evaluator_.data().channels.size());
+  for (const Stretch& s : evaluator_.stretches()) {
+    const auto segment = residual.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first));
+    part[s.channel].mean_square += segment.squaredNorm();
+    part[s.channel].rows += static_cast<double>(s.last - s.first);
+  }
+  for (ChannelFit& channel : part) {
+    channel.mean_square = channel.rows > 0.0 ? channel.mean_square / channel.rows : 0.0;
+  }
+  return part;
+}
+
+template class Screening<SimplexFamily>;
+template class Screening<DirectFamily>;
+
+}  // namespace hotfire::explain

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tools/explain/candidates.hpp"
+#include "tools/explain/fit.hpp"
+#include "tools/explain/goodness.hpp"
+
+namespace hotfire::explain {
+
+/// A candidate added to the current model, fitted while all that was free before moves linearly.
+template <class Family>
+struct Screened {
+  Candidate candidate;
+  Fitted<Family> fitted;
+  double criterion = 0.0;  ///< BIC against the current model; negative is better
+  double seconds = 0.0;
+  bool good = false;  ///< false: no start could be simulated
+};
+
+/// How a search tells what it is doing, and is told to stop.
+struct Watch {
+  std::function<void(const std::string&)> progress = [](const std::string&) {};
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+/// Ranks candidates around one model. A candidate's own parameters are simulated with exact gradients; what was free before
+/// (declared parameters, effects already kept) moves along its derivatives at the current model and within its priors. That
+/// costs a tenth of a joint fit and leaves the ranking to the candidates' shapes, not to a wrong declared value.
+///
+/// Three stages: a scan of starts, short fits of all from their best starts, a full fit of the best names.
+template <class Family>
+class Screening {
+ public:
+  Screening(const Evaluator<Family>& evaluator, const Fitted<Family>& current, const Scales& scales, unsigned threads);
+
+  /// Screens candidates and returns those that could be simulated, best first.
+  std::vector<Screened<Family>> run(const std::vector<Candidate>& candidates, const std::string& stage,
+                                    const Watch& watch) const;
+
+  /// Fits an effect once more, from the best of its usual starts and from each of its parameters set a factor of five up and
+  /// down from `own`, and returns the best of these: the way out of a local minimum. The current model is to hold the effect
+  /// with its values fixed.
+  Screened<Family> restart(const Candidate& candidate, const std::vector<double>& own, const Watch& watch) const;
+
+ private:
+  struct Start {
+    std::vector<double> u;  ///< all coordinates, the frozen ones moved linearly
+    double cost = 0.0;
+  };
+
+  Fitted<Family> with_candidate(const Candidate& candidate) const;
+  std::vector<Start> scan(Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const;
+  Screened<Family> start(const Candidate& candidate) const;
+  void start_from_siblings(std::vector<Screened<Family>>& screened, const Watch& watch) const;
+  void improve(Screened<Family>& screened, int iterations) const;
+  Eigen::VectorXd residuals_at_frozen(const Fitted<Family>& fitted) const;
+  double eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const;
+  std::vector<ChannelFit> mean_squares(const Eigen::VectorXd& residual) const;
+
+  const Evaluator<Family>& evaluator_;
+  const Fitted<Family>& current_;
+  const Scales& scales_;
+  unsigned threads_;
+  Frozen frozen_;
+  Goodness goodness_;
+  std::vector<double> frequencies_;
+  Eigen::VectorXd weight_;  ///< of every residual, noise and temper
+  Eigen::VectorXd prior_;   ///< information of each frozen parameter's prior
+  Eigen::VectorXd prior_gradient_;
+  Eigen::LLT<Eigen::MatrixXd> normal_;
+};
+
+extern template class Screening<SimplexFamily>;
+extern template class Screening<DirectFamily>;
+
+}  // namespace hotfire::explain

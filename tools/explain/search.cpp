@@ -1,0 +1,345 @@
+#include "tools/explain/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+namespace hotfire::explain {
+
+namespace {
+
+/// A residual whose part beyond noise is below this share of the noise rms is left alone: the model is then twice as close
+/// to the truth as the sensor is, and two friction laws of the same family differ by as much.
+constexpr double kImmaterialExcess = 0.5;
+/// An effect is kept if it lowers the BIC by at least this much: odds beyond 150 to 1 [Kass and Raftery 1995, p. 777].
+constexpr double kStrongEvidence = 10.0;
+/// ... and the held-out error by at least this share of it.
+constexpr double kLeastHeldOutDrop = 0.01;
+/// How many effects of a round are fitted jointly with everything else.
+constexpr std::size_t kFinalists = 3;
+/// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
+constexpr double kCloseVariant = 0.9;
+/// How much is spent on a joint fit: `iterations` of the solver for each of up to `passes` tempers, until the cost changes
+/// by less than `tolerance`.
+struct Effort {
+  int iterations;
+  int passes;
+  double tolerance;
+};
+constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
+constexpr Effort kRanking{8, 2, 1e-4};  ///< which finalist is best
+constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
+
+double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+}  // namespace
+
+std::string label(const Candidate& candidate) {
+  return candidate.option_name.empty() ? candidate.name : candidate.name + " (" + candidate.option_name + ")";
+}
+
+bool reaches_noise(const Dataset& data, const Prediction& prediction) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.used[c] && excess_over_noise(data, prediction, c) > kImmaterialExcess) {
+      return false;
+    }
+  }
+  return true;
+}
+
+namespace {
+
+/// The state of one search.
+template <class Family>
+class Search {
+ public:
+  Search(const Dataset& data, const ModelFile& model, const SearchOptions& options)
+      : data_(data), model_(model), options_(options), fine_(data, Resolution::fine), coarse_(data, Resolution::coarse) {}
+
+  SearchResult<Family> run() {
+    if constexpr (std::is_same_v<Family, DirectFamily>) {
+      scales_ = scales_of(data_);
+    }
+    Fitted<Family> start;
+    start.base = std::get<PlainParameters<Family>>(model_.parameters);
+    start.free = declared_parameters<Family>(start.base, model_.tolerance);
+    start.u.assign(start.free.size(), 0.0);
+    for (const FreeParameter& state : initial_states(data_, scales_, start.u)) {
+      start.free.push_back(state);
+    }
+    start.temper.assign(data_.channels.size(), 1.0);
+    result_.declared = assess(start);
+    options_.watch.progress("calibrating the declared parameters within their tolerances");
+    result_.calibrated = refined(fine_, start, kFinal);
+    result_.explained = result_.calibrated;
+    for (int round = 1; round <= options_.most_effects && !options_.watch.interrupted(); ++round) {
+      if (reaches_noise(data_, result_.explained.prediction) || !add_effect(round)) {
+        break;
+      }
+      take_out_superfluous(round);
+    }
+    result_.interrupted = options_.watch.interrupted();
+    return std::move(result_);
+  }
+
+ private:
+  Assessed<Family> assess(const Fitted<Family>& fitted) const {
+    Assessed<Family> assessed{fitted, {}, {}};
+    fine_.predict(fitted.base, fitted.free, fitted.u, options_.threads, assessed.prediction);
+    assessed.goodness = goodness(data_, assessed.prediction);
+    return assessed;
+  }
+
+  /// Joint fit of everything that is free, tempered by its own residuals until the temper stands; assessed with fine steps.
+  Assessed<Family> refined(const Evaluator<Family>& evaluator, Fitted<Family> fitted, const Effort& effort) const {
+    Prediction prediction;
+    if (!evaluator.predict(fitted.base, fitted.free, fitted.u, options_.threads, prediction)) {
+      return {};
+    }
+    fitted.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
+    for (int pass = 0; pass < effort.passes; ++pass) {
+      if (!fit(evaluator, fitted, {effort.iterations, options_.threads, effort.tolerance, nullptr}) ||
+          !evaluator.predict(fitted.base, fitted.free, fitted.u, options_.threads, prediction)) {
+        return {};
+      }
+      const Temper next = temper_of<Family>(evaluator, evaluator.residuals(prediction));
+      double change = 0.0;
+      for (std::size_t c = 0; c < next.size(); ++c) {
+        change = std::max(change, std::abs(std::log(next[c] / fitted.temper[c])));
+      }
+      fitted.temper = next;
+      if (change < 0.2) {
+        break;
+      }
+    }
+    return assess(fitted);
+  }
+
+  /// One round. False if no candidate is supported.
+  bool add_effect(int round) {
+    const Fitted<Family>& current = result_.explained.model;
+    std::vector<Candidate> candidates = all_candidates<Family>(data_);
+    std::erase_if(candidates, [&](const Candidate& c) { return current.base.effects.active[c.effect]; });
+    const Screening<Family> screening(coarse_, current, scales_, options_.threads);
+    const auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
+    return !options_.watch.interrupted() && keep_best(round, screened);
+  }
+
+  /// The screened candidates that are fitted jointly: the best names, each with its close variants.
+  static std::vector<std::size_t> finalists_of(const std::vector<Screened<Family>>& screened) {
+    std::vector<std::pair<std::string, double>> best_of_name;
+    std::vector<std::size_t> finalists;
+    for (std::size_t i = 0; i < screened.size() && screened[i].criterion < -kStrongEvidence; ++i) {
+      const std::string& name = screened[i].candidate.name;
+      const auto known =
+          std::find_if(best_of_name.begin(), best_of_name.end(), [&](const auto& n) { return n.first == name; });
+      if (known == best_of_name.end() && best_of_name.size() < kFinalists) {
+        best_of_name.emplace_back(name, screened[i].criterion);
+        finalists.push_back(i);
+      } else if (known != best_of_name.end() && screened[i].criterion < kCloseVariant * known->second) {
+        finalists.push_back(i);
+      }
+    }
+    return finalists;
+  }
+
+  /// Fits the finalists jointly and keeps the best if it is supported.
+  bool keep_best(int round, const std::vector<Screened<Family>>& screened) {
+    std::vector<Trial> trials;
+    trials.reserve(screened.size());
+    for (const Screened<Family>& s : screened) {
+      trials.push_back({round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", ""});
+    }
+    const std::vector<std::size_t> order = finalists_of(screened);
+    std::vector<Assessed<Family>> finalists(screened.size());
+    for (const std::size_t i : order) {
+      if (options_.watch.interrupted()) {
+        return false;
+      }
+      options_.watch.progress(fmt::format("round {}: fitting {} with everything else", round, label(screened[i].candidate)));
+      const double began = seconds_now();
+      finalists[i] = refined(coarse_, screened[i].fitted, kRanking);
+      trials[i].seconds += seconds_now() - began;
+    }
+    const std::optional<std::size_t> best = rank(trials, finalists, order);
+    Assessed<Family> winner;
+    if (best) {
+      winner = polished(round, std::move(finalists[*best]), trials[*best].candidate);
+      options_.watch.progress(fmt::format("round {}: fitting {} with fine steps", round, label(trials[*best].candidate)));
+      winner = refined(fine_, winner.model, kFinal);
+      for (const std::size_t i : order) {
+        const Assessed<Family>& finalist = i == *best ? winner : finalists[i];
+        if (winner.good() && finalist.good()) {
+          compare(trials[i], finalist, winner.goodness.fitted);
+        }
+      }
+    }
+    const bool supported = best && winner.good() && trials[*best].delta_criterion < -kStrongEvidence &&
+                           trials[*best].held_out_ratio < 1.0 - kLeastHeldOutDrop;
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      trials[i].decision = supported && i == *best ? "kept" : "dropped";
+      trials[i].reason = reason(trials[i], best ? &trials[*best] : nullptr);
+    }
+    result_.trials.insert(result_.trials.end(), trials.begin(), trials.end());
+    if (!supported) {
+      return false;
+    }
+    Kept kept{trials[*best], {}};
+    trials.erase(trials.begin() + static_cast<std::ptrdiff_t>(*best));
+    std::stable_sort(trials.begin(), trials.end(),
+                     [](const Trial& a, const Trial& b) { return a.delta_criterion < b.delta_criterion; });
+    kept.alternatives = std::move(trials);
+    result_.kept.push_back(std::move(kept));
+    result_.explained = std::move(winner);
+    polish_earlier(round);
+    return true;
+  }
+
+  /// What an effect looked like while another was missing may be a local minimum now.
+  void polish_earlier(int round) {
+    for (std::size_t i = 0; i + 1 < result_.kept.size(); ++i) {
+      Assessed<Family> again = polished(round, result_.explained, result_.kept[i].trial.candidate);
+      if (Goodness::combined(again.goodness.fitted) < Goodness::combined(result_.explained.goodness.fitted)) {
+        again = refined(fine_, again.model, kFinal);
+        if (again.good()) {
+          result_.explained = std::move(again);
+        }
+      }
+    }
+  }
+
+  /// A winner that does not reach the noise may sit in a local minimum: its effect is fitted again from other starts.
+  Assessed<Family> polished(int round, Assessed<Family> winner, const Candidate& candidate) const {
+    if (reaches_noise(data_, winner.prediction) || options_.watch.interrupted()) {
+      return winner;
+    }
+    options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
+    Fitted<Family> anchor = without(winner.model, candidate);
+    anchor.base.effects.active[candidate.effect] = true;
+    std::vector<double> own;
+    const std::string prefix = "effects." + candidate.name + ".";
+    for (std::size_t k = 0; k < winner.model.free.size(); ++k) {
+      if (winner.model.free[k].key.starts_with(prefix)) {
+        own.push_back(winner.model.u[k]);
+      }
+    }
+    const Screening<Family> screening(coarse_, anchor, scales_, options_.threads);
+    const Screened<Family> again = screening.restart(candidate, own, options_.watch);
+    if (!again.good) {
+      return winner;
+    }
+    Assessed<Family> other = refined(coarse_, again.fitted, kRanking);
+    const bool better =
+        other.good() && Goodness::combined(other.goodness.fitted) < Goodness::combined(winner.goodness.fitted);
+    return better ? other : winner;
+  }
+
+  /// Sets how every finalist does, all on the effective samples of the one with the least error: a model that leaves a
+  /// coloured residual must not set the price of a parameter. Returns the best.
+  std::optional<std::size_t> rank(std::vector<Trial>& trials, const std::vector<Assessed<Family>>& finalists,
+                                  const std::vector<std::size_t>& order) const {
+    std::optional<std::size_t> closest;
+    for (const std::size_t i : order) {
+      if (finalists[i].good() && (!closest || Goodness::combined(finalists[i].goodness.fitted) <
+                                                  Goodness::combined(finalists[*closest].goodness.fitted))) {
+        closest = i;
+      }
+    }
+    std::optional<std::size_t> best;
+    for (const std::size_t i : order) {
+      if (finalists[i].good()) {
+        compare(trials[i], finalists[i], finalists[*closest].goodness.fitted);
+        if (!best || trials[i].delta_criterion < trials[*best].delta_criterion) {
+          best = i;
+        }
+      }
+    }
+    return best;
+  }
+
+  /// Sets how a model does against the current one, on given effective samples.
+  void compare(Trial& trial, const Assessed<Family>& with, const std::vector<ChannelFit>& effective) const {
+    const Assessed<Family>& current = result_.explained;
+    trial.refined = true;
+    trial.delta_criterion = information_criterion(with.goodness.fitted, effective, with.model.free.size()) -
+                            information_criterion(current.goodness.fitted, effective, current.model.free.size());
+    trial.held_out_ratio = Goodness::combined(with.goodness.held_out) / Goodness::combined(current.goodness.held_out);
+  }
+
+  static std::string reason(const Trial& trial, const Trial* best) {
+    if (trial.decision == "kept") {
+      return fmt::format("lowers the held-out error by {:.1f} % and the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
+                         -trial.delta_criterion);
+    }
+    if (!trial.refined) {
+      return trial.delta_criterion > -kStrongEvidence ? "does not lower the BIC" : "behind the finalists in screening";
+    }
+    if (best != &trial && best->delta_criterion < trial.delta_criterion) {
+      return fmt::format("{} is better by {:.0f} in BIC", label(best->candidate),
+                         trial.delta_criterion - best->delta_criterion);
+    }
+    return fmt::format("lowers the held-out error by only {:.2f} %, the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
+                       -trial.delta_criterion);
+  }
+
+  static Fitted<Family> without(const Fitted<Family>& model, const Candidate& candidate) {
+    Fitted<Family> rest = model;
+    rest.base = Evaluator<Family>::with_values(rest.base, rest.free, rest.u);
+    rest.base.effects.active[candidate.effect] = false;
+    const std::string prefix = "effects." + candidate.name + ".";
+    for (std::size_t k = rest.free.size(); k-- > 0;) {
+      if (rest.free[k].key.starts_with(prefix)) {
+        rest.free.erase(rest.free.begin() + static_cast<std::ptrdiff_t>(k));
+        rest.u.erase(rest.u.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    }
+    return rest;
+  }
+
+  /// Takes out every earlier effect without which the model is as good.
+  void take_out_superfluous(int round) {
+    for (std::size_t i = 0; i + 1 < result_.kept.size();) {
+      Trial trial{round,       result_.kept[i].trial.candidate,
+                  false,       0.0,
+                  1.0,         0.0,
+                  "taken out", "the model is as good without it since a later effect was added"};
+      options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
+      const double began = seconds_now();
+      Assessed<Family> rest = refined(coarse_, without(result_.explained.model, trial.candidate), kCheck);
+      if (rest.good()) {
+        compare(trial, rest, rest.goodness.fitted);
+      }
+      trial.seconds = seconds_now() - began;
+      if (rest.good() && trial.delta_criterion < kStrongEvidence) {
+        result_.trials.push_back(trial);
+        result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
+        result_.explained = refined(fine_, rest.model, kFinal);
+      } else {
+        ++i;
+      }
+    }
+  }
+
+  const Dataset& data_;
+  const ModelFile& model_;
+  const SearchOptions& options_;
+  Evaluator<Family> fine_;
+  Evaluator<Family> coarse_;
+  Scales scales_;
+  SearchResult<Family> result_;
+};
+
+}  // namespace
+
+template <class Family>
+SearchResult<Family> search(const Dataset& data, const ModelFile& model, const SearchOptions& options) {
+  return Search<Family>(data, model, options).run();
+}
+
+template SearchResult<SimplexFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
+template SearchResult<DirectFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace hotfire::explain {
+
+/// Root mean square.
+double root_mean_square(std::span<const double> values);
+
+/// Noise rms of a uniformly sampled signal from its third differences: var = E[(d3 x)^2] / 20, which a smooth signal hardly
+/// touches. The median of squares over short stretches is taken, so that edges in the signal do not count
+/// [Garcia 2010 describes the family; von Neumann et al. 1941 the idea].
+double noise_from_differences(std::span<const double> values);
+
+/// Autocorrelation at lags 0..last_lag, mean not removed (a bias is a part of the residual).
+std::vector<double> autocorrelation(std::span<const double> values, std::size_t last_lag);
+
+/// Statistical inefficiency g = 1 + 2 sum rho_k, summed to the first lag where two neighbours sum to nothing
+/// [Geyer 1992, Practical Markov Chain Monte Carlo, initial positive sequence]. The effective sample size is n / g; g >= 1.
+double statistical_inefficiency(std::span<const double> values);
+
+}  // namespace hotfire::explain

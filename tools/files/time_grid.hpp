@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace hotfire {
+
+/// Watches how a time column is printed, to tell rounding from uneven sampling. A printer keeps either the digits after the
+/// point (%.4f) or all digits (%.6g); the largest count seen of each bounds the rounding of any time.
+class PrintedDigits {
+ public:
+  void see(std::string_view cell);
+
+  /// Largest step between two numbers printed like those seen, at that magnitude.
+  double resolution(double magnitude) const;
+
+ private:
+  int after_point_ = 0;
+  int significant_ = 1;
+};
+
+struct TimeGrid {
+  double start;
+  double period;
+};
+
+/// The uniform grid that a time column [s] lies on: period = (last - first) / (rows - 1).
+///
+/// Every interval must lie within 1 % of the period, or within what the rounding of two printed times does to it (`unit` is
+/// the printed unit in seconds), half a period at most. Throws FileError with line and both times, telling repeated and
+/// backward times, gaps and uneven sampling apart, or with the rate if it is outside 50 Hz to 20 kHz.
+/// `first_line` is the line of the first row.
+TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& digits, double unit,
+                      const std::filesystem::path& path, std::size_t first_line);
+
+}  // namespace hotfire

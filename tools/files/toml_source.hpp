@@ -1,0 +1,47 @@
+#pragma once
+
+#include <toml++/toml.h>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hotfire {
+
+/// A parsed TOML file that knows where each thing stands, for messages.
+class TomlSource {
+ public:
+  /// Throws FileError if the file cannot be read, is over a megabyte or is not TOML.
+  explicit TomlSource(const std::filesystem::path& path);
+
+  const toml::table& root() const { return root_; }
+
+  /// Throws FileError `path:line:column: key = value: problem` for a value.
+  [[noreturn]] void refuse(const toml::node& value, std::string_view key, std::string_view problem) const;
+
+  /// Throws FileError `path:line:column: key: problem` for a key.
+  [[noreturn]] void refuse_key(const toml::key& at, std::string_view key, std::string_view problem) const;
+
+  /// Throws FileError `path:line: key: problem` for what a table lacks; `table` is where it should stand.
+  [[noreturn]] void refuse_missing(const toml::table& table, std::string_view key, std::string_view problem) const;
+
+  /// The table behind a key; refuses anything else.
+  const toml::table& table(const toml::node& node, std::string_view key) const;
+
+  /// A finite number in `unit`: bare, or a string with its own unit, converted. Refuses anything else.
+  double number(const toml::node& node, std::string_view key, std::string_view unit) const;
+
+  /// A string; refuses anything else.
+  std::string text(const toml::node& node, std::string_view key) const;
+
+ private:
+  std::string written(const toml::node& value) const;
+  [[noreturn]] void refuse_at(const toml::source_position& position, const std::string& problem) const;
+
+  std::filesystem::path path_;
+  std::string content_;
+  std::vector<std::string_view> lines_;
+  toml::table root_;
+};
+
+}  // namespace hotfire

@@ -1,0 +1,126 @@
+#include "tools/simulate/simulate.hpp"
+
+#include <ceres/jet.h>
+#include <ceres/tiny_solver.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "model/step_size.hpp"
+#include "tools/files/error.hpp"
+#include "tools/simulate/run.hpp"
+#include "tools/simulate/scalar_parameters.hpp"
+
+namespace hotfire {
+
+namespace {
+
+/// Position error of a mass over the first rows as a function of its initial position and velocity, for TinySolver.
+struct StartError {
+  // The names are TinySolver's.
+  using Scalar = double;
+  enum { NUM_PARAMETERS = 2, NUM_RESIDUALS = Eigen::Dynamic };  // NOLINT(readability-identifier-naming)
+  using Dual = ceres::Jet<double, NUM_PARAMETERS>;
+
+  const model::Direct<Dual>& plant;
+  std::span<const double> input;
+  std::span<const double> measured;
+  double scale;  ///< rms of what is measured: brings position and residual to order one
+  double speed;  ///< unit of the initial velocity
+  int steps;
+
+  int NumResiduals() const { return static_cast<int>(input.size()); }  // NOLINT(readability-identifier-naming)
+
+  bool operator()(const double* parameters, double* residuals, double* jacobian) const {
+    auto state = plant.moving(scale * Dual(parameters[0], 0), speed * Dual(parameters[1], 1));
+    return run(plant, input, state, steps, [&](std::size_t row, const auto& readings) {
+      const auto i = static_cast<int>(row);
+      residuals[i] = (readings[0].a - measured[row]) / scale;
+      for (int k = 0; jacobian != nullptr && k < NUM_PARAMETERS; ++k) {
+        jacobian[k * NumResiduals() + i] = readings[0].v[k] / scale;
+      }
+    });
+  }
+};
+
+/// Initial position and velocity that fit the first rows best.
+std::pair<double, double> fitted_start(const DirectParameters& parameters, const Record& inputs, std::size_t rows) {
+  require_channel(inputs, "position", "--fit-start fits the initial state to it");
+  const std::vector<double>& position = inputs.find("position")->values;
+  rows = std::min(rows, inputs.rows);
+  if (rows < 3) {
+    throw UsageError("--fit-start needs at least 3 rows to find a position and a velocity");
+  }
+  const double square = std::inner_product(position.begin(), position.end(), position.begin(), 0.0);
+  if (!(square > 0.0)) {
+    return {0.0, 0.0};
+  }
+  const double scale = std::sqrt(square / static_cast<double>(inputs.rows));
+  const double speed = scale / (static_cast<double>(rows) * inputs.period);
+  const int steps = model::steps_per_period(inputs.period);
+  const model::Direct<StartError::Dual> plant(with_scalar<model::Direct<StartError::Dual>::Parameters>(parameters),
+                                              inputs.period / steps);
+  const StartError error{
+      plant, std::span(inputs.find("force")->values).first(rows), std::span(position).first(rows), scale, speed, steps};
+  ceres::TinySolver<StartError> solver;
+  Eigen::Vector2d start(position.front() / scale, (position[1] - position[0]) / inputs.period / speed);
+  solver.Solve(error, &start);
+  return {start(0) * scale, start(1) * speed};
+}
+
+template <class Plant>
+Record run_open_loop(const Plant& plant, typename Plant::State state, const Record& inputs, int steps) {
+  const Channel& input = *inputs.find(std::string(Plant::input_channel));
+  Record outputs;
+  outputs.start = inputs.start;
+  outputs.period = inputs.period;
+  outputs.rows = inputs.rows;
+  outputs.channels.push_back(input);
+  for (std::size_t c = 0; c < Plant::channels.size(); ++c) {
+    const Channel* measured = inputs.find(std::string(Plant::channels[c]));
+    // A direct model follows the record's own unit.
+    const std::string unit =
+        Plant::channel_units[c].empty() && measured != nullptr ? measured->unit : std::string(Plant::channel_units[c]);
+    outputs.channels.push_back({std::string(Plant::channels[c]), unit, {}});
+    outputs.channels.back().values.reserve(inputs.rows);
+  }
+  const bool finite = run(plant, input.values, state, steps, [&](std::size_t, const auto& readings) {
+    for (std::size_t c = 0; c < readings.size(); ++c) {
+      outputs.channels[c + 1].values.push_back(readings[c]);
+    }
+  });
+  if (!finite) {
+    throw FileError(fmt::format(
+        "{}: the model runs away at {:.6g} s: its parameters make it unstable for this {}", inputs.path.string(),
+        inputs.start + static_cast<double>(outputs.channels[1].values.size()) * inputs.period, Plant::input_channel));
+  }
+  return outputs;
+}
+
+}  // namespace
+
+Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_start_rows) {
+  const int steps = model::steps_per_period(inputs.period);
+  const double step = inputs.period / steps;
+  if (const auto* direct = std::get_if<DirectParameters>(&model.parameters)) {
+    require_channel(inputs, "force", "the model is driven by it");
+    const model::Direct<double> plant(*direct, step);
+    const Channel* position = inputs.find("position");
+    auto state = plant.at_rest(position != nullptr ? position->values.front() : 0.0);
+    if (fit_start_rows > 0) {
+      const auto [start, speed] = fitted_start(*direct, inputs, fit_start_rows);
+      state = plant.moving(start, speed);
+    }
+    return run_open_loop(plant, state, inputs, steps);
+  }
+  if (fit_start_rows > 0) {
+    throw UsageError(
+        "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command");
+  }
+  require_channel(inputs, "command", "the model is driven by it");
+  const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), step);
+  return run_open_loop(plant, plant.steady(inputs.find("command")->values.front()), inputs, steps);
+}
+
+}  // namespace hotfire

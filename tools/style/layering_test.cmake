@@ -1,0 +1,67 @@
+# Breaks each rule of layering.cmake once, in a scratch copy of the tree, and expects to be told.
+cmake_minimum_required(VERSION 3.25)
+
+function(copy_tree)
+  file(REMOVE_RECURSE ${SCRATCH})
+  foreach(room model hal firmware tools tests)
+    file(COPY ${ROOT}/${room} DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cpp")
+  endforeach()
+endfunction()
+
+function(look status output)
+  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${ROOT}/tools/style/layering.cmake
+    RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  # CMake wraps what it says.
+  string(REGEX REPLACE "[ \n]+" " " text "${text}")
+  set(${status} ${result} PARENT_SCOPE)
+  set(${output} "${text}" PARENT_SCOPE)
+endfunction()
+
+# expect_fault(FILE CODE WORDS): with CODE in FILE the check fails, and says WORDS.
+function(expect_fault file code words)
+  file(WRITE ${SCRATCH}/${file} "${code}\n")
+  look(status text)
+  file(REMOVE ${SCRATCH}/${file})
+  string(FIND "${text}" "${file}: ${words}" position)
+  if(status EQUAL 0 OR position EQUAL -1)
+    message(SEND_ERROR "${file} with '${code}': expected '${words}', got status ${status}: ${text}")
+  endif()
+endfunction()
+
+# expect_none(FILE CODE): CODE in FILE is allowed.
+function(expect_none file code)
+  file(WRITE ${SCRATCH}/${file} "${code}\n")
+  look(status text)
+  file(REMOVE ${SCRATCH}/${file})
+  if(NOT status EQUAL 0)
+    message(SEND_ERROR "${file} with '${code}' is allowed, but: ${text}")
+  endif()
+endfunction()
+
+copy_tree()
+look(status text)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "the tree as it is: ${text}")
+endif()
+
+expect_fault(model/wrong.hpp "#include \"hal/clock.hpp\"" "includes hal/clock.hpp")
+expect_fault(model/wrong.hpp "#include <tools/files/error.hpp>" "includes tools/files/error.hpp")
+expect_fault(model/effects/wrong.hpp "  #  include <vector>" "includes <vector>")
+expect_fault(model/wrong.hpp "#include <unistd.h>" "includes <unistd.h>")
+expect_fault(model/wrong.hpp "inline int* f() { return new int; }" "uses 'new'")
+expect_fault(model/wrong.hpp "inline void f() {\n  throw 1;\n}" "uses 'throw'")
+expect_fault(hal/wrong.hpp "#include \"model/simplex.hpp\"" "includes model/simplex.hpp")
+expect_fault(hal/linux/wrong.cpp "#include <fmt/format.h>" "includes <fmt/format.h>")
+expect_fault(firmware/wrong.cpp "#include \"tools/files/record.hpp\"" "includes tools/files/record.hpp")
+expect_fault(firmware/wrong.cpp "#include <ceres/ceres.h>" "includes <ceres/ceres.h>")
+expect_fault(tools/files/wrong.cpp "#include \"firmware/loop.hpp\"" "includes firmware/loop.hpp")
+expect_fault(tools/files/wrong.cpp "#include \"hal/linux/realtime.hpp\"" "includes hal/linux/realtime.hpp")
+expect_fault(tools/files/wrong.cpp "#include \"tests/support/allocation_guard.hpp\"" "includes tests/support")
+expect_fault(tools/files/wrong.cpp "#include \"record.hpp\"" "includes record.hpp")
+string(REPEAT "int f();\n" 401 long)
+expect_fault(tools/files/wrong.hpp "${long}" "402 lines")
+
+expect_none(model/right.hpp "#include <cmath>\n#include \"model/simplex.hpp\"\n// throw a new value\nint renew = 1;")
+expect_none(model/right.hpp "constexpr const char* kWord = \"new\";")
+expect_none(tools/files/right.cpp "#include \"hal/sim/plant_bus.hpp\"\n#include <vector>")
+expect_none(tests/right.cpp "#include \"firmware/loop.hpp\"\n#include \"hal/linux/posix_clock.hpp\"")

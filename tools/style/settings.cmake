@@ -1,0 +1,37 @@
+# Warnings and code generation that every target of the project shares, as the interface target hotfire_settings.
+add_library(hotfire_settings INTERFACE)
+target_compile_features(hotfire_settings INTERFACE cxx_std_20)
+target_include_directories(hotfire_settings INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(hotfire_settings INTERFACE -Werror -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align
+  -Wcast-qual -Woverloaded-virtual -Wold-style-cast -Wfloat-conversion -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough
+  -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wundef -Wextra-semi -Wredundant-decls -Wmissing-declarations
+  -Wzero-as-null-pointer-constant -Wsuggest-override -Wvla)
+# Contraction would make the same source give other bits on a machine with fused multiply-add.
+target_compile_options(hotfire_settings INTERFACE -ffp-contract=off)
+# Eigen aligns its members by the instruction set; a library built for AVX2 and one that is not would disagree on where the
+# members of the same class are. 16 is what Debian's Ceres was built with, and costs no time.
+target_compile_definitions(hotfire_settings INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
+
+# For the sources that instantiate the model in float: its constants are double literals on purpose, so that the double
+# model is exact, and each one is then narrowed.
+add_library(hotfire_float_settings INTERFACE)
+target_compile_options(hotfire_float_settings INTERFACE -Wno-float-conversion -Wno-double-promotion)
+
+set(HOTFIRE_SANITIZE "" CACHE STRING "Sanitizers to build with, as the compiler names them: address,undefined or thread")
+if(HOTFIRE_SANITIZE)
+  target_compile_options(hotfire_settings INTERFACE -fsanitize=${HOTFIRE_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
+  target_link_options(hotfire_settings INTERFACE -fsanitize=${HOTFIRE_SANITIZE})
+endif()
+
+# Without fused multiply-add, which Eigen would use and so round differently from what runs on the target.
+option(HOTFIRE_TUNE "Compile the host tools for AVX2 if this machine has it: same bits, faster fits" ON)
+add_library(hotfire_host_settings INTERFACE)
+target_link_libraries(hotfire_host_settings INTERFACE hotfire_settings)
+if(HOTFIRE_TUNE)
+  include(CheckCXXSourceRuns)
+  check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"avx2\") ? 0 : 1; }" HOTFIRE_HOST_HAS_AVX2)
+  if(HOTFIRE_HOST_HAS_AVX2)
+    target_compile_options(hotfire_host_settings INTERFACE -mavx2)
+  endif()
+endif()
