@@ -47,8 +47,9 @@ class Base64 {
   void add(std::uint32_t word) {
     for (int shift = 0; shift < 32; shift += 8) {
       pending_ = pending_ << 8 | (word >> shift & 0xFFU);
-      if (++count_ == 3)
+      if (++count_ == 3) {
         flush();
+      }
     }
   }
 
@@ -65,8 +66,9 @@ class Base64 {
  private:
   void flush() {
     constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (int shift = 18; shift >= 0; shift -= 6)
+    for (int shift = 18; shift >= 0; shift -= 6) {
       text_ += kDigits[pending_ >> shift & 0x3FU];
+    }
     pending_ = 0;
     count_ = 0;
   }
@@ -89,8 +91,9 @@ std::string encoded(const Trace& trace, const Rows& rows) {
 
 std::string encoded(const Rows& rows) {
   Base64 text(rows.size());
-  for (const std::uint32_t row : rows)
+  for (const std::uint32_t row : rows) {
     text.add(row);
+  }
   return text.finish();
 }
 
@@ -111,14 +114,16 @@ void check(const ReportRecord& record) {
     throw std::invalid_argument(
         fmt::format("report of record '{}': period {} s, it must be positive", record.name, record.period));
   }
-  if (!record.input_name.empty())
+  if (!record.input_name.empty()) {
     check_length(record, fmt::format("input '{}'", record.input_name), record.input);
+  }
   for (const ReportChannel& channel : record.channels) {
     check_length(record, fmt::format("channel '{}'", channel.name), channel.measured);
     for (const Model& model : kModels) {
       const std::vector<double>& values = channel.*model.values;
-      if (!values.empty())
+      if (!values.empty()) {
         check_length(record, fmt::format("channel '{}', {} model,", channel.name, model.key), values);
+      }
     }
   }
 }
@@ -126,16 +131,18 @@ void check(const ReportRecord& record) {
 std::vector<Trace> traces_of(const ReportRecord& record) {
   using Place = nlohmann::json::json_pointer;
   std::vector<Trace> traces;
-  if (!record.input_name.empty())
+  if (!record.input_name.empty()) {
     traces.emplace_back(Place("/input/values"), record.input);
+  }
   for (std::size_t index = 0; index < record.channels.size(); ++index) {
     const ReportChannel& channel = record.channels[index];
     const Place place = Place("/channels") / index;
     traces.emplace_back(place / "measured", channel.measured);
     for (const Model& model : kModels) {
       const std::vector<double>& values = channel.*model.values;
-      if (!values.empty())
+      if (!values.empty()) {
         traces.emplace_back(place / "errors" / model.key, channel.measured, values);
+      }
     }
   }
   return traces;
@@ -147,15 +154,19 @@ void add_extremes(const Trace& trace, std::size_t from, std::size_t to, Rows& ro
   std::size_t most = to;
   for (std::size_t row = from; row < to; ++row) {
     const double value = trace.at(row);
-    if (std::isnan(value))
+    if (std::isnan(value)) {
       continue;
-    if (least == to || value < trace.at(least))
+    }
+    if (least == to || value < trace.at(least)) {
       least = row;
-    if (most == to || value > trace.at(most))
+    }
+    if (most == to || value > trace.at(most)) {
       most = row;
+    }
   }
-  if (least == to)
+  if (least == to) {
     return;
+  }
   rows.push_back(static_cast<std::uint32_t>(least));
   rows.push_back(static_cast<std::uint32_t>(most));
 }
@@ -174,8 +185,9 @@ Rows kept_rows(const std::vector<Trace>& traces, std::size_t count, std::size_t 
     const std::size_t from = stretch * count / stretches;
     const std::size_t to = (stretch + 1) * count / stretches;
     const auto first = static_cast<Rows::difference_type>(rows.size());
-    for (const Trace& trace : traces)
+    for (const Trace& trace : traces) {
       add_extremes(trace, from, to, rows);
+    }
     std::sort(rows.begin() + first, rows.end());
     rows.erase(std::unique(rows.begin() + first, rows.end()), rows.end());
   }
@@ -185,15 +197,18 @@ Rows kept_rows(const std::vector<Trace>& traces, std::size_t count, std::size_t 
 nlohmann::json record_data(const ReportRecord& record, const Rows& rows, const std::vector<Trace>& traces) {
   nlohmann::json data{{"name", record.name},       {"start", record.start},       {"period", record.period},
                       {"rows", row_count(record)}, {"held_out", record.held_out}, {"channels", nlohmann::json::array()}};
-  if (rows.size() < row_count(record))
+  if (rows.size() < row_count(record)) {
     data["kept"] = encoded(rows);
-  if (!record.input_name.empty())
+  }
+  if (!record.input_name.empty()) {
     data["input"] = {{"name", record.input_name}, {"unit", record.input_unit}};
+  }
   for (const ReportChannel& channel : record.channels) {
     data["channels"].push_back({{"name", channel.name}, {"unit", channel.unit}, {"errors", nlohmann::json::object()}});
   }
-  for (const Trace& trace : traces)
+  for (const Trace& trace : traces) {
     data[trace.place()] = encoded(trace, rows);
+  }
   return data;
 }
 
@@ -209,8 +224,9 @@ nlohmann::json series_data(const ReportSeries& series) {
   nlohmann::json records = nlohmann::json::array();
   for (const ReportRecord& record : series.records) {
     const std::size_t count = row_count(record);
-    if (count == 0)
+    if (count == 0) {
       continue;
+    }
     const std::vector<Trace> traces = traces_of(record);
     const std::size_t share = total <= kFullResolutionRows ? count : count * kFullResolutionRows / total;
     const Rows rows = kept_rows(traces, count, share);
