@@ -125,23 +125,26 @@ std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base
 std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& scales, std::vector<double>& u) {
   std::vector<FreeParameter> free;
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    const Experiment& experiment = data.experiments[e];
-    if (experiment.at_rest) {
+    const StartState& start = data.experiments[e].start_state;
+    if (!start.moves()) {
       continue;
     }
-    const auto& x = experiment.measured.front();
-    for (int state = 0; state < 2; ++state) {
+    const auto add = [&](int state, const char* name, const char* unit, double value, double error) {
       FreeParameter parameter;
-      parameter.key = experiment.name + (state == 0 ? ".initial_position" : ".initial_velocity");
-      parameter.unit = state == 0 ? "position" : "position/time";
-      parameter.unit_size = size_of_unit(parameter.unit, scales);
+      parameter.key = data.experiments[e].name + name;
+      parameter.unit = unit;
+      parameter.unit_size = size_of_unit(unit, scales);
       parameter.experiment = static_cast<int>(e);
       parameter.state = state;
       parameter.lower = -1e3 * parameter.unit_size;
       parameter.upper = 1e3 * parameter.unit_size;
-      free.push_back(parameter);
-      u.push_back(parameter.coordinate(state == 0 ? x.front() : (x[1] - x[0]) / experiment.period));
-    }
+      parameter.prior_center = parameter.coordinate(value);
+      parameter.prior_deviation = error / parameter.unit_size;
+      u.push_back(parameter.prior_center);
+      free.push_back(std::move(parameter));
+    };
+    add(0, ".initial_position", "position", start.position, start.position_error);
+    add(1, ".initial_velocity", "position/time", start.velocity, start.velocity_error);
   }
   return free;
 }

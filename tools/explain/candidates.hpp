@@ -33,7 +33,8 @@ template <class Family>
 std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base, const Candidate& candidate,
                                              const Scales& scales);
 
-/// Initial position and velocity of every experiment that does not start at rest.
+/// Initial position and velocity of every experiment that does not start at rest, with what its first rows say of them as
+/// prior.
 std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& scales, std::vector<double>& u);
 
 /// Points at which to start the fit of an effect, in coordinates: a quasi-random cover of the fields' typical values, times

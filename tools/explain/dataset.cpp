@@ -39,27 +39,11 @@ struct ChannelsOf<DirectParameters> {
   using Plant = model::Direct<double>;
 };
 
-/// A force-driven mass plainly moves at the first row if its speed there is above a tenth of its rms speed; less than that a
-/// record that starts at rest can show within the differences it is estimated from.
-bool starts_at_rest(const std::vector<double>& position) {
-  if (position.size() < 8) {
-    return true;
-  }
-  double sum = 0.0;
-  for (std::size_t i = 1; i < position.size(); ++i) {
-    sum += (position[i] - position[i - 1]) * (position[i] - position[i - 1]);
-  }
-  const double rms = std::sqrt(sum / static_cast<double>(position.size() - 1));
-  const double first = 0.5 * (position[2] - position[0]);
-  return std::abs(first) <= 0.1 * rms;
-}
-
 }  // namespace
 
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records) {
   Dataset data;
   std::string input;
-  bool is_direct = false;
   std::visit(
       [&](const auto& parameters) {
         using Plant = typename ChannelsOf<std::remove_cvref_t<decltype(parameters)>>::Plant;
@@ -67,7 +51,6 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records)
           data.channels.emplace_back(channel);
         }
         input = Plant::input_channel;
-        is_direct = Plant::topology == "direct";
       },
       model.parameters);
   data.used.assign(data.channels.size(), false);
@@ -91,9 +74,6 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records)
       require_channel(record, data.channels.front(), "without a measured channel there is nothing to explain");
     }
     experiment.held_out = hold_out(record.rows, record.period, shift++);
-    if (is_direct) {
-      experiment.at_rest = starts_at_rest(experiment.measured.front());
-    }
     data.experiments.push_back(std::move(experiment));
   }
 
@@ -111,6 +91,18 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records)
       }
     }
     data.noise.push_back(estimates.empty() ? 1.0 : *std::min_element(estimates.begin(), estimates.end()));
+  }
+  if (const auto* mass = std::get_if<DirectParameters>(&model.parameters)) {
+    for (Experiment& experiment : data.experiments) {
+      experiment.start_state =
+          start_state(*mass, experiment.input, experiment.measured.front(), experiment.period, data.noise.front());
+    }
+  } else {
+    for (Experiment& experiment : data.experiments) {
+      experiment.first_scored = rows_to_forget_start(std::get<SimplexParameters>(model.parameters), experiment.input,
+                                                     experiment.measured, experiment.period, data.noise);
+      std::erase_if(experiment.held_out, [&](const Block& block) { return block.first < experiment.first_scored; });
+    }
   }
   return data;
 }

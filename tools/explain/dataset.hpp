@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/explain/start_state.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/record.hpp"
 
@@ -23,7 +24,8 @@ struct Experiment {
   std::vector<double> input;
   std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record lacks the channel
   std::vector<Block> held_out;                ///< rows that no fit sees
-  bool at_rest = true;                        ///< false: the initial state is fitted with the parameters
+  StartState start_state;                     ///< of a force-driven mass
+  std::size_t first_scored = 0;               ///< rows before it are simulated, not compared: the start is not at rest
 
   std::size_t rows() const { return input.size(); }
 };

@@ -155,7 +155,7 @@ Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution) : data_
       if (experiment.measured[c].empty()) {
         continue;
       }
-      std::size_t first = 0;
+      std::size_t first = experiment.first_scored;
       const auto add = [&](std::size_t last) {
         if (last > first) {
           stretches_.push_back({e, c, first, last, fit_rows_});

@@ -55,9 +55,9 @@ struct Sums {
   }
 };
 
-std::vector<Block> complement(const std::vector<Block>& blocks, std::size_t rows) {
+/// The rows from `first` on that are in none of the blocks.
+std::vector<Block> complement(const std::vector<Block>& blocks, std::size_t first, std::size_t rows) {
   std::vector<Block> rest;
-  std::size_t first = 0;
   for (const Block& block : blocks) {
     if (block.first > first) {
       rest.push_back({first, block.first});
@@ -92,7 +92,7 @@ Goodness goodness(const Dataset& data, const Prediction& prediction) {
       if (experiment.measured[c].empty()) {
         continue;
       }
-      for (const Block& block : complement(experiment.held_out, experiment.rows())) {
+      for (const Block& block : complement(experiment.held_out, experiment.first_scored, experiment.rows())) {
         fitted.add(prediction[e][c], experiment.measured[c], block);
       }
       for (const Block& block : experiment.held_out) {
@@ -118,17 +118,25 @@ double information_criterion(const std::vector<ChannelFit>& part, const std::vec
   return criterion + static_cast<double>(parameters) * std::log(std::max(2.0, samples));
 }
 
+std::vector<double> scored_residual(const Experiment& experiment, const std::vector<std::vector<double>>& predicted,
+                                    std::size_t channel) {
+  const auto& measured = experiment.measured[channel];
+  std::vector<double> residual;
+  for (std::size_t row = experiment.first_scored; row < measured.size(); ++row) {
+    residual.push_back(measured[row] - predicted[channel][row]);
+  }
+  return residual;
+}
+
 double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel) {
   double square = 0.0;
   double floor = 0.0;
   double rows = 0.0;
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    const auto& measured = data.experiments[e].measured[channel];
-    if (measured.empty()) {
+    const std::vector<double> residual = scored_residual(data.experiments[e], prediction[e], channel);
+    if (residual.empty()) {
       continue;
     }
-    std::vector<double> residual(measured.size());
-    std::transform(measured.begin(), measured.end(), prediction[e][channel].begin(), residual.begin(), std::minus<>());
     const auto count = static_cast<double>(residual.size());
     const double noise = noise_from_differences(residual);
     square += std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);

@@ -34,6 +34,10 @@ Goodness goodness(const Dataset& data, const Prediction& prediction);
 double information_criterion(const std::vector<ChannelFit>& part, const std::vector<ChannelFit>& effective,
                              std::size_t parameters);
 
+/// Measured minus predicted on the rows of one record that are compared; empty where the record lacks the channel.
+std::vector<double> scored_residual(const Experiment& experiment, const std::vector<std::vector<double>>& predicted,
+                                    std::size_t channel);
+
 /// What of the residual on all rows is not sensor noise: its rms over the noise, where the noise is told from the residual's
 /// own third differences. Zero where the model reaches the noise, whatever was declared of it.
 double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel);

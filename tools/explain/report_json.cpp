@@ -129,12 +129,10 @@ std::vector<double> residual_autocorrelation(const Dataset& data, const Predicti
   std::vector<double> mean(kLags + 1, 0.0);
   double rows = 0.0;
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    const auto& measured = data.experiments[e].measured[channel];
-    if (measured.size() <= 2 * kLags) {
+    const std::vector<double> residual = scored_residual(data.experiments[e], prediction[e], channel);
+    if (residual.size() <= 2 * kLags) {
       continue;
     }
-    std::vector<double> residual(measured.size());
-    std::transform(measured.begin(), measured.end(), prediction[e][channel].begin(), residual.begin(), std::minus<>());
     const auto rho = autocorrelation(residual, kLags);
     for (std::size_t lag = 0; lag <= kLags; ++lag) {
       mean[lag] += rho[lag] * static_cast<double>(residual.size());
@@ -282,6 +280,12 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
   if (found.interrupted) {
     warnings.push_back("The search was interrupted: what is reported is what was known by then.");
   }
+  for (const Experiment& experiment : data.experiments) {
+    if (experiment.first_scored > 0) {
+      warnings.push_back(fmt::format("{} does not start at rest: its first {:.2f} s are simulated but not compared.",
+                                     experiment.name, static_cast<double>(experiment.first_scored) * experiment.period));
+    }
+  }
   for (const std::string& key : model.left_out) {
     warnings.push_back(key + " is not in the model file: its reference value was taken, and held exact.");
   }
@@ -307,10 +311,8 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
     }
     std::vector<double> residual;
     for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-      const auto& measured = data.experiments[e].measured[c];
-      for (std::size_t i = 0; i < measured.size(); ++i) {
-        residual.push_back(measured[i] - found.explained.prediction[e][c][i]);
-      }
+      const std::vector<double> part = scored_residual(data.experiments[e], found.explained.prediction[e], c);
+      residual.insert(residual.end(), part.begin(), part.end());
     }
     const double seen = noise_from_differences(residual);
     if (seen > 1.5 * data.noise[c] || seen < data.noise[c] / 1.5) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "tools/explain/uncertainty.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -33,6 +35,10 @@ constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
 constexpr Effort kRanking{8, 2, 1e-4};  ///< which finalist is best
 constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
 
+/// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by.
+template <class Family>
+constexpr Resolution kRankingResolution = std::is_same_v<Family, DirectFamily> ? Resolution::fine : Resolution::coarse;
+
 double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
@@ -57,7 +63,11 @@ template <class Family>
 class Search {
  public:
   Search(const Dataset& data, const ModelFile& model, const SearchOptions& options)
-      : data_(data), model_(model), options_(options), fine_(data, Resolution::fine), coarse_(data, Resolution::coarse) {}
+      : data_(data),
+        model_(model),
+        options_(options),
+        fine_(data, Resolution::fine),
+        coarse_(data, kRankingResolution<Family>) {}
 
   SearchResult<Family> run() {
     if constexpr (std::is_same_v<Family, DirectFamily>) {
@@ -169,7 +179,7 @@ class Search {
     if (best) {
       winner = polished(round, std::move(finalists[*best]), trials[*best].candidate);
       options_.watch.progress(fmt::format("round {}: fitting {} with fine steps", round, label(trials[*best].candidate)));
-      winner = refined(fine_, winner.model, kFinal);
+      winner = simplest(refined(fine_, winner.model, kFinal), trials[*best].candidate);
       for (const std::size_t i : order) {
         const Assessed<Family>& finalist = i == *best ? winner : finalists[i];
         if (winner.good() && finalist.good()) {
@@ -196,6 +206,53 @@ class Search {
     result_.explained = std::move(winner);
     polish_earlier(round);
     return true;
+  }
+
+  /// Where the data leave a parameter of the winner's law open, a law without that parameter, started from the winner's
+  /// values, takes its place if the BIC is no worse. Sets `candidate` to the law that stays.
+  Assessed<Family> simplest(Assessed<Family> winner, Candidate& candidate) const {
+    if (!winner.good()) {
+      return winner;
+    }
+    const auto own = effect_parameters<Family>(winner.model.base, candidate, scales_);
+    const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
+    const auto is_open = [&](const FreeParameter& parameter) {
+      for (std::size_t k = 0; k < estimated.size(); ++k) {
+        if (winner.model.free[k].key == parameter.key) {
+          return !estimated[k].interval.has_value();
+        }
+      }
+      return false;
+    };
+    for (const Candidate& law : all_candidates<Family>(data_)) {
+      const auto fewer = effect_parameters<Family>(winner.model.base, law, scales_);
+      const auto has = [&](const FreeParameter& parameter) {
+        return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.key == parameter.key; });
+      };
+      const bool leaves_out_only_open = std::all_of(
+          own.begin(), own.end(), [&](const FreeParameter& parameter) { return has(parameter) || is_open(parameter); });
+      if (law.effect != candidate.effect || fewer.size() >= own.size() || !leaves_out_only_open) {
+        continue;
+      }
+      Fitted<Family> reduced = winner.model;
+      activate<Family>(reduced.base, law);
+      for (std::size_t k = reduced.free.size(); k-- > 0;) {
+        const std::string& key = reduced.free[k].key;
+        const auto is = [&](const FreeParameter& parameter) { return parameter.key == key; };
+        if (std::any_of(own.begin(), own.end(), is) && std::none_of(fewer.begin(), fewer.end(), is)) {
+          reduced.free.erase(reduced.free.begin() + static_cast<std::ptrdiff_t>(k));
+          reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
+        }
+      }
+      const Assessed<Family> simple = refined(fine_, reduced, kFinal);
+      const std::vector<ChannelFit>& effective = winner.goodness.fitted;
+      if (simple.good() && information_criterion(simple.goodness.fitted, effective, simple.model.free.size()) <=
+                               information_criterion(effective, effective, winner.model.free.size())) {
+        candidate = law;
+        return simple;
+      }
+    }
+    return winner;
   }
 
   /// What an effect looked like while another was missing may be a local minimum now.
