@@ -43,6 +43,53 @@ struct Bristle {
   S viscous;    ///< sigma2, force per velocity
 };
 
+/// Friction level under vibration: level (1 + (ratio - 1) e^{-|v| / vibration_velocity}), ratio <= 1. [GF] slide Vibration.
+template <class S>
+S vibrated_level(const S& speed, const S& level, const S& ratio, const S& vibration_velocity) noexcept {
+  return level * (1.0 + (ratio - 1.0) * fading_exponential<S>(speed / vibration_velocity));
+}
+
+/// Bristle damping that dies with speed, damping e^{-(v/v_d)^2} with v_d = 2 sqrt(2e) level / damping: half of the bound
+/// that is sufficient for passivity, whatever the Stribeck ratio [Astrom and Canudas de Wit 2008, Revisiting the LuGre
+/// Friction Model, IEEE Control Systems 28(6), p. 107].
+template <class S>
+S passive_damping(const S& damping, const S& level, const S& velocity) noexcept {
+  constexpr double kHalfOfSufficientBound = 4.663288;  // 2 sqrt(2 e)
+  const S relative = velocity * damping / (level * kHalfOfSufficientBound);
+  return damping * fading_exponential<S>(relative * relative);
+}
+
+/// One step of a bristle, with its speed and level held: z+ = decay z + psi h v, F = at_rest z + per_velocity v, in any
+/// number of dimensions. v is the mean velocity, F the mean force.
+template <class S>
+struct BristleStep {
+  S decay;
+  S psi;
+  S at_rest;
+  S per_velocity;
+};
+
+/// The exact hold of z' = v - sigma0 |v| z / g over h: with a = sigma0 speed h / level, decay = e^-a, psi = (1 - e^-a)/a and
+/// chi = (1 - psi)/a the end and the mean of z are z decay + v h psi and z psi + v h chi.
+template <class S>
+BristleStep<S> bristle_step(const S& speed, const S& level, const Bristle<S>& bristle, double h) noexcept {
+  const S exponent = bristle.stiffness * speed * h / level;
+  // Below 0.02 the quotients lose digits and the series is exact to 2e-15. Both are worked out at every step, so that
+  // sticking and slipping cost the same.
+  const S series =
+      0.5 - exponent * (1.0 / 6 -
+                        exponent * (1.0 / 24 - exponent * (1.0 / 120 - exponent * (1.0 / 720 - exponent * (1.0 / 5040)))));
+  const S exact = fading_exponential<S>(exponent);
+  const bool small = value_of(exponent) < 0.02;
+  const S divisor = small ? S{1.0} : exponent;
+  const S quotient = (1.0 - exact) / divisor;
+  const S chi = small ? series : (1.0 - quotient) / divisor;
+  const S psi = small ? 1.0 - exponent * series : quotient;
+  const S decay = small ? 1.0 - exponent * psi : exact;
+  return {decay, psi, S(bristle.stiffness * psi + bristle.damping * (decay - 1.0) / h),
+          S(bristle.stiffness * h * chi + bristle.damping * psi + bristle.viscous)};
+}
+
 /// One step of the bristle equation (Dahl, LuGre):
 ///   z' = v - sigma0 |v| z / g,   F = sigma0 z + sigma1 z' + sigma2 v.
 ///
@@ -56,27 +103,12 @@ struct Bristle {
 /// `motion.velocity` sets |v|; `level` is g at that velocity. Returns the mean force over the step.
 template <class S>
 S bristle_force(S& deflection, const Motion<S>& motion, const S& level, const Bristle<S>& bristle) noexcept {
-  const S speed = motion.velocity * sign_of(motion.velocity);
-  const S exponent = bristle.stiffness * speed * motion.h / level;
-  // decay = e^-a, psi = (1 - e^-a)/a, chi = (1 - psi)/a. Below 0.02 the quotients lose digits and the series is exact to
-  // 2e-15. Both are worked out at every step, so that sticking and slipping cost the same.
-  const S series =
-      0.5 - exponent * (1.0 / 6 -
-                        exponent * (1.0 / 24 - exponent * (1.0 / 120 - exponent * (1.0 / 720 - exponent * (1.0 / 5040)))));
-  const S exact = fading_exponential<S>(exponent);
-  const bool small = value_of(exponent) < 0.02;
-  const S divisor = small ? S{1.0} : exponent;
-  const S quotient = (1.0 - exact) / divisor;
-  const S chi = small ? series : (1.0 - quotient) / divisor;
-  const S psi = small ? 1.0 - exponent * series : quotient;
-  const S decay = small ? 1.0 - exponent * psi : exact;
+  const BristleStep<S> step = bristle_step<S>(motion.velocity * sign_of(motion.velocity), level, bristle, motion.h);
   const S start = deflection;
-  // z+ = start * decay + v h psi;  mean z = start * psi + v h chi
-  const S per_velocity = bristle.stiffness * motion.h * chi + bristle.damping * psi + bristle.viscous;
-  const S at_rest = start * (bristle.stiffness * psi + bristle.damping * (decay - 1.0) / motion.h);
-  const S velocity = (motion.free_velocity - motion.compliance * at_rest) / (1.0 + motion.compliance * per_velocity);
-  deflection = start * decay + velocity * motion.h * psi;
-  return at_rest + per_velocity * velocity;
+  const S at_rest = start * step.at_rest;
+  const S velocity = (motion.free_velocity - motion.compliance * at_rest) / (1.0 + motion.compliance * step.per_velocity);
+  deflection = start * step.decay + velocity * motion.h * step.psi;
+  return at_rest + step.per_velocity * velocity;
 }
 
 }  // namespace hotfire::model

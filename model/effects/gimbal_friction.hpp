@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "model/effect.hpp"
 #include "model/friction.hpp"
 
@@ -10,10 +8,9 @@ namespace hotfire::model {
 /// Friction of the gimbal bearing, by one of three laws: `coulomb` (rigid), `dahl` (bristle, one level), `lugre` (bristle,
 /// Stribeck level, bristle damping). The bearing's viscous part is the engine's `viscous_damping`.
 ///
-/// Passivity of LuGre needs viscous > damping (static_ratio - 1) [Astrom and Canudas de Wit 2008, Revisiting the LuGre
-/// Friction Model, IEEE Control Systems 28(6), p. 107]; the bristle damping here dies with speed, damping e^{-(v/v_d)^2}
-/// with v_d = 2 sqrt(2e) T_c / damping, half of their sufficient bound, so that the law is passive for any values. Source of
-/// the laws: [GF] slides Coulomb, Dahl, LuGre; bristle step in friction.hpp.
+/// Passivity of LuGre needs viscous > damping (static_ratio - 1); the bristle damping here dies with speed
+/// (`passive_damping`), so that the law is passive for any values. Source of the laws: [GF] slides Coulomb, Dahl, LuGre;
+/// bristle step in friction.hpp.
 struct GimbalFriction {
   static constexpr std::string_view name = "gimbal_friction";
   static constexpr Site site = Site::engine_torque;
@@ -63,16 +60,9 @@ struct GimbalFriction {
       return bristle_force<S>(state.deflection, input, params.coulomb_torque, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
     }
     const S level = stribeck_level<S>(input.velocity, params.coulomb_torque, params.static_ratio, params.stribeck_velocity);
-    return bristle_force<S>(state.deflection, input, level,
-                            Bristle<S>{params.stiffness, passive_damping(params, input.velocity), S{0.0}});
-  }
-
- private:
-  template <class S>
-  static S passive_damping(const Params<S>& params, const S& velocity) noexcept {
-    constexpr double kHalfOfSufficientBound = 4.663288;  // 2 sqrt(2 e)
-    const S relative = velocity * params.damping / (params.coulomb_torque * kHalfOfSufficientBound);
-    return params.damping * fading_exponential<S>(relative * relative);
+    return bristle_force<S>(
+        state.deflection, input, level,
+        Bristle<S>{params.stiffness, passive_damping<S>(params.damping, params.coulomb_torque, input.velocity), S{0.0}});
   }
 };
 

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "model/effect.hpp"
-#include "model/scalar.hpp"
+#include "model/mode.hpp"
 
 namespace hotfire::model {
 
@@ -34,36 +34,23 @@ struct StructuralMode {
   };
 
   template <class S>
-  struct State {
-    S displacement{0.0};  ///< eta [m kg^0.5]
-    S velocity{0.0};
-  };
+  using State = ModeMotion<S>;
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const AttachPoint<S>& input) noexcept {
-    using std::cos;
-    using std::sin;
     const S w = params.frequency * (2.0 * std::numbers::pi);
-    const S decay_rate = params.damping_ratio * w;
-    const S damped = w * sqrt(1.0 - params.damping_ratio * params.damping_ratio);
-    const S envelope = exp(-decay_rate * input.h);
-    const S c = cos(damped * input.h) * envelope;
-    const S s = sin(damped * input.h) * envelope;
     const S rest = params.shape * input.force / (w * w);
     const S start = state.displacement - rest;
-    const S end = start * c + (state.velocity + decay_rate * start) / damped * s;
-    const S velocity = state.velocity * c - (state.velocity * decay_rate + start * (w * w)) / damped * s;
-    const S mean = rest + 0.5 * (start + end);
-    state.displacement = rest + end;
-    state.velocity = velocity;
+    const ModeMotion<S> end = advance_mode<S>({start, state.velocity}, w, params.damping_ratio, input.h);
+    const S mean = rest + 0.5 * (start + end.displacement);
+    state = {rest + end.displacement, end.velocity};
     return params.shape * mean;
   }
 
   template <class S>
   static void settle(const Params<S>& params, State<S>& state, const AttachPoint<S>& input) noexcept {
     const S w = params.frequency * (2.0 * std::numbers::pi);
-    state.displacement = params.shape * input.force / (w * w);
-    state.velocity = S{0.0};
+    state = {params.shape * input.force / (w * w), S{0.0}};
   }
 };
 
