@@ -30,6 +30,12 @@ using SimplexEffects = EffectList<RateLimit, CommandDelay, ValveHysteresis, Valv
                                   PistonFriction, VariableMomentArm, Backlash, SoftStiffness, StructuralMode, GimbalFriction,
                                   DuctHardening, TorqueOffset, SensorNonlinearity, SensorLag>;
 
+/// Every effect an axis of a `Vehicle` knows, in the same order. What the vehicle has itself is not among them: geometry,
+/// modes and the friction of its bearings. Nor is the transport delay, whose memory of 16 KiB an axis would be most of its
+/// state.
+using VehicleEffects = EffectList<RateLimit, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction,
+                                  Backlash, SoftStiffness, DuctHardening, TorqueOffset, SensorNonlinearity, SensorLag>;
+
 /// Every effect a force-driven mass knows.
 using DirectEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, PositionDamping>;
 

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
+
+#include <vector>
+
+namespace hotfire::test {
+
+/// SUNDIALS CVODE (BDF, dense) with a relative tolerance of 1e-10 and an absolute one of 1e-11 of each state's scale.
+class CvodeIntegrator {
+ public:
+  using Derivative = int (*)(double, N_Vector, N_Vector, void*);
+
+  /// Starts at time zero with every state zero. `user` is handed to `derivative`. Throws std::runtime_error if CVODE
+  /// refuses.
+  CvodeIntegrator(Derivative derivative, void* user, const std::vector<double>& scale);
+  CvodeIntegrator(const CvodeIntegrator&) = delete;
+  CvodeIntegrator& operator=(const CvodeIntegrator&) = delete;
+  ~CvodeIntegrator();
+
+  double* state() { return N_VGetArrayPointer(state_); }
+  double time() const { return time_; }
+
+  /// Goes on to `end`, started afresh: what drives the derivative may have jumped. Throws std::runtime_error if CVODE gives
+  /// up.
+  void advance(double end);
+
+ private:
+  SUNContext context_ = nullptr;
+  N_Vector state_ = nullptr;
+  N_Vector tolerance_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  SUNLinearSolver solver_ = nullptr;
+  void* memory_ = nullptr;
+  double time_ = 0.0;
+};
+
+}  // namespace hotfire::test
