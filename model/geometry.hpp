@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "model/field.hpp"
 #include "model/scalar.hpp"
@@ -103,5 +104,29 @@ class EngineGeometry {
   std::array<Vector3<S>, 2> vehicle_;
   std::array<S, 2> length_;
 };
+
+/// What is wrong with the attach points of an engine's two actuators; empty if nothing.
+template <class S>
+std::string_view broken_relation(const AttachPoints<S>& pitch, const AttachPoints<S>& yaw) {
+  constexpr double kClose = 1e-3;  // m: no actuator is shorter, and none two hold on to the same bolt
+  const auto near = [](const Vector3<S>& a, const Vector3<S>& b) {
+    const Vector3<S> gap = a - b;
+    return !(value_of(dot<S>(gap, gap)) > kClose * kClose);
+  };
+  if (near(pitch.engine(), pitch.vehicle()) || near(yaw.engine(), yaw.vehicle())) {
+    return "the attach points of an actuator on engine and vehicle coincide";
+  }
+  if (near(pitch.engine(), yaw.engine()) && near(pitch.vehicle(), yaw.vehicle())) {
+    return "the attach points of the two actuators coincide";
+  }
+  const Pose<S> pose = EngineGeometry<S>(pitch, yaw).at(S(0.0), S(0.0));
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!(value_of(pose.arm[k][k]) > kClose)) {
+      return k == 0 ? "the pitch actuator has no arm that turns the engine to positive pitch when it extends"
+                    : "the yaw actuator has no arm that turns the engine to positive yaw when it extends";
+    }
+  }
+  return {};
+}
 
 }  // namespace hotfire::model

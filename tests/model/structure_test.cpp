@@ -96,6 +96,8 @@ TEST(ModalStructure, RunsAnOddNumberOfModes) {
 
 TEST_GROUP(EngineGeometry){};
 
+TEST_GROUP(GimbalBearing){};
+
 // The work of a small turn is the same seen from the actuators and from the engine: the arms are the stroke's derivatives.
 TEST(EngineGeometry, HasTheDerivativesOfItsStrokesAsArms) {
   const model::EngineGeometry<double> geometry(inclined_pitch(), inclined_yaw());
@@ -127,6 +129,40 @@ TEST(EngineGeometry, HasTheDeclaredArmAtZeroAnglesAndNoneAcross) {
     DOUBLES_EQUAL(0.7544, pose.arm[actuator][actuator], 1e-15);
     DOUBLES_EQUAL(0.0, pose.arm[actuator][1 - actuator], 1e-15);
   }
+}
+
+TEST(EngineGeometry, RefusesAttachPointsThatCoincideOrDoNotTurnTheEngine) {
+  using Points = model::AttachPoints<double>;
+  const Points pitch;
+  const Points yaw = model::yaw_attach_points<double>();
+  const auto says = [](const Points& a, const Points& b, std::string_view words) {
+    return model::broken_relation(a, b).find(words) != std::string_view::npos;
+  };
+  CHECK_TRUE(model::broken_relation(pitch, yaw).empty());
+  CHECK_TRUE(model::broken_relation(inclined_pitch(), inclined_yaw()).empty());
+  Points point = pitch;
+  point.vehicle_x = point.engine_x;
+  CHECK_TRUE(says(point, yaw, "on engine and vehicle coincide"));
+  CHECK_TRUE(says(pitch, pitch, "two actuators coincide"));
+  CHECK_TRUE(says(yaw, pitch, "pitch actuator has no arm"));
+  Points mirrored = yaw;
+  mirrored.engine_y = mirrored.vehicle_y = -0.7544;
+  CHECK_TRUE(says(pitch, mirrored, "yaw actuator has no arm"));
+  Points lost = pitch;
+  lost.engine_z = std::nan("");
+  CHECK_FALSE(model::broken_relation(lost, yaw).empty());
+}
+
+TEST(GimbalBearing, RefusesAStiffnessThatIsNone) {
+  model::GimbalParameters<double> gimbal;
+  gimbal.compliant = true;
+  gimbal.stiffness = bearing_stiffness();
+  CHECK_TRUE(model::broken_relation(gimbal).empty());
+  gimbal.stiffness(1, 5) *= 2.0;
+  CHECK_TRUE(model::broken_relation(gimbal) == "the stiffness matrix is not symmetric");
+  gimbal.stiffness = bearing_stiffness();
+  gimbal.stiffness(4, 4) = -1.7e7;
+  CHECK_TRUE(model::broken_relation(gimbal) == "the stiffness matrix is not positive definite");
 }
 
 TEST_GROUP(LinearAlgebra){};
