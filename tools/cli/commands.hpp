@@ -8,6 +8,7 @@ namespace hotfire {
 /// else there, throws FileError or UsageError, or CLI::RuntimeError with an exit status when all is said.
 void add_check(CLI::App& program);
 void add_explain(CLI::App& program);
+void add_reduce(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);
 void add_timing(CLI::App& program);

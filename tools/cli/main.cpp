@@ -63,6 +63,7 @@ int run(int argc, char** argv) {
   add_explain(program);
   add_check(program);
   add_simulate(program);
+  add_reduce(program);
   add_plant(program);
   add_timing(program);
   for (CLI::App* command : program.get_subcommands(nullptr)) {

@@ -1,0 +1,272 @@
+#include "tools/structure/mode_table.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "tools/files/csv_lines.hpp"
+#include "tools/files/error.hpp"
+#include "tools/files/suggestion.hpp"
+
+namespace hotfire {
+
+namespace {
+
+constexpr std::string_view kMode = "mode";
+constexpr std::string_view kFrequency = "frequency[Hz]";
+constexpr std::string_view kDamping = "damping[1]";
+constexpr std::string_view kResidual = "residual.";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (bool more = true; more;) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(trimmed(line.substr(0, comma)));
+    more = comma != std::string_view::npos;
+    line.remove_prefix(more ? comma + 1 : line.size());
+  }
+  return cells;
+}
+
+bool read_number(std::string_view cell, double& value) {
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc{} && end == cell.data() + cell.size() && std::isfinite(value);
+}
+
+/// The next line that is neither a comment nor blank.
+bool next_row(CsvLines& lines, std::string_view& line) {
+  while (lines.next(line)) {
+    if (!line.starts_with('#') && !trimmed(line).empty()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Engine number at the end of a port's name; 0 if the name is no port's.
+int engine_of(std::string_view name) {
+  for (const std::string_view kind : {"attach.pitch", "attach.yaw", "gimbal.pitch", "gimbal.yaw"}) {
+    int engine = 0;
+    if (name.starts_with(kind)) {
+      const auto [end, error] = std::from_chars(name.data() + kind.size(), name.data() + name.size(), engine);
+      return error == std::errc{} && end == name.data() + name.size() && engine > 0 ? engine : 0;
+    }
+  }
+  return 0;
+}
+
+/// Where the columns of a table stand.
+struct Columns {
+  int engines = 0;
+  std::size_t mode = 0;
+  std::size_t frequency = 0;
+  std::size_t damping = 0;
+  std::vector<std::size_t> ports;
+  std::size_t count = 0;
+};
+
+void refuse_unknown_column(const CsvLines& lines, std::string_view name) {
+  if (const int engine = engine_of(name); engine > kMostEngines) {
+    lines.refuse(
+        fmt::format("column \"{}\": engine {}; allowed: at most {} engines in this build", name, engine, kMostEngines));
+  }
+  const std::vector<std::string> ports = port_names(kMostEngines);
+  std::vector<std::string_view> known{kMode, kFrequency, kDamping};
+  known.insert(known.end(), ports.begin(), ports.end());
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    lines.refuse(fmt::format("column \"{}\": unknown; {}", name, suggestion(name, known)));
+  }
+}
+
+Columns read_columns(CsvLines& lines) {
+  std::string_view line;
+  if (!next_row(lines, line)) {
+    lines.refuse("no header; a mode table begins with a line like mode,frequency[Hz],damping[1],attach.pitch1,...");
+  }
+  std::map<std::string, std::size_t, std::less<>> at;
+  Columns columns;
+  for (const std::string_view name : cells_of(line)) {
+    refuse_unknown_column(lines, name);
+    if (!at.emplace(name, at.size()).second) {
+      lines.refuse(fmt::format("column \"{}\": named twice; allowed: each column once", name));
+    }
+    columns.engines = std::max(columns.engines, engine_of(name));
+  }
+  columns.count = at.size();
+  const auto column = [&](std::string_view name, std::string_view why) {
+    const auto found = at.find(name);
+    if (found == at.end()) {
+      lines.refuse(fmt::format("no column {}: {}", name, why));
+    }
+    return found->second;
+  };
+  columns.mode = column(kMode, "it numbers the rows");
+  columns.frequency = column(kFrequency, "every mode has a natural frequency");
+  columns.damping = column(kDamping, "every mode has a damping ratio");
+  if (columns.engines == 0) {
+    column("attach.pitch1", "a mode has a shape at every attach point and gimbal");
+  }
+  for (const std::string& port : port_names(columns.engines)) {
+    columns.ports.push_back(
+        column(port, fmt::format("the table has {} engine{}, and a mode a shape at every attach point and gimbal of each",
+                                 columns.engines, columns.engines == 1 ? "" : "s")));
+  }
+  return columns;
+}
+
+/// Reads the shapes, or a row of the residual.
+Eigen::VectorXd read_ports(const CsvLines& lines, const Columns& columns, const std::vector<std::string_view>& cells) {
+  const std::vector<std::string> names = port_names(columns.engines);
+  Eigen::VectorXd values(static_cast<Eigen::Index>(names.size()));
+  for (std::size_t port = 0; port < names.size(); ++port) {
+    const std::string_view cell = cells[columns.ports[port]];
+    if (cell.empty()) {
+      lines.refuse(fmt::format("{} {}: missing shape at {}; allowed: a number, 0 where the mode does not move it", kMode,
+                               cells[columns.mode], names[port]));
+    }
+    if (!read_number(cell, values(static_cast<Eigen::Index>(port)))) {
+      lines.refuse(fmt::format("{} = \"{}\": not a finite number", names[port], cell));
+    }
+  }
+  return values;
+}
+
+double read_bounded(const CsvLines& lines, std::string_view name, std::string_view cell, bool (*good)(double),
+                    std::string_view allowed) {
+  double value = 0.0;
+  if (!read_number(cell, value) || !good(value)) {
+    lines.refuse(fmt::format("{} = \"{}\"; allowed: {}", name, cell, allowed));
+  }
+  return value;
+}
+
+void require_residual(const CsvLines& lines, const Columns& columns, const std::set<std::string>& rows,
+                      const Eigen::MatrixXd& residual) {
+  for (const std::string& port : port_names(columns.engines)) {
+    if (!rows.empty() && rows.count(port) == 0) {
+      lines.refuse(fmt::format("no row {}{}: a residual has one for every port", kResidual, port));
+    }
+  }
+  const double size = residual.cwiseAbs().maxCoeff();
+  if ((residual - residual.transpose()).cwiseAbs().maxCoeff() > 1e-9 * size) {
+    lines.refuse("the residual is not symmetric; allowed: the same flexibility of a pair of ports both ways");
+  }
+  // In units of the ports' own flexibility, so that metres and radians weigh alike.
+  const Eigen::VectorXd scale =
+      residual.diagonal().cwiseAbs().cwiseSqrt().unaryExpr([](double x) { return x > 0.0 ? 1.0 / x : 1.0; });
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * residual * scale.asDiagonal();
+  if (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues().minCoeff() < -1e-9) {
+    lines.refuse("the residual is not positive semidefinite: it would give energy; allowed: a flexibility");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> port_names(int engines) {
+  std::vector<std::string> names;
+  for (const std::string_view kind : {"attach", "gimbal"}) {
+    for (int engine = 1; engine <= engines; ++engine) {
+      names.push_back(fmt::format("{}.pitch{}", kind, engine));
+      names.push_back(fmt::format("{}.yaw{}", kind, engine));
+    }
+  }
+  return names;
+}
+
+ModeSet load_modes(const std::filesystem::path& path) {
+  CsvLines lines(path);
+  const Columns columns = read_columns(lines);
+  const std::vector<std::string> names = port_names(columns.engines);
+  ModeSet set;
+  set.engines = columns.engines;
+  set.residual = Eigen::MatrixXd::Zero(set.ports(), set.ports());
+  std::vector<double> frequency;
+  std::vector<double> damping;
+  std::vector<Eigen::VectorXd> shapes;
+  std::set<std::string, std::less<>> seen;
+  std::set<std::string> residual_rows;
+  std::string_view line;
+  while (next_row(lines, line)) {
+    const std::vector<std::string_view> cells = cells_of(line);
+    if (cells.size() != columns.count) {
+      lines.refuse(
+          fmt::format("ragged row: {} cells; allowed: {}, as many as the header names", cells.size(), columns.count));
+    }
+    const std::string_view label = cells[columns.mode];
+    if (label.empty() || !seen.emplace(label).second) {
+      lines.refuse(fmt::format("mode = \"{}\": {}; allowed: a name of its own for each row", label,
+                               label.empty() ? "missing" : "given twice"));
+    }
+    const Eigen::VectorXd ports = read_ports(lines, columns, cells);
+    if (label.starts_with(kResidual)) {
+      const auto port = std::find(names.begin(), names.end(), label.substr(kResidual.size()));
+      if (port == names.end()) {
+        lines.refuse(fmt::format("{}: no such port; {}", label,
+                                 suggestion(label.substr(kResidual.size()), {names.begin(), names.end()})));
+      }
+      set.residual.row(port - names.begin()) = ports.transpose();
+      residual_rows.insert(*port);
+      continue;
+    }
+    if (shapes.size() == kMostModes) {
+      lines.refuse(fmt::format("more than {} modes", kMostModes));
+    }
+    frequency.push_back(read_bounded(
+        lines, kFrequency, cells[columns.frequency], [](double f) { return f > 0.0; },
+        "above 0: motion as a rigid body is not part of a mode table"));
+    damping.push_back(read_bounded(
+        lines, kDamping, cells[columns.damping], [](double z) { return z >= 0.0 && z < 1.0; }, "0 to below 1"));
+    shapes.push_back(ports);
+  }
+  require_residual(lines, columns, residual_rows, set.residual);
+  const auto count = static_cast<Eigen::Index>(shapes.size());
+  set.frequency = Eigen::Map<const Eigen::VectorXd>(frequency.data(), count);
+  set.damping_ratio = Eigen::Map<const Eigen::VectorXd>(damping.data(), count);
+  set.shape.resize(set.ports(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    set.shape.col(k) = shapes[static_cast<std::size_t>(k)];
+  }
+  return set;
+}
+
+std::string mode_table_text(const ModeSet& modes, const std::vector<std::string>& comments) {
+  std::string text;
+  for (const std::string& comment : comments) {
+    text += fmt::format("# {}\n", comment);
+  }
+  text += fmt::format("{},{},{}", kMode, kFrequency, kDamping);
+  const std::vector<std::string> names = port_names(modes.engines);
+  for (const std::string& port : names) {
+    text += fmt::format(",{}", port);
+  }
+  text += '\n';
+  for (int k = 0; k < modes.modes(); ++k) {
+    text += fmt::format("{},{},{}", k + 1, modes.frequency(k), modes.damping_ratio(k));
+    for (int port = 0; port < modes.ports(); ++port) {
+      text += fmt::format(",{}", modes.shape(port, k));
+    }
+    text += '\n';
+  }
+  if (modes.residual.cwiseAbs().maxCoeff() > 0.0) {
+    for (int row = 0; row < modes.ports(); ++row) {
+      text += fmt::format("{}{},,", kResidual, names[static_cast<std::size_t>(row)]);
+      for (int port = 0; port < modes.ports(); ++port) {
+        text += fmt::format(",{}", modes.residual(row, port));
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+}  // namespace hotfire

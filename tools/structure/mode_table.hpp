@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hotfire {
+
+/// The most engines whose modes this build reads: what the plant of model/ has room for.
+inline constexpr int kMostEngines = 4;
+
+/// The most rows a table may have.
+inline constexpr std::size_t kMostModes = 10'000;
+
+/// A set of vehicle modes, mass-normalised, and the flexibility that no mode of it has. The ports are those of
+/// model::ModeTable: two attach points an engine, then two rotations of its gimbal.
+struct ModeSet {
+  int engines = 0;
+  Eigen::VectorXd frequency;      ///< [Hz], one a mode
+  Eigen::VectorXd damping_ratio;  ///< one a mode
+  Eigen::MatrixXd shape;          ///< a row a port, a column a mode [kg^-0.5], rotations [rad/(m kg^0.5)]
+  Eigen::MatrixXd residual;       ///< a row and a column a port [m/N], [rad/N], [rad/(N m)]
+
+  int ports() const { return 4 * engines; }
+  int modes() const { return static_cast<int>(frequency.size()); }
+};
+
+/// Names of the ports of `engines` engines in order: attach.pitch1, attach.yaw1, attach.pitch2 ..., gimbal.pitch1 ...
+std::vector<std::string> port_names(int engines);
+
+/// Reads and checks a mode table. CSV; lines that begin with # are comments. The first other line names the columns:
+///   mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,...,gimbal.pitch1,gimbal.yaw1,...
+/// in any order, with all four shapes of every engine from 1 up. A row is a mode, numbered, or `residual.PORT`: a row of the
+/// residual flexibility, its frequency and damping left empty. Without such rows the residual is zero.
+///
+/// Throws FileError naming file, line, value and what is allowed: a missing or unknown column, a missing shape, a frequency
+/// that is not above 0, a damping ratio outside [0, 1), a mode given twice, a number that is not finite, a residual that is
+/// not complete, symmetric and positive semidefinite, more engines than `kMostEngines`.
+ModeSet load_modes(const std::filesystem::path& path);
+
+/// The text that `load_modes` reads back bit for bit, after `comment` lines.
+std::string mode_table_text(const ModeSet& modes, const std::vector<std::string>& comments);
+
+}  // namespace hotfire
