@@ -78,6 +78,17 @@ TEST(Reduction, KeepsNoMoreModesThanTheGoalNeedsAndSaysWhenItIsMissed) {
   CHECK_FALSE(missed.reaches(starved));
 }
 
+TEST(Reduction, NeedsNoModeForAnAttachPointThatNoneMoves) {
+  ModeSet full = synthetic_vehicle(3, 9);
+  full.shape.row(2).setZero();
+  const Reduction reduction = reduce(full, {});
+  DOUBLES_EQUAL(0.0, reduction.error[2], 0.0);
+  CHECK_TRUE(reduction.reaches({}));
+  const Reduction none = reduce(reduce(full, {.lowest = 1.0, .highest = 20.0, .error = 0.01, .most = 0}).modes, {});
+  LONGS_EQUAL(0, none.modes.modes());
+  CHECK_TRUE(none.reaches({}));
+}
+
 TEST_GROUP(SyntheticVehicle){};
 
 TEST(SyntheticVehicle, IsShippedAsItsGeneratorMakesIt) {
