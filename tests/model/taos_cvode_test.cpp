@@ -51,6 +51,8 @@ ReferenceTaos reference_of(const Taos::Parameters& parameters, const Taos& plant
     ReferenceAxis& reference = taos.axes[k];
     reference.arm = plant.axis(i).parameters().actuator.moment_arm;
     reference.load_stiffness = axis.structure.stiffness;
+    reference.damping = axis.engine.viscous_damping;
+    reference.duct_stiffness = axis.engine.duct_stiffness;
     if (axis.effects.active[index_in<model::SoftStiffness>(Taos::Effects{})]) {
       const auto& soft = std::get<index_in<model::SoftStiffness>(Taos::Effects{})>(axis.effects.values);
       reference.soft = ReferenceAxis::Soft::compliance;
@@ -181,6 +183,18 @@ TEST(TaosAgreesWithCvode, OnAStructureSofterThanTheActuators) {
   Taos::Parameters parameters = smooth();
   parameters.modes.shape.topRows<2>() *= 4.0;
   check_agreement("soft structure", parameters);
+}
+
+// Stiff ducts and strong damping on a mount that turns: what they hand to the vehicle, and take from its rotation, is then a
+// good part of the engine's torque.
+TEST(TaosAgreesWithCvode, OnAMountThatTurnsUnderStiffDucts) {
+  Taos::Parameters parameters = smooth();
+  parameters.modes.shape.bottomRows<2>() *= 100.0;
+  for (auto& axis : parameters.axes) {
+    axis.engine.duct_stiffness = 4e6;
+    axis.engine.viscous_damping = 1e5;
+  }
+  check_agreement("turning mount", parameters);
 }
 
 TEST(TaosAgreesWithCvode, WithTheSecondOrderWhereItIsSmooth) {
