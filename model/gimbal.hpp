@@ -106,8 +106,9 @@ struct BearingFriction {
   }
 };
 
-/// Vibration of the bearing as slip velocity, simulated: a sine amplitude sin(2 pi frequency t) about both angles. The law
-/// `vibrated_lugre` is the same physics, averaged: a gimbal has one of the two.
+/// Vibration of the bearing as slip velocity, simulated: its mean over each step, so a step must be short against its
+/// period. A sine amplitude sin(2 pi frequency t) about both angles. The law `vibrated_lugre` is the same physics, averaged:
+/// a gimbal has one of the two.
 template <class S>
 struct BearingVibration {
   using Scalar = S;
