@@ -66,6 +66,7 @@ class Axis {
     Eigen::Matrix<S, 8, 1> y = Eigen::Matrix<S, 8, 1>::Zero();
     Eigen::Matrix<S, 6, 1> inputs = Eigen::Matrix<S, 6, 1>::Zero();
     S spring_force{0.0};
+    S clock{0.0};  ///< time of the record [s], for effects that depend on it
     EffectStates<S, List> effects{};
     std::array<S, 3> measured{};
   };
@@ -144,8 +145,10 @@ class Axis {
   template <class Around>
   State settled(const S& command, const Around& around) const {
     State state;
-    settle<Site::command>(parameters_.effects, state.effects, Signal<S>{command, h_});
-    state.inputs(kCommand) = parameters_.actuator.moment_arm * command;
+    const Signal<S> always{command, h_};
+    settle<Site::command>(parameters_.effects, state.effects, always);
+    const S angle = pass_through<Site::command>(parameters_.effects, state.effects, always, Keep::no).value;
+    state.inputs(kCommand) = parameters_.actuator.moment_arm * angle;
     constexpr double kWidth = 1e-6;  // m, rad: far below what a sensor sees
     const auto flow_at = [&](const S& piston) {
       state.y(kPiston) = piston;
@@ -167,7 +170,7 @@ class Axis {
   /// Opens a step with the command [rad] held.
   void begin(State& state, const S& command, Advance& advance) const noexcept {
     const Signal<S> angle =
-        pass_through<Site::command>(parameters_.effects, state.effects, Signal<S>{command, h_}, Keep::yes);
+        pass_through<Site::command>(parameters_.effects, state.effects, Signal<S>{command, h_, mid_step(state)}, Keep::yes);
     state.inputs(kCommand) = parameters_.actuator.moment_arm * angle.value;
     advance.start = state.y;
     advance.free = times(hold_.transition, state.y);
@@ -185,24 +188,31 @@ class Axis {
     const Actuator<S>& actuator = parameters_.actuator;
     const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
     const auto& effects = parameters_.effects;
+    const S time = mid_step(state);
 
     const S linear_command = valve.position_gain * (state.inputs(kCommand) - mean(kPiston)) -
                              valve.pressure_feedback_gain * (mean(kPressure) - mean(kWashout));
     const S saturated = clamp_symmetric<S>(linear_command, S{1.0});
     state.inputs(kValveCommand) =
-        pass_through<Site::valve_command>(effects, state.effects, Signal<S>{saturated, h_}, keep).value - linear_command;
+        pass_through<Site::valve_command>(effects, state.effects, Signal<S>{saturated, h_, time}, keep).value -
+        linear_command;
 
-    const S opening = pass_through<Site::valve>(effects, state.effects, Signal<S>{mean(kOpening), h_}, keep).value;
+    const S opening = pass_through<Site::valve>(effects, state.effects, Signal<S>{mean(kOpening), h_, time}, keep).value;
     const S drop = 1.0 - sign_of(opening) * mean(kPressure) / actuator.supply_pressure;
     // The root's slope is infinite at zero drop; below 1e-9 of the supply the flow is zero to any sensor.
     const S flow = valve.rated_flow * opening * sqrt(value_of(drop) > 1e-9 ? drop : S{1e-9});
-    state.inputs(kFlow) = flow - valve.rated_flow * mean(kOpening) +
-                          sum_over<Site::flow>(effects, state.effects,
-                                               Hydraulics<S>{mean(kPressure), opening, actuator.supply_pressure, h_}, keep);
+    state.inputs(kFlow) =
+        flow - valve.rated_flow * mean(kOpening) +
+        sum_over<Site::flow>(effects, state.effects,
+                             Hydraulics<S>{mean(kPressure), opening, actuator.supply_pressure, h_, time}, keep);
 
     const S piston_rate = advance.rate(kPiston, h_);
+    const S net_flow = valve.rated_flow * mean(kOpening) + state.inputs(kFlow) - actuator.piston_area * piston_rate -
+                       actuator.leakage * mean(kPressure);
+    state.inputs(kFlow) +=
+        sum_over<Site::pressure>(effects, state.effects, Compression<S>{net_flow, mean(kPressure), h_}, keep);
     state.inputs(kPistonForce) = sum_over<Site::piston>(
-        effects, state.effects, Motion<S>{mean(kPiston), piston_rate, piston_rate, piston_compliance_, h_}, keep);
+        effects, state.effects, Motion<S>{mean(kPiston), piston_rate, piston_rate, piston_compliance_, h_, time}, keep);
 
     const S attach_motion = sum_over<Site::structure>(effects, state.effects, AttachPoint<S>{state.spring_force, h_}, keep);
     const S linear_deflection = mean(kPiston) - actuator.moment_arm * mean(kAngle);
@@ -222,9 +232,9 @@ class Axis {
   void evaluate_engine(State& state, const Advance& advance, const Spring<S>& spring, const Around& around,
                        Keep keep) const noexcept {
     const S angle_rate = advance.rate(kAngle, h_);
-    const S own =
-        sum_over<Site::engine_torque>(parameters_.effects, state.effects,
-                                      Motion<S>{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_}, keep);
+    const S own = sum_over<Site::engine_torque>(
+        parameters_.effects, state.effects,
+        Motion<S>{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, mid_step(state)}, keep);
     state.inputs(kEngineTorque) =
         torque_around(around, own) - (spring.arm - parameters_.actuator.moment_arm) * state.spring_force;
   }
@@ -238,6 +248,7 @@ class Axis {
   /// Closes a step with the inputs of the last evaluation.
   void finish(State& state, const Advance& advance) const noexcept {
     state.y = advance.free + times(hold_.response, state.inputs);
+    state.clock += h_;
     measure(state);
   }
 
@@ -256,6 +267,8 @@ class Axis {
   static S torque_around(const Uncoupled&, const S& own) noexcept { return own; }
   static S torque_around(const Coupling<S>& around, const S& own) noexcept { return own + around.torque; }
 
+  S mid_step(const State& state) const noexcept { return state.clock + 0.5 * h_; }
+
   static Advance at_rest(const State& state) noexcept { return {state.y, state.y, state.y}; }
 
   /// At rest at `angle`, with the piston where `state` has it: the force of the load spring beyond what the engine's torques
@@ -266,11 +279,11 @@ class Axis {
     const S nominal = parameters_.actuator.moment_arm;
     state.y(kAngle) = angle;
     // Keeps what the springs remember of their force, so that the search in them starts near it.
-    const Spring<S> geometry = pass_through<Site::load_spring>(
-        effects, state.effects,
+    const Spring<S> still =
         spring_around(around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
-                                        parameters_.actuator.stiffness, parameters_.structure.stiffness, h_}),
-        Keep::yes);
+                                        parameters_.actuator.stiffness, parameters_.structure.stiffness, h_});
+    settle<Site::load_spring>(effects, state.effects, still);
+    const Spring<S> geometry = pass_through<Site::load_spring>(effects, state.effects, still, Keep::yes);
     const S torque = sum_over<Site::engine_torque>(effects, state.effects,
                                                    Motion<S>{angle, S{0.0}, S{0.0}, engine_compliance_, h_}, Keep::no);
     const S needed = (parameters_.engine.duct_stiffness * angle + torque_around(around, torque)) / geometry.arm;

@@ -39,6 +39,7 @@ class Direct {
   struct State {
     Eigen::Matrix<S, 2, 1> y = Eigen::Matrix<S, 2, 1>::Zero();  ///< position, velocity
     Eigen::Matrix<S, 2, 1> inputs = Eigen::Matrix<S, 2, 1>::Zero();
+    S clock{0.0};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
     std::array<S, 1> measured{};
   };
@@ -79,10 +80,12 @@ class Direct {
       const Eigen::Matrix<S, 2, 1> end = free + times(hold_.response, state.inputs);
       const S velocity = (end(0) - start(0)) / h_;
       state.inputs(1) = sum_over<Site::mass_force>(
-          parameters_.effects, state.effects, Motion<S>{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_},
+          parameters_.effects, state.effects,
+          Motion<S>{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_, state.clock + 0.5 * h_},
           pass + 1 == kPasses ? Keep::yes : Keep::no);
     }
     state.y = free + times(hold_.response, state.inputs);
+    state.clock += h_;
     state.measured[0] = state.y(0);
   }
 

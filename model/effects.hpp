@@ -17,6 +17,7 @@
 #include "model/effects/soft_stiffness.hpp"
 #include "model/effects/structural_mode.hpp"
 #include "model/effects/torque_offset.hpp"
+#include "model/effects/unlisted.hpp"
 #include "model/effects/valve_asymmetry.hpp"
 #include "model/effects/valve_deadband.hpp"
 #include "model/effects/valve_hysteresis.hpp"
@@ -26,9 +27,12 @@ namespace hotfire::model {
 
 /// Every effect a hydraulic axis knows. At serial sites the order is the order of application: along the signal path for
 /// command and valve; at the load spring geometry first, then play, then the spring itself.
-using SimplexEffects = EffectList<RateLimit, CommandDelay, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage,
-                                  PistonFriction, VariableMomentArm, Backlash, SoftStiffness, StructuralMode, GimbalFriction,
-                                  DuctHardening, TorqueOffset, SensorNonlinearity, SensorLag>;
+using SimplexEffects =
+    EffectList<RateLimit, CommandDelay, UnlistedSignal<Site::command>, UnlistedSignal<Site::valve_command>, ValveHysteresis,
+               UnlistedSignal<Site::valve>, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
+               PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
+               StructuralMode, GimbalFriction, DuctHardening, TorqueOffset, UnlistedMotion<Site::engine_torque>,
+               SensorNonlinearity, UnlistedReading, SensorLag>;
 
 /// Every effect an axis of a `Vehicle` knows, in the same order. What the vehicle has itself is not among them: geometry,
 /// modes and the friction of its bearings. Nor is the transport delay, whose memory of 16 KiB an axis would be most of its
@@ -37,6 +41,7 @@ using VehicleEffects = EffectList<RateLimit, ValveHysteresis, ValveDeadband, Val
                                   Backlash, SoftStiffness, DuctHardening, TorqueOffset, SensorNonlinearity, SensorLag>;
 
 /// Every effect a force-driven mass knows.
-using DirectEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, PositionDamping>;
+using DirectEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, PositionDamping,
+                                 UnlistedMotion<Site::mass_force>>;
 
 }  // namespace hotfire::model

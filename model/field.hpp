@@ -36,6 +36,7 @@ struct TableField {
   std::string_view meaning;
   Table Owner::*member;
   unsigned options = ~0U;
+  double y_typical = 0.0;  ///< size of what a fit looks for; 0 where no fit moves the points
 };
 
 /// A bounded field whose range does not include negative values is searched in logarithms, others linearly.

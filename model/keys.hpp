@@ -46,4 +46,20 @@ void visit_parameters(Parameters& parameters, F&& f) {
   });
 }
 
+/// Calls `f(value)` for every number of a plant that a fit may move: those of `visit_parameters` in its order, then the
+/// ordinates of every effect's tables.
+template <class Parameters, class F>
+void visit_values(Parameters& parameters, F&& f) {
+  visit_parameters(parameters, [&](const Key&, const auto&, auto& value) { f(value); });
+  visit_effects(parameters, [&]<class E>(std::size_t, auto& values) {
+    using Values = std::remove_cvref_t<decltype(values)>;
+    if constexpr (requires { Values::tables(); }) {
+      // Tables of one effect share their points, whatever they depend on.
+      for (auto& y : (values.*Values::tables().front().member).y) {
+        f(y);
+      }
+    }
+  });
+}
+
 }  // namespace hotfire::model

@@ -6,11 +6,24 @@
 namespace hotfire::model {
 
 /// Where in the equations an effect enters. `sensor` is followed by the channel's name in configuration and report.
-enum class Site { command, valve_command, valve, flow, piston, load_spring, structure, engine_torque, mass_force, sensor };
+enum class Site {
+  command,
+  valve_command,
+  valve,
+  flow,
+  pressure,
+  piston,
+  load_spring,
+  structure,
+  engine_torque,
+  mass_force,
+  sensor
+};
 
 constexpr std::string_view site_name(Site site) noexcept {
-  constexpr std::array<std::string_view, 10> names{"command",     "valve_command", "valve",         "flow",       "piston",
-                                                   "load_spring", "structure",     "engine_torque", "mass_force", "sensor"};
+  constexpr std::array<std::string_view, 11> names{"command",       "valve_command", "valve",       "flow",
+                                                   "pressure",      "piston",        "load_spring", "structure",
+                                                   "engine_torque", "mass_force",    "sensor"};
   return names[static_cast<std::size_t>(site)];
 }
 
@@ -27,6 +40,7 @@ struct Signal {
   using Scalar = S;
   S value;
   double h;
+  S time{0.0};  ///< of the record, mean over the step [s]
 };
 
 /// What an effect sees at the site `flow`: it returns flow added into the extend chamber [m^3/s].
@@ -36,6 +50,16 @@ struct Hydraulics {
   S load_pressure;  ///< mean over the step [Pa]
   S opening;        ///< mean spool position after the valve's effects [-]
   S supply_pressure;
+  double h;
+  S time{0.0};  ///< of the record, mean over the step [s]
+};
+
+/// What an effect sees at the site `pressure`: it returns flow added to the flow that builds up pressure [m^3/s].
+template <class S>
+struct Compression {
+  using Scalar = S;
+  S net_flow;       ///< into the extend chamber less what the piston takes, mean over the step [m^3/s]
+  S load_pressure;  ///< mean over the step [Pa]
   double h;
 };
 
@@ -53,6 +77,7 @@ struct Motion {
   S free_velocity;
   S compliance;
   double h;
+  S time{0.0};  ///< of the record, mean over the step [s]
 };
 
 /// What an effect sees at the site `load_spring`, and returns with its change. The spring's force is
@@ -86,6 +111,10 @@ struct SiteInput {
 template <class S>
 struct SiteInput<Site::flow, S> {
   using type = Hydraulics<S>;
+};
+template <class S>
+struct SiteInput<Site::pressure, S> {
+  using type = Compression<S>;
 };
 template <class S>
 struct SiteInput<Site::piston, S> {

@@ -14,6 +14,10 @@ constexpr double kStartSpan = 4.0;
 /// Worth less than one effective sample; it keeps a parameter that the data do not determine from wandering off to a bound.
 constexpr double kWeakPrior = 2.302585;
 
+/// Standard deviation of a table's ordinate about zero before any data, in typical sizes: keeps a point that the records
+/// never reach where its neighbours leave it.
+constexpr double kOrdinatePrior = 100.0;
+
 /// Calls `f(index, effect's values)` for one effect of the list.
 template <class Parameters, class F>
 void visit_effect(Parameters& parameters, std::size_t wanted, F&& f) {
@@ -36,6 +40,36 @@ double van_der_corput(std::size_t n, std::size_t base) {
   return value;
 }
 
+/// Adds the ordinates of the candidate's table, if it has one with points. `index` is that of the first table's first.
+template <class Parameters>
+void append_ordinates(const Parameters& base, const Candidate& candidate, const Scales& scales, std::size_t index,
+                      std::vector<FreeParameter>& free) {
+  model::visit_effects(base, [&]<class E>(std::size_t effect, const auto& values) {
+    using Values = std::remove_cvref_t<decltype(values)>;
+    if constexpr (requires { Values::tables(); }) {
+      for (const auto& field : Values::tables()) {
+        const auto& table = values.*field.member;
+        if (effect != candidate.effect || field.y_typical <= 0.0 || (field.options >> candidate.option & 1U) == 0) {
+          continue;
+        }
+        for (int i = 0; i < table.points; ++i) {
+          FreeParameter parameter;
+          parameter.index = index + static_cast<std::size_t>(i);
+          parameter.key = "effects." + std::string(E::name) + "." + std::string(field.y_name) + "." + std::to_string(i);
+          parameter.unit = field.y_unit;
+          parameter.unit_size = field.y_typical * size_of_unit(field.y_unit, scales);
+          parameter.lower = field.y_lower;
+          parameter.upper = field.y_upper;
+          parameter.prior_deviation = kOrdinatePrior;
+          parameter.is_ordinate = true;
+          free.push_back(std::move(parameter));
+        }
+      }
+      index += (values.*Values::tables().front().member).y.size();
+    }
+  });
+}
+
 bool is_frequency(const FreeParameter& parameter) { return parameter.unit == "Hz"; }
 
 }  // namespace
@@ -45,6 +79,9 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
   std::vector<Candidate> candidates;
   const PlainParameters<Family> neutral;
   model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto& values) {
+    if constexpr (requires { E::is_unlisted; }) {
+      return;
+    }
     const int variants = std::max<int>(1, static_cast<int>(E::options.size()));
     for (int option = 0; option < variants; ++option) {
       Candidate candidate{index, option, std::string(E::name), "", std::string(model::site_name(E::site))};
@@ -119,6 +156,7 @@ std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base
     }
     ++index;
   });
+  append_ordinates(base, candidate, scales, index, free);
   return free;
 }
 
@@ -163,7 +201,8 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
       }
     }
   }
-  const std::size_t covers = has_frequency ? 2 : (own.size() == 1 ? 6 : 10);
+  const bool all_ordinates = std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+  const std::size_t covers = all_ordinates ? 1 : has_frequency ? 2 : (own.size() == 1 ? 6 : 10);
   std::vector<std::vector<double>> starts;
   for (const double frequency : tried) {
     for (std::size_t n = 0; n < covers; ++n) {
@@ -175,6 +214,8 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
         const double factor = std::pow(kStartSpan, 2.0 * place - 1.0);
         if (is_frequency(parameter)) {
           u.push_back(parameter.coordinate(std::clamp(frequency, parameter.lower, parameter.upper)));
+        } else if (parameter.is_ordinate) {
+          u.push_back(parameter.coordinate(n == 0 ? 0.0 : parameter.unit_size * factor));
         } else if (parameter.scale == FreeParameter::Scale::linear) {
           u.push_back(n % 2 == 0 ? factor : -factor);
         } else {

@@ -254,7 +254,9 @@ template <class Family>
 json curve_of(const PlainParameters<Family>& parameters, std::size_t effect, const Reach& reach) {
   json result;
   model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
-    if (index == effect) {
+    if constexpr (requires { E::is_unlisted; }) {
+      return;
+    } else if (index == effect) {
       result = effect_curve<E>(parameters, values, reach);
     }
   });

@@ -3,6 +3,7 @@
 #include <ceres/jet.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -16,15 +17,23 @@ namespace hotfire::explain {
 
 namespace {
 
+/// Where an experiment starts, as far as it is not told by its first command.
+template <class S>
+struct Start {
+  std::array<S, 3> values{S(0.0), S(0.0), S(0.0)};  ///< position, velocity, clock: FreeParameter::state
+};
+
 template <class Plant, class S>
-typename Plant::State initial_state(const Plant& plant, const Experiment& experiment, const S& position, const S& velocity) {
-  if constexpr (Plant::topology == "direct") {
-    return plant.moving(position, velocity);
-  } else {
-    static_cast<void>(position);
-    static_cast<void>(velocity);
-    return plant.steady(S(experiment.input.front()));
-  }
+typename Plant::State initial_state(const Plant& plant, const Experiment& experiment, const Start<S>& start) {
+  typename Plant::State state = [&] {
+    if constexpr (Plant::topology == "direct") {
+      return plant.moving(start.values[0], start.values[1]);
+    } else {
+      return plant.steady(S(experiment.input.front()));
+    }
+  }();
+  state.clock = start.values[2];
+  return state;
 }
 
 /// Constants of a run for every sampling period that occurs.
@@ -41,17 +50,18 @@ std::map<double, std::unique_ptr<Plant>> plants_by_period(const Dataset& data, c
   return plants;
 }
 
-/// The initial state of an experiment: as measured and at rest, or what free parameters say.
+/// The start of an experiment: as measured and at rest, or what free parameters say.
 template <class S, class Value>
-std::pair<S, S> start_of(const Dataset& data, std::size_t experiment, std::span<const FreeParameter> free, Value&& value) {
-  std::pair<S, S> start{S(0.0), S(0.0)};
+Start<S> start_of(const Dataset& data, std::size_t experiment, std::span<const FreeParameter> free, Value&& value) {
+  Start<S> start;
   const auto& first = data.experiments[experiment].measured.front();
   if (!first.empty()) {
-    start.first = S(first.front());
+    start.values[0] = S(first.front());
   }
+  start.values[2] = S(data.experiments[experiment].start);
   for (std::size_t k = 0; k < free.size(); ++k) {
     if (free[k].experiment == static_cast<int>(experiment)) {
-      (free[k].state == 0 ? start.first : start.second) = value(k);
+      start.values[static_cast<std::size_t>(free[k].state)] = value(k);
     }
   }
   return start;
@@ -84,7 +94,7 @@ struct Chunk {
   template <class Parameters>
   void seed_all(Parameters& parameters) const {
     std::size_t index = 0;
-    model::visit_parameters(parameters, [&](const model::Key&, const auto&, Dual& value) {
+    model::visit_values(parameters, [&](Dual& value) {
       for (const std::size_t k : wanted) {
         if (!free[k].is_initial_state() && free[k].index == index) {
           seed(k, value);
@@ -177,7 +187,7 @@ typename Evaluator<Family>::Parameters Evaluator<Family>::with_values(const Para
                                                                       std::span<const double> u) {
   Parameters parameters = base;
   std::size_t index = 0;
-  model::visit_parameters(parameters, [&](const model::Key&, const auto&, double& value) {
+  model::visit_values(parameters, [&](double& value) {
     for (std::size_t k = 0; k < free.size(); ++k) {
       if (!free[k].is_initial_state() && free[k].index == index) {
         value = free[k].value(u[k]);
@@ -204,8 +214,8 @@ bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreePara
       channel.resize(experiment.rows());
     }
     const auto& plant = *plants.at(experiment.period);
-    const auto [position, velocity] = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
-    auto state = initial_state(plant, experiment, position, velocity);
+    const auto start = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
+    auto state = initial_state(plant, experiment, start);
     if (!run(plant, experiment.input, state, steps_of(experiment), [&](std::size_t row, const auto& readings) {
           for (std::size_t c = 0; c < readings.size(); ++c) {
             channels[c][row] = readings[c];
@@ -274,9 +284,9 @@ bool Evaluator<Family>::differentiate_by(const Parameters& base, std::span<const
     const std::size_t e = task / chunks.size();
     const Experiment& experiment = data_.experiments[e];
     const auto& plant = *plants[task % chunks.size()].at(experiment.period);
-    const auto [position, velocity] = start_of<Dual>(data_, e, free, [&](std::size_t k) { return chunk.value(k); });
+    const auto start = start_of<Dual>(data_, e, free, [&](std::size_t k) { return chunk.value(k); });
     // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
-    auto state = std::make_unique<typename Plant::State>(initial_state(plant, experiment, position, velocity));
+    auto state = std::make_unique<typename Plant::State>(initial_state(plant, experiment, start));
     Writer writer(data_, stretches_, e, residual, jacobian);
     bool good = true;
     const bool ran = run(plant, experiment.input, *state, steps_of(experiment), [&](std::size_t row, const auto& readings) {

@@ -14,7 +14,7 @@ struct FreeParameter {
     linear        ///< p = unit u
   };
 
-  std::size_t index = 0;  ///< in the order of model::visit_parameters; for an initial state see `initial_state`
+  std::size_t index = 0;  ///< in the order of model::visit_values; for an initial state see `state`
   std::string key;        ///< "engine.inertia", "effects.gimbal_friction.coulomb_torque"
   std::string unit;
   Scale scale = Scale::linear;
@@ -26,7 +26,8 @@ struct FreeParameter {
   double prior_center = 0.0;     ///< in u
   double prior_deviation = 0.0;  ///< in u; 0: no prior
   int experiment = -1;           ///< for an initial state: which record; -1 otherwise
-  int state = -1;                ///< for an initial state: 0 position, 1 velocity
+  int state = -1;                ///< for an initial state: 0 position, 1 velocity, 2 clock
+  bool is_ordinate = false;      ///< of an unlisted term's table: a search starts it at zero
 
   double value(double u) const {
     switch (scale) {

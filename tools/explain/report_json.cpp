@@ -7,9 +7,11 @@
 #include <map>
 
 #include "tools/explain/curve.hpp"
+#include "tools/explain/report_evidence.hpp"
 #include "tools/explain/statistics.hpp"
 #include "tools/explain/trace.hpp"
 #include "tools/explain/uncertainty.hpp"
+#include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
 
@@ -21,8 +23,6 @@ using nlohmann::json;
 constexpr double kTied = 10.0;
 /// Lags of the residual's autocorrelation, in rows.
 constexpr std::size_t kLags = 100;
-/// Points of a trace that the page draws: more hide each other.
-constexpr std::size_t kTracePoints = 3000;
 
 json interval_of(const Estimate& estimate) {
   return estimate.interval ? json{estimate.interval->first, estimate.interval->second} : json(nullptr);
@@ -66,6 +66,12 @@ std::map<std::string, std::string> meanings() {
   return result;
 }
 
+/// A table's ordinate means what its table does; its place in it is the number that ends its key.
+std::string meaning_of(const std::map<std::string, std::string>& meanings, const FreeParameter& free) {
+  const auto known = meanings.find(free.key);
+  return known != meanings.end() ? known->second : "point " + free.key.substr(free.key.rfind('.') + 1) + " of the table";
+}
+
 template <class Family>
 json effects_json(const Dataset& data, const SearchResult<Family>& found, const std::vector<Estimate>& estimated) {
   json effects = json::array();
@@ -75,7 +81,11 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
   const auto meaning = meanings<Family>();
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
-    json effect{{"name", candidate.name}, {"site", candidate.site}, {"parameters", json::object()}};
+    const bool unlisted = is_unlisted<Family>(candidate);
+    json effect{{"name", unlisted ? "unlisted" : candidate.name}, {"site", candidate.site}, {"parameters", json::object()}};
+    if (unlisted) {
+      effect["key"] = candidate.name;
+    }
     if (!candidate.option_name.empty()) {
       effect["law"] = candidate.option_name;
     }
@@ -87,7 +97,7 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
                                                                 {"unit", free.unit},
                                                                 {"ci95", interval_of(estimated[k])},
                                                                 {"identified", estimated[k].interval.has_value()},
-                                                                {"meaning", meaning.at(free.key)}};
+                                                                {"meaning", meaning_of(meaning, free)}};
       }
     }
     effect["evidence"] = {{"held_out_error_drop_percent", 100.0 * (1.0 - kept.trial.held_out_ratio)},
@@ -104,7 +114,16 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
         effect["alternatives"].push_back(alternative);
       }
     }
-    effect["curve"] = curve_of<Family>(parameters, candidate.effect, reach);
+    if (const auto table = unlisted ? table_of<Family>(parameters, candidate) : std::nullopt) {
+      effect["looks_like"] = in_words(*table);
+      effect["curve"] = {{"x_label", table->x_name},
+                         {"x_unit", table->x_unit},
+                         {"y_label", table->meaning},
+                         {"y_unit", table->y_unit},
+                         {"series", {{{"name", "as found"}, {"x", table->x}, {"y", table->y}}}}};
+    } else if (!unlisted) {
+      effect["curve"] = curve_of<Family>(parameters, candidate.effect, reach);
+    }
     effects.push_back(std::move(effect));
   }
   return effects;
@@ -175,64 +194,11 @@ json residual_json(const Dataset& data, const SearchResult<Family>& found) {
   return {{"white", white}, {"unexplained_percent", unexplained}, {"autocorrelation", autocorrelations}};
 }
 
-/// Equation in which an effect of a site shows.
-std::string equation_of(const std::string& site) {
-  if (site == "mass_force") {
-    return "mass";
-  }
-  return site == "engine_torque" || site == "load_spring" || site == "structure" ? "engine" : "flow";
-}
-
-/// What each equation leaves over, in words, and the points of the one in which the first effect found shows; of the loudest
-/// where none was found.
-json trace_json(const std::vector<Trace>& traces, const std::vector<Kept>& kept) {
-  if (traces.empty()) {
-    return nullptr;
-  }
-  const auto own = std::find_if(traces.begin(), traces.end(), [&](const Trace& trace) {
-    return !kept.empty() && trace.equation == equation_of(kept.front().trial.candidate.site);
-  });
-  const Trace& strongest = own == traces.end() ? traces.front() : *own;
-  json points{{"x_label", strongest.depends_on.label},
-              {"x_unit", strongest.depends_on.unit},
-              {"y_label", strongest.missing.label},
-              {"y_unit", strongest.missing.unit},
-              {"x", json::array()},
-              {"y", json::array()}};
-  const std::size_t rows = strongest.depends_on.values.size();
-  const std::size_t every = std::max<std::size_t>(1, rows / kTracePoints);
-  for (std::size_t i = 0; i < rows; i += every) {
-    points["x"].push_back(strongest.depends_on.values[i]);
-    points["y"].push_back(strongest.missing.values[i]);
-  }
-  std::string text;
-  for (const Trace& trace : traces) {
-    text += (text.empty() ? "" : " ") + in_words(trace);
-  }
-  const std::string site = strongest.equation == "engine" ? "engine_torque"
-                           : strongest.equation == "mass" ? "mass_force"
-                                                          : "flow";
-  return {{"site", site}, {"text", text}, {"points", points}};
-}
-
-json search_json(const std::vector<Trial>& trials) {
-  json search = json::array();
-  for (const Trial& trial : trials) {
-    json row{{"round", trial.round},     {"candidate", trial.candidate.name}, {"delta_bic", trial.delta_criterion},
-             {"seconds", trial.seconds}, {"decision", trial.decision},        {"reason", trial.reason}};
-    if (!trial.candidate.option_name.empty()) {
-      row["law"] = trial.candidate.option_name;
-    }
-    if (trial.refined) {
-      row["held_out_rms_ratio"] = trial.held_out_ratio;
-    }
-    search.push_back(std::move(row));
-  }
-  return search;
-}
-
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
+  if (!found.kept.empty() && is_unlisted<Family>(found.kept.front().trial.candidate)) {
+    return "unlisted-effect";
+  }
   if (reaches_noise(data, found.explained.prediction)) {
     return found.kept.empty() ? "nothing-missing" : "explained";
   }
@@ -256,6 +222,16 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
         "Nothing is missing: within its tolerances the declared model meets the records down to the sensor noise "
         "({:.2f} times its rms on held-out data).",
         after);
+  }
+  if (verdict == "unlisted-effect" && !found.kept.empty()) {
+    const Candidate& candidate = found.kept.front().trial.candidate;
+    std::string dependence = candidate.option_name;
+    std::replace(dependence.begin(), dependence.end(), '_', ' ');
+    return fmt::format(
+        "The records hold an effect that is in no list: a term at {} that is told by {} takes the error on held-out data "
+        "from "
+        "{:.1f} to {:.2f} times the noise; the explained model holds it as a table.",
+        candidate.site, dependence, before, after);
   }
   if (verdict == "unlisted-effect") {
     return fmt::format(

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "tools/explain/parallel.hpp"
+#include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
 
@@ -131,9 +132,17 @@ double Screening<Family>::eliminated_cost(const Eigen::VectorXd& residual, Eigen
 template <class Family>
 Fitted<Family> Screening<Family>::with_candidate(const Candidate& candidate) const {
   Fitted<Family> fitted = current_;
-  activate<Family>(fitted.base, candidate);
+  if (is_unlisted<Family>(candidate)) {
+    activate_unlisted<Family>(fitted.base, candidate, evaluator_.data(), current_);
+  } else {
+    activate<Family>(fitted.base, candidate);
+  }
   const auto own = effect_parameters<Family>(fitted.base, candidate, scales_);
   fitted.free.insert(fitted.free.end(), own.begin(), own.end());
+  if (is_periodic(candidate)) {
+    const auto phases = clocks(evaluator_.data());
+    fitted.free.insert(fitted.free.end(), phases.begin(), phases.end());
+  }
   return fitted;
 }
 
@@ -167,9 +176,13 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
   const Fitted<Family> fitted = with_candidate(candidate);
   const std::vector<FreeParameter> own(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
                                        fitted.free.end());
-  // One or two parameters have one valley; more have several.
-  const std::size_t valleys = own.size() > 2 ? kStarts : 1;
-  const std::vector<Start> starts = scan(fitted, start_points(own, frequencies_));
+  // One or two parameters, or a table, have one valley; more have several.
+  const bool one_valley =
+      own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+  const std::size_t valleys = one_valley ? 1 : kStarts;
+  const std::vector<Start> starts =
+      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(), frequencies_)
+                                          : start_points(own, frequencies_));
   for (std::size_t i = 0; i < starts.size() && i < valleys; ++i) {
     Screened<Family> screened{candidate, fitted, 0.0, 0.0, true};
     screened.fitted.u = starts[i].u;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "tools/explain/uncertainty.hpp"
+#include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
 
@@ -22,19 +22,12 @@ constexpr double kStrongEvidence = 10.0;
 constexpr double kLeastHeldOutDrop = 0.01;
 /// How many effects of a round are fitted jointly with everything else.
 constexpr std::size_t kFinalists = 3;
+/// How many unlisted terms are fitted jointly, and what share of the listed effects' held-out error a term of unknown law
+/// has to stay below to take their place: it has more freedom than any of them.
+constexpr std::size_t kUnlistedFinalists = 4;
+constexpr double kUnlistedAdvantage = 0.7;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
 constexpr double kCloseVariant = 0.9;
-/// How much is spent on a joint fit: `iterations` of the solver for each of up to `passes` tempers, until the cost changes
-/// by less than `tolerance`.
-struct Effort {
-  int iterations;
-  int passes;
-  double tolerance;
-};
-constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
-constexpr Effort kRanking{8, 2, 1e-4};  ///< which finalist is best
-constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
-
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by.
 template <class Family>
 constexpr Resolution kRankingResolution = std::is_same_v<Family, DirectFamily> ? Resolution::fine : Resolution::coarse;
@@ -81,9 +74,9 @@ class Search {
       start.free.push_back(state);
     }
     start.temper.assign(data_.channels.size(), 1.0);
-    result_.declared = assess(start);
+    result_.declared = assess(fine_, options_.threads, start);
     options_.watch.progress("calibrating the declared parameters within their tolerances");
-    result_.calibrated = refined(fine_, start, kFinal);
+    result_.calibrated = refined(fine_, options_.threads, start, kFinal);
     result_.explained = result_.calibrated;
     for (int round = 1; round <= options_.most_effects && !options_.watch.interrupted(); ++round) {
       if (reaches_noise(data_, result_.explained.prediction) || !add_effect(round)) {
@@ -91,43 +84,14 @@ class Search {
       }
       take_out_superfluous(round);
     }
+    if (!reaches_noise(data_, result_.explained.prediction) && !options_.watch.interrupted()) {
+      look_for_unlisted();
+    }
     result_.interrupted = options_.watch.interrupted();
     return std::move(result_);
   }
 
  private:
-  Assessed<Family> assess(const Fitted<Family>& fitted) const {
-    Assessed<Family> assessed{fitted, {}, {}};
-    fine_.predict(fitted.base, fitted.free, fitted.u, options_.threads, assessed.prediction);
-    assessed.goodness = goodness(data_, assessed.prediction);
-    return assessed;
-  }
-
-  /// Joint fit of everything that is free, tempered by its own residuals until the temper stands; assessed with fine steps.
-  Assessed<Family> refined(const Evaluator<Family>& evaluator, Fitted<Family> fitted, const Effort& effort) const {
-    Prediction prediction;
-    if (!evaluator.predict(fitted.base, fitted.free, fitted.u, options_.threads, prediction)) {
-      return {};
-    }
-    fitted.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
-    for (int pass = 0; pass < effort.passes; ++pass) {
-      if (!fit(evaluator, fitted, {effort.iterations, options_.threads, effort.tolerance, nullptr}) ||
-          !evaluator.predict(fitted.base, fitted.free, fitted.u, options_.threads, prediction)) {
-        return {};
-      }
-      const Temper next = temper_of<Family>(evaluator, evaluator.residuals(prediction));
-      double change = 0.0;
-      for (std::size_t c = 0; c < next.size(); ++c) {
-        change = std::max(change, std::abs(std::log(next[c] / fitted.temper[c])));
-      }
-      fitted.temper = next;
-      if (change < 0.2) {
-        break;
-      }
-    }
-    return assess(fitted);
-  }
-
   /// One round. False if no candidate is supported.
   bool add_effect(int round) {
     const Fitted<Family>& current = result_.explained.model;
@@ -171,7 +135,7 @@ class Search {
       }
       options_.watch.progress(fmt::format("round {}: fitting {} with everything else", round, label(screened[i].candidate)));
       const double began = seconds_now();
-      finalists[i] = refined(coarse_, screened[i].fitted, kRanking);
+      finalists[i] = refined(coarse_, options_.threads, screened[i].fitted, kRanking);
       trials[i].seconds += seconds_now() - began;
     }
     const std::optional<std::size_t> best = rank(trials, finalists, order);
@@ -179,7 +143,8 @@ class Search {
     if (best) {
       winner = polished(round, std::move(finalists[*best]), trials[*best].candidate);
       options_.watch.progress(fmt::format("round {}: fitting {} with fine steps", round, label(trials[*best].candidate)));
-      winner = simplest(refined(fine_, winner.model, kFinal), trials[*best].candidate);
+      winner = simplest_law(fine_, scales_, options_.threads, refined(fine_, options_.threads, winner.model, kFinal),
+                            trials[*best].candidate);
       for (const std::size_t i : order) {
         const Assessed<Family>& finalist = i == *best ? winner : finalists[i];
         if (winner.good() && finalist.good()) {
@@ -208,51 +173,55 @@ class Search {
     return true;
   }
 
-  /// Where the data leave a parameter of the winner's law open, a law without that parameter, started from the winner's
-  /// values, takes its place if the BIC is no worse. Sets `candidate` to the law that stays.
-  Assessed<Family> simplest(Assessed<Family> winner, Candidate& candidate) const {
-    if (!winner.good()) {
-      return winner;
-    }
-    const auto own = effect_parameters<Family>(winner.model.base, candidate, scales_);
-    const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
-    const auto is_open = [&](const FreeParameter& parameter) {
-      for (std::size_t k = 0; k < estimated.size(); ++k) {
-        if (winner.model.free[k].key == parameter.key) {
-          return !estimated[k].interval.has_value();
-        }
-      }
-      return false;
-    };
-    for (const Candidate& law : all_candidates<Family>(data_)) {
-      const auto fewer = effect_parameters<Family>(winner.model.base, law, scales_);
-      const auto has = [&](const FreeParameter& parameter) {
-        return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.key == parameter.key; });
-      };
-      const bool leaves_out_only_open = std::all_of(
-          own.begin(), own.end(), [&](const FreeParameter& parameter) { return has(parameter) || is_open(parameter); });
-      if (law.effect != candidate.effect || fewer.size() >= own.size() || !leaves_out_only_open) {
+  /// The listed effects leave more than noise: a term of unknown law, at one site, instead of them. It takes their place
+  /// where it leaves clearly less on held-out data: listed effects that imitate it would be wrong names.
+  void look_for_unlisted() {
+    const int round = result_.trials.empty() ? 1 : result_.trials.back().round + 1;
+    const Screening<Family> screening(coarse_, result_.calibrated.model, scales_, options_.threads);
+    const auto screened = screening.run(unlisted_candidates<Family>(data_), "unlisted", options_.watch);
+    std::vector<Trial> trials;
+    std::vector<Assessed<Family>> finalists;
+    std::optional<std::size_t> best;
+    for (const Screened<Family>& s : screened) {
+      trials.push_back(
+          {round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "behind the finalists in screening"});
+      finalists.emplace_back();
+      if (finalists.size() > kUnlistedFinalists || s.criterion > -kStrongEvidence || options_.watch.interrupted()) {
         continue;
       }
-      Fitted<Family> reduced = winner.model;
-      activate<Family>(reduced.base, law);
-      for (std::size_t k = reduced.free.size(); k-- > 0;) {
-        const std::string& key = reduced.free[k].key;
-        const auto is = [&](const FreeParameter& parameter) { return parameter.key == key; };
-        if (std::any_of(own.begin(), own.end(), is) && std::none_of(fewer.begin(), fewer.end(), is)) {
-          reduced.free.erase(reduced.free.begin() + static_cast<std::ptrdiff_t>(k));
-          reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
-        }
+      options_.watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
+      finalists.back() = refined(fine_, options_.threads, s.fitted, kFinal);
+      if (!finalists.back().good()) {
+        continue;
       }
-      const Assessed<Family> simple = refined(fine_, reduced, kFinal);
-      const std::vector<ChannelFit>& effective = winner.goodness.fitted;
-      if (simple.good() && information_criterion(simple.goodness.fitted, effective, simple.model.free.size()) <=
-                               information_criterion(effective, effective, winner.model.free.size())) {
-        candidate = law;
-        return simple;
+      trials.back().refined = true;
+      trials.back().delta_criterion =
+          criterion_change(finalists.back(), result_.calibrated, finalists.back().goodness.fitted);
+      trials.back().held_out_ratio = held_out_ratio(finalists.back(), result_.calibrated);
+      trials.back().reason =
+          fmt::format("leaves {:.1f} % of the calibrated model's held-out error", 100.0 * trials.back().held_out_ratio);
+      if (!best || trials.back().held_out_ratio < trials[*best].held_out_ratio) {
+        best = trials.size() - 1;
       }
     }
-    return winner;
+    const double listed = held_out_ratio(result_.explained, result_.calibrated);
+    const bool supported = best && trials[*best].delta_criterion < -kStrongEvidence &&
+                           trials[*best].held_out_ratio < kUnlistedAdvantage * listed;
+    if (supported) {
+      trials[*best].decision = "kept";
+      if (!result_.kept.empty()) {
+        trials[*best].reason += fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * listed);
+      }
+      Kept kept{trials[*best], {}};
+      for (std::size_t i = 0; i < trials.size(); ++i) {
+        if (i != *best && trials[i].refined) {
+          kept.alternatives.push_back(trials[i]);
+        }
+      }
+      result_.kept = {std::move(kept)};
+      result_.explained = std::move(finalists[*best]);
+    }
+    result_.trials.insert(result_.trials.end(), trials.begin(), trials.end());
   }
 
   /// What an effect looked like while another was missing may be a local minimum now.
@@ -260,7 +229,7 @@ class Search {
     for (std::size_t i = 0; i + 1 < result_.kept.size(); ++i) {
       Assessed<Family> again = polished(round, result_.explained, result_.kept[i].trial.candidate);
       if (Goodness::combined(again.goodness.fitted) < Goodness::combined(result_.explained.goodness.fitted)) {
-        again = refined(fine_, again.model, kFinal);
+        again = refined(fine_, options_.threads, again.model, kFinal);
         if (again.good()) {
           result_.explained = std::move(again);
         }
@@ -274,7 +243,7 @@ class Search {
       return winner;
     }
     options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
-    Fitted<Family> anchor = without(winner.model, candidate);
+    Fitted<Family> anchor = without_effect(winner.model, candidate);
     anchor.base.effects.active[candidate.effect] = true;
     std::vector<double> own;
     const std::string prefix = "effects." + candidate.name + ".";
@@ -288,7 +257,7 @@ class Search {
     if (!again.good) {
       return winner;
     }
-    Assessed<Family> other = refined(coarse_, again.fitted, kRanking);
+    Assessed<Family> other = refined(coarse_, options_.threads, again.fitted, kRanking);
     const bool better =
         other.good() && Goodness::combined(other.goodness.fitted) < Goodness::combined(winner.goodness.fitted);
     return better ? other : winner;
@@ -321,9 +290,8 @@ class Search {
   void compare(Trial& trial, const Assessed<Family>& with, const std::vector<ChannelFit>& effective) const {
     const Assessed<Family>& current = result_.explained;
     trial.refined = true;
-    trial.delta_criterion = information_criterion(with.goodness.fitted, effective, with.model.free.size()) -
-                            information_criterion(current.goodness.fitted, effective, current.model.free.size());
-    trial.held_out_ratio = Goodness::combined(with.goodness.held_out) / Goodness::combined(current.goodness.held_out);
+    trial.delta_criterion = criterion_change(with, current, effective);
+    trial.held_out_ratio = held_out_ratio(with, current);
   }
 
   static std::string reason(const Trial& trial, const Trial* best) {
@@ -342,20 +310,6 @@ class Search {
                        -trial.delta_criterion);
   }
 
-  static Fitted<Family> without(const Fitted<Family>& model, const Candidate& candidate) {
-    Fitted<Family> rest = model;
-    rest.base = Evaluator<Family>::with_values(rest.base, rest.free, rest.u);
-    rest.base.effects.active[candidate.effect] = false;
-    const std::string prefix = "effects." + candidate.name + ".";
-    for (std::size_t k = rest.free.size(); k-- > 0;) {
-      if (rest.free[k].key.starts_with(prefix)) {
-        rest.free.erase(rest.free.begin() + static_cast<std::ptrdiff_t>(k));
-        rest.u.erase(rest.u.begin() + static_cast<std::ptrdiff_t>(k));
-      }
-    }
-    return rest;
-  }
-
   /// Takes out every earlier effect without which the model is as good.
   void take_out_superfluous(int round) {
     for (std::size_t i = 0; i + 1 < result_.kept.size();) {
@@ -365,7 +319,8 @@ class Search {
                   "taken out", "the model is as good without it since a later effect was added"};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
       const double began = seconds_now();
-      Assessed<Family> rest = refined(coarse_, without(result_.explained.model, trial.candidate), kCheck);
+      Assessed<Family> rest =
+          refined(coarse_, options_.threads, without_effect(result_.explained.model, trial.candidate), kCheck);
       if (rest.good()) {
         compare(trial, rest, rest.goodness.fitted);
       }
@@ -373,7 +328,7 @@ class Search {
       if (rest.good() && trial.delta_criterion < kStrongEvidence) {
         result_.trials.push_back(trial);
         result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
-        result_.explained = refined(fine_, rest.model, kFinal);
+        result_.explained = refined(fine_, options_.threads, rest.model, kFinal);
       } else {
         ++i;
       }

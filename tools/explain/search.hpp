@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/explain/assessed.hpp"
 #include "tools/explain/screening.hpp"
 
 namespace hotfire::explain {
@@ -23,16 +24,6 @@ struct Trial {
 struct Kept {
   Trial trial;
   std::vector<Trial> alternatives;
-};
-
-/// A fitted model with what it predicts and how well.
-template <class Family>
-struct Assessed {
-  Fitted<Family> model;
-  Prediction prediction;
-  Goodness goodness;
-
-  bool good() const { return !prediction.empty(); }
 };
 
 template <class Family>

@@ -112,6 +112,7 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
       const auto [start, speed] = fitted_start(*direct, inputs, fit_start_rows);
       state = plant.moving(start, speed);
     }
+    state.clock = inputs.start;
     return run_open_loop(plant, state, inputs, steps);
   }
   if (fit_start_rows > 0) {
@@ -120,7 +121,9 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
   }
   require_channel(inputs, "command", "the model is driven by it");
   const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), step);
-  return run_open_loop(plant, plant.steady(inputs.find("command")->values.front()), inputs, steps);
+  auto state = plant.steady(inputs.find("command")->values.front());
+  state.clock = inputs.start;
+  return run_open_loop(plant, state, inputs, steps);
 }
 
 }  // namespace hotfire

@@ -58,12 +58,40 @@ bool used_by(const Field& field, int option) {
   return (field.options >> static_cast<unsigned>(option) & 1U) != 0;
 }
 
+template <class E>
+constexpr bool is_unlisted() {
+  return requires { E::is_unlisted; };
+}
+
+/// A table of five points over what the smooth inputs of these tests run through; ordinates are `size` times the typical
+/// one, all positive and rising if it is positive.
+template <class E, class S>
+void lay_table(ParamsOf<E, S>& params, int option, double size) {
+  for (const auto& field : ParamsOf<E, S>::tables()) {
+    if ((field.options >> static_cast<unsigned>(option) & 1U) == 0) {
+      continue;
+    }
+    const double reach = field.x_name == "load_pressure" ? 4e6
+                         : field.x_name == "rate"        ? 5.0
+                         : field.x_name == "deflection"  ? 5e-4
+                                                         : 0.1;
+    auto& table = params.*field.member;
+    table.points = 5;
+    for (std::size_t i = 0; i < 5; ++i) {
+      table.x[i] = S(reach * (0.5 * static_cast<double>(i) - 1.0));
+      table.y[i] = S(size * field.y_typical * (0.2 + static_cast<double>(i)));
+    }
+  }
+}
+
 /// The defaults of an effect set to one of its laws. A law given by a table gets the declared stiffness at two loads.
 template <class E, class S>
 ParamsOf<E, S> neutral(int option) {
   ParamsOf<E, S> params;
   params.option = option;
-  if constexpr (requires { params.table; }) {
+  if constexpr (is_unlisted<E>()) {
+    lay_table<E, S>(params, option, 0.0);
+  } else if constexpr (requires { params.table; }) {
     params.table.points = 2;
     params.table.x = {S(0.0), S(1e4)};
     params.table.y = {S(1.2e8), S(1.2e8)};
@@ -80,7 +108,9 @@ ParamsOf<E, S> typical(int option) {
       params.*field.member = S(field.typical);
     }
   }
-  if constexpr (requires { params.table; }) {
+  if constexpr (is_unlisted<E>()) {
+    lay_table<E, S>(params, option, 1.0);
+  } else if constexpr (requires { params.table; }) {
     params.table.points = 4;
     params.table.x = {S(0.0), S(4e3), S(1.2e4), S(3e4)};
     params.table.y = {S(4e7), S(6e7), S(1e8), S(1.2e8)};
@@ -122,7 +152,9 @@ ParamsOf<E, double> random_params(Random& random, int option) {
   for (const auto& field : ParamsOf<E, double>::fields()) {
     params.*field.member = random_value(random, field);
   }
-  if constexpr (requires { params.table; }) {
+  if constexpr (is_unlisted<E>()) {
+    lay_table<E, double>(params, option, random.either_sign(1e-3, 1e3));
+  } else if constexpr (requires { params.table; }) {
     const auto bounds = ParamsOf<E, double>::tables()[0];
     params.table.points = 5;
     double load = 0.0;
@@ -141,6 +173,10 @@ inline void randomise(Random& random, model::Hydraulics<double>& input) {
   input.load_pressure = random.either_sign(1.0, 1e8);
   input.opening = random.either_sign(1e-9, 10.0);
   input.supply_pressure = 20.684e6;
+}
+inline void randomise(Random& random, model::Compression<double>& input) {
+  input.net_flow = random.either_sign(1e-9, 1.0);
+  input.load_pressure = random.either_sign(1.0, 1e8);
 }
 inline void randomise(Random& random, model::Motion<double>& input) {
   input.position = random.either_sign(1e-9, 10.0);
@@ -170,13 +206,17 @@ InputOf<E, double> random_input(Random& random, double h) {
 // A slow smooth motion through every site's usual range, sampled at time t [s].
 inline void move(double t, model::Signal<double>& input) {
   input.value = 0.1 * std::sin(7.0 * t) + 0.03 * std::sin(31.0 * t);
+  input.time = t;
 }
 inline void move(double t, model::Hydraulics<double>& input) {
-  input = {4e6 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), 20.684e6, input.h};
+  input = {4e6 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), 20.684e6, input.h, t};
+}
+inline void move(double t, model::Compression<double>& input) {
+  input = {1e-3 * std::cos(9.0 * t), 4e6 * std::sin(9.0 * t), input.h};
 }
 inline void move(double t, model::Motion<double>& input) {
   const double velocity = 0.7 * std::cos(7.0 * t) + 0.3 * std::cos(20.0 * t);
-  input = {0.1 * std::sin(7.0 * t) + 0.015 * std::sin(20.0 * t), velocity, velocity, 1e-12, input.h};
+  input = {0.1 * std::sin(7.0 * t) + 0.015 * std::sin(20.0 * t), velocity, velocity, 1e-12, input.h, t};
 }
 inline void move(double t, model::Spring<double>& input) {
   input = reference_spring(5e-4 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), input.h);
@@ -194,15 +234,19 @@ InputOf<E, double> smooth_input(double t, double h) {
 // The same input in another scalar.
 template <class S>
 model::Signal<S> converted(const model::Signal<double>& in) {
-  return {S(in.value), in.h};
+  return {S(in.value), in.h, S(in.time)};
 }
 template <class S>
 model::Hydraulics<S> converted(const model::Hydraulics<double>& in) {
-  return {S(in.load_pressure), S(in.opening), S(in.supply_pressure), in.h};
+  return {S(in.load_pressure), S(in.opening), S(in.supply_pressure), in.h, S(in.time)};
+}
+template <class S>
+model::Compression<S> converted(const model::Compression<double>& in) {
+  return {S(in.net_flow), S(in.load_pressure), in.h};
 }
 template <class S>
 model::Motion<S> converted(const model::Motion<double>& in) {
-  return {S(in.position), S(in.velocity), S(in.free_velocity), S(in.compliance), in.h};
+  return {S(in.position), S(in.velocity), S(in.free_velocity), S(in.compliance), in.h, S(in.time)};
 }
 template <class S>
 model::Spring<S> converted(const model::Spring<double>& in) {

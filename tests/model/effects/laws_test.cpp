@@ -93,7 +93,9 @@ TEST(EveryEffect, HasAParameterForEachOfItsLaws) {
       used = used || used_by(field, option);
     }
     if constexpr (requires { ParamsOf<E, double>::tables(); }) {
-      used = used || used_by(ParamsOf<E, double>::tables()[0], option);
+      for (const auto& table : ParamsOf<E, double>::tables()) {
+        used = used || used_by(table, option);
+      }
     }
     CHECK_TRUE_TEXT(used, label<E>(option).c_str());
   });

@@ -1,0 +1,128 @@
+#include "tools/explain/assessed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/explain/uncertainty.hpp"
+
+namespace hotfire::explain {
+
+template <class Family>
+Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted) {
+  Assessed<Family> assessed{fitted, {}, {}};
+  fine.predict(fitted.base, fitted.free, fitted.u, threads, assessed.prediction);
+  assessed.goodness = goodness(fine.data(), assessed.prediction);
+  return assessed;
+}
+
+template <class Family>
+Assessed<Family> refined(const Evaluator<Family>& evaluator, unsigned threads, Fitted<Family> fitted, const Effort& effort) {
+  Prediction prediction;
+  if (!evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
+    return {};
+  }
+  fitted.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
+  for (int pass = 0; pass < effort.passes; ++pass) {
+    if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, nullptr}) ||
+        !evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
+      return {};
+    }
+    const Temper next = temper_of<Family>(evaluator, evaluator.residuals(prediction));
+    double change = 0.0;
+    for (std::size_t c = 0; c < next.size(); ++c) {
+      change = std::max(change, std::abs(std::log(next[c] / fitted.temper[c])));
+    }
+    fitted.temper = next;
+    if (change < 0.2) {
+      break;
+    }
+  }
+  return assess(Evaluator<Family>(evaluator.data(), Resolution::fine), threads, fitted);
+}
+
+template <class Family>
+Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate) {
+  Fitted<Family> rest = model;
+  rest.base = Evaluator<Family>::with_values(rest.base, rest.free, rest.u);
+  rest.base.effects.active[candidate.effect] = false;
+  const std::string prefix = "effects." + candidate.name + ".";
+  for (std::size_t k = rest.free.size(); k-- > 0;) {
+    if (rest.free[k].key.starts_with(prefix)) {
+      rest.free.erase(rest.free.begin() + static_cast<std::ptrdiff_t>(k));
+      rest.u.erase(rest.u.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+  return rest;
+}
+
+template <class Family>
+double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
+                        const std::vector<ChannelFit>& effective) {
+  return information_criterion(with.goodness.fitted, effective, with.model.free.size()) -
+         information_criterion(without.goodness.fitted, effective, without.model.free.size());
+}
+
+template <class Family>
+double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without) {
+  return Goodness::combined(with.goodness.held_out) / Goodness::combined(without.goodness.held_out);
+}
+
+template <class Family>
+Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scales, unsigned threads, Assessed<Family> winner,
+                              Candidate& candidate) {
+  if (!winner.good()) {
+    return winner;
+  }
+  const auto own = effect_parameters<Family>(winner.model.base, candidate, scales);
+  const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
+  const auto is_open = [&](const FreeParameter& parameter) {
+    for (std::size_t k = 0; k < estimated.size(); ++k) {
+      if (winner.model.free[k].key == parameter.key) {
+        return !estimated[k].interval.has_value();
+      }
+    }
+    return false;
+  };
+  for (const Candidate& law : all_candidates<Family>(fine.data())) {
+    const auto fewer = effect_parameters<Family>(winner.model.base, law, scales);
+    const auto has = [&](const FreeParameter& parameter) {
+      return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.key == parameter.key; });
+    };
+    const bool leaves_out_only_open = std::all_of(
+        own.begin(), own.end(), [&](const FreeParameter& parameter) { return has(parameter) || is_open(parameter); });
+    if (law.effect != candidate.effect || fewer.size() >= own.size() || !leaves_out_only_open) {
+      continue;
+    }
+    Fitted<Family> reduced = winner.model;
+    activate<Family>(reduced.base, law);
+    for (std::size_t k = reduced.free.size(); k-- > 0;) {
+      const std::string& key = reduced.free[k].key;
+      const auto is = [&](const FreeParameter& parameter) { return parameter.key == key; };
+      if (std::any_of(own.begin(), own.end(), is) && std::none_of(fewer.begin(), fewer.end(), is)) {
+        reduced.free.erase(reduced.free.begin() + static_cast<std::ptrdiff_t>(k));
+        reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    }
+    const Assessed<Family> simple = refined(fine, threads, reduced, kFinal);
+    const std::vector<ChannelFit>& effective = winner.goodness.fitted;
+    if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {
+      candidate = law;
+      return simple;
+    }
+  }
+  return winner;
+}
+
+#define HOTFIRE_INSTANTIATE(Family)                                                                                   \
+  template Assessed<Family> assess(const Evaluator<Family>&, unsigned, const Fitted<Family>&);                        \
+  template Assessed<Family> refined(const Evaluator<Family>&, unsigned, Fitted<Family>, const Effort&);               \
+  template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
+  template double criterion_change(const Assessed<Family>&, const Assessed<Family>&, const std::vector<ChannelFit>&); \
+  template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);                                   \
+  template Assessed<Family> simplest_law(const Evaluator<Family>&, const Scales&, unsigned, Assessed<Family>, Candidate&);
+
+HOTFIRE_INSTANTIATE(SimplexFamily)
+HOTFIRE_INSTANTIATE(DirectFamily)
+#undef HOTFIRE_INSTANTIATE
+
+}  // namespace hotfire::explain

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "tools/explain/candidates.hpp"
+#include "tools/explain/fit.hpp"
+#include "tools/explain/goodness.hpp"
+
+namespace hotfire::explain {
+
+/// A fitted model with what it predicts and how well.
+template <class Family>
+struct Assessed {
+  Fitted<Family> model;
+  Prediction prediction;
+  Goodness goodness;
+
+  bool good() const { return !prediction.empty(); }
+};
+
+/// How much is spent on a joint fit: `iterations` of the solver for each of up to `passes` tempers, until the cost changes
+/// by less than `tolerance`.
+struct Effort {
+  int iterations;
+  int passes;
+  double tolerance;
+};
+inline constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
+inline constexpr Effort kRanking{8, 2, 1e-4};  ///< which finalist is best
+inline constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
+
+/// A model with what it predicts under fine steps.
+template <class Family>
+Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted);
+
+/// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper stands. Not good() if
+/// the start or the end can't be simulated.
+template <class Family>
+Assessed<Family> refined(const Evaluator<Family>& evaluator, unsigned threads, Fitted<Family> fitted, const Effort& effort);
+
+/// A model without one of its effects, the other parameters where they are.
+template <class Family>
+Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate);
+
+/// BIC of one model less that of another, on given effective samples.
+template <class Family>
+double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
+                        const std::vector<ChannelFit>& effective);
+
+/// Held-out error of one model over that of another, all channels together.
+template <class Family>
+double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without);
+
+/// Where the data leave a parameter of the winner's law open, a law without that parameter, started from the winner's
+/// values, takes its place if the BIC is no worse. Sets `candidate` to the law that stays.
+template <class Family>
+Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scales, unsigned threads, Assessed<Family> winner,
+                              Candidate& candidate);
+
+}  // namespace hotfire::explain

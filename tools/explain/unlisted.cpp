@@ -1,0 +1,281 @@
+#include "tools/explain/unlisted.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "model/step_size.hpp"
+#include "tools/simulate/run.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+constexpr int kPoints = 11;
+constexpr int kPhases = 6;
+
+/// Least and largest value of a quantity over all records.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void take(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+/// What the plant runs through, by the name that the tables give it.
+struct Extents {
+  Extent input, opening, pressure, position, rate, angle, angle_rate, deflection, time;
+
+  const Extent& of(model::Site site, std::string_view x_name) const {
+    using model::Site;
+    const bool is_rate = x_name == "rate";
+    if (x_name == "time") {
+      return time;
+    }
+    if (x_name == "load_pressure") {
+      return pressure;
+    }
+    if (x_name == "deflection") {
+      return deflection;
+    }
+    switch (site) {
+      case Site::command:
+        return input;
+      case Site::valve_command:
+      case Site::valve:
+      case Site::flow:
+        return opening;
+      case Site::engine_torque:
+        return is_rate ? angle_rate : angle;
+      default:
+        return x_name == "angle" ? angle : is_rate ? rate : position;
+    }
+  }
+};
+
+void take_state(Extents& extents, const model::Simplex<double>& plant, const model::Simplex<double>::State& state) {
+  using Plant = model::Simplex<double>;
+  extents.opening.take(state.y(Plant::kOpening));
+  extents.pressure.take(state.y(Plant::kPressure));
+  extents.position.take(state.y(Plant::kPiston));
+  extents.rate.take(state.y(Plant::kPistonRate));
+  extents.angle.take(state.y(Plant::kAngle));
+  extents.angle_rate.take(state.y(Plant::kAngleRate));
+  extents.deflection.take(state.y(Plant::kPiston) - plant.parameters().actuator.moment_arm * state.y(Plant::kAngle));
+}
+
+void take_state(Extents& extents, const model::Direct<double>&, const model::Direct<double>::State& state) {
+  extents.position.take(state.y(0));
+  extents.rate.take(state.y(1));
+}
+
+template <class Family>
+Extents extents_of(const Dataset& data, const PlainParameters<Family>& parameters) {
+  using Plant = typename Family::template Plant<double>;
+  Extents extents;
+  for (const Experiment& experiment : data.experiments) {
+    const int steps = model::steps_per_period(experiment.period);
+    const Plant plant(parameters, experiment.period / steps);
+    typename Plant::State state = [&] {
+      if constexpr (Plant::topology == "direct") {
+        return plant.moving(experiment.start_state.position, experiment.start_state.velocity);
+      } else {
+        return plant.steady(experiment.input.front());
+      }
+    }();
+    run(plant, experiment.input, state, steps, [&](std::size_t row, const auto&) {
+      take_state(extents, plant, state);
+      extents.input.take(experiment.input[row]);
+    });
+    extents.time.take(experiment.start);
+    extents.time.take(experiment.start + static_cast<double>(experiment.rows()) * experiment.period);
+  }
+  return extents;
+}
+
+template <class Table>
+void lay_points(Table& table, Extent extent, bool is_rate) {
+  if (!(extent.high > extent.low)) {
+    extent = {extent.low - 1e-6, extent.low + 1e-6};
+  }
+  table.points = kPoints;
+  const double reach = std::max(std::abs(extent.low), std::abs(extent.high));
+  for (int i = 0; i < kPoints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double place = static_cast<double>(i) / (kPoints - 1);
+    const double about_zero = 2.0 * place - 1.0;
+    table.x[k] = is_rate ? reach * about_zero * std::abs(about_zero) : extent.low + (extent.high - extent.low) * place;
+    table.y[k] = 0.0;
+  }
+}
+
+template <class E>
+constexpr bool is_unlisted_effect() {
+  return requires { E::is_unlisted; };
+}
+
+}  // namespace
+
+template <class Family>
+bool is_unlisted(const Candidate& candidate) {
+  bool result = false;
+  const PlainParameters<Family> neutral;
+  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
+    result = result || (index == candidate.effect && is_unlisted_effect<E>());
+  });
+  return result;
+}
+
+bool is_periodic(const Candidate& candidate) { return candidate.option_name == "periodic"; }
+
+template <class Family>
+std::vector<Candidate> unlisted_candidates(const Dataset& data) {
+  std::vector<Candidate> candidates;
+  const PlainParameters<Family> neutral;
+  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
+    if constexpr (is_unlisted_effect<E>()) {
+      for (std::size_t option = 0; option < E::options.size(); ++option) {
+        Candidate candidate{index, static_cast<int>(option), std::string(E::name), std::string(E::options[option]),
+                            std::string(model::site_name(E::site))};
+        if constexpr (E::site == model::Site::sensor) {
+          if (!data.used[option]) {
+            continue;
+          }
+          candidate.site = fmt::format("{}.{}", candidate.site, candidate.option_name);
+        }
+        candidates.push_back(std::move(candidate));
+      }
+    }
+  });
+  return candidates;
+}
+
+template <class Family>
+void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& candidate, const Dataset& data,
+                       const Fitted<Family>& current) {
+  activate<Family>(parameters, candidate);
+  const Extents extents = extents_of<Family>(data, Evaluator<Family>::with_values(current.base, current.free, current.u));
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    if constexpr (is_unlisted_effect<E>()) {
+      using Values = std::remove_cvref_t<decltype(values)>;
+      if (index != candidate.effect) {
+        return;
+      }
+      for (const auto& field : Values::tables()) {
+        if ((field.options >> candidate.option & 1U) != 0) {
+          lay_points(values.*field.member, extents.of(E::site, field.x_name), field.x_name == "rate");
+        }
+      }
+    }
+  });
+}
+
+template <class Family>
+std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, const Candidate& candidate) {
+  std::optional<FittedTable> result;
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
+    if constexpr (is_unlisted_effect<E>()) {
+      using Values = std::remove_cvref_t<decltype(values)>;
+      for (const auto& field : Values::tables()) {
+        const auto& table = values.*field.member;
+        if (index == candidate.effect && (field.options >> candidate.option & 1U) != 0 && table.points > 0) {
+          result = FittedTable{std::string(field.x_name),
+                               std::string(field.x_unit),
+                               std::string(field.y_name),
+                               std::string(field.y_unit),
+                               std::string(field.meaning),
+                               {table.x.begin(), table.x.begin() + table.points},
+                               {table.y.begin(), table.y.begin() + table.points}};
+        }
+      }
+    }
+  });
+  return result;
+}
+
+std::vector<FreeParameter> clocks(const Dataset& data) {
+  std::vector<FreeParameter> free;
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    FreeParameter parameter;
+    parameter.key = fmt::format("{}.clock", data.experiments[e].name);
+    parameter.unit = std::string("s");
+    parameter.experiment = static_cast<int>(e);
+    parameter.state = 2;
+    parameter.lower = -1e9;
+    parameter.upper = 1e9;
+    free.push_back(std::move(parameter));
+  }
+  return free;
+}
+
+template <class Family>
+std::vector<std::vector<double>> periodic_starts(const Evaluator<Family>& evaluator, const Fitted<Family>& with_candidate,
+                                                 std::size_t own_first, const std::vector<double>& frequencies) {
+  const std::size_t records = evaluator.data().experiments.size();
+  const std::span<const FreeParameter> own = std::span(with_candidate.free).subspan(own_first);
+  std::vector<std::vector<double>> starts;
+  for (const double frequency : frequencies) {
+    for (const double factor : {0.3, 1.0, 3.0}) {
+      std::vector<double> best_clock(records, 0.0);
+      std::vector<double> least(records, std::numeric_limits<double>::infinity());
+      std::vector<double> point;
+      for (int phase = 0; phase < kPhases; ++phase) {
+        point.clear();
+        const double clock = static_cast<double>(phase) / (kPhases * frequency);
+        for (const FreeParameter& parameter : own) {
+          const double value = parameter.unit == "Hz"         ? frequency
+                               : parameter.is_initial_state() ? clock
+                                                              : factor * parameter.unit_size;
+          point.push_back(parameter.coordinate(value));
+        }
+        std::vector<double> u(with_candidate.u.begin(), with_candidate.u.begin() + static_cast<std::ptrdiff_t>(own_first));
+        u.insert(u.end(), point.begin(), point.end());
+        Prediction prediction;
+        if (!evaluator.predict(with_candidate.base, with_candidate.free, u, 1, prediction)) {
+          continue;
+        }
+        const Eigen::VectorXd residual = evaluator.residuals(prediction);
+        std::vector<double> cost(records, 0.0);
+        for (const Stretch& s : evaluator.stretches()) {
+          cost[s.experiment] +=
+              residual.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
+                  .squaredNorm();
+        }
+        for (std::size_t e = 0; e < records; ++e) {
+          if (cost[e] < least[e]) {
+            least[e] = cost[e];
+            best_clock[e] = clock;
+          }
+        }
+      }
+      for (std::size_t k = 0; k < point.size(); ++k) {
+        if (own[k].is_initial_state()) {
+          point[k] = own[k].coordinate(best_clock[static_cast<std::size_t>(own[k].experiment)]);
+        }
+      }
+      starts.push_back(std::move(point));
+    }
+  }
+  return starts;
+}
+
+#define HOTFIRE_INSTANTIATE(Family)                                                                                  \
+  template bool is_unlisted<Family>(const Candidate&);                                                               \
+  template std::optional<FittedTable> table_of<Family>(const PlainParameters<Family>&, const Candidate&);            \
+  template std::vector<Candidate> unlisted_candidates<Family>(const Dataset&);                                       \
+  template void activate_unlisted<Family>(PlainParameters<Family>&, const Candidate&, const Dataset&,                \
+                                          const Fitted<Family>&);                                                    \
+  template std::vector<std::vector<double>> periodic_starts<Family>(const Evaluator<Family>&, const Fitted<Family>&, \
+                                                                    std::size_t, const std::vector<double>&);
+
+HOTFIRE_INSTANTIATE(SimplexFamily)
+HOTFIRE_INSTANTIATE(DirectFamily)
+#undef HOTFIRE_INSTANTIATE
+
+}  // namespace hotfire::explain

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tools/explain/candidates.hpp"
+#include "tools/explain/fit.hpp"
+#include "tools/explain/unlisted_words.hpp"
+
+namespace hotfire::explain {
+
+/// Every dependence of every unlisted term of the family that the records can show, with its table's points laid over the
+/// range that `current` runs through on them: evenly over a position, a pressure or time; closer about zero over a rate,
+/// where friction bends. All ordinates are zero.
+template <class Family>
+std::vector<Candidate> unlisted_candidates(const Dataset& data);
+
+/// Activates an unlisted candidate in parameters that hold the effects of `current`.
+template <class Family>
+void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& candidate, const Dataset& data,
+                       const Fitted<Family>& current);
+
+/// True if the candidate's effect is a term of unknown law.
+template <class Family>
+bool is_unlisted(const Candidate& candidate);
+
+/// The table that an unlisted effect of `parameters` uses; none where its law has no table.
+template <class Family>
+std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, const Candidate& candidate);
+
+/// True if the candidate is a sinusoid of time, whose phase is each record's own.
+bool is_periodic(const Candidate& candidate);
+
+/// The clock of every record at its first row, as free parameters: the phase of a sinusoid.
+std::vector<FreeParameter> clocks(const Dataset& data);
+
+/// Starts for a sinusoid: at each of the frequencies, with the clock of every record at the best of six phases.
+template <class Family>
+std::vector<std::vector<double>> periodic_starts(const Evaluator<Family>& evaluator, const Fitted<Family>& with_candidate,
+                                                 std::size_t own_first, const std::vector<double>& frequencies);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,72 @@
+#include "tools/explain/unlisted_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Share of a curve's square from which on it is called by one property alone.
+constexpr double kMostly = 0.9;
+
+double at(const FittedTable& table, double x) {
+  const auto above = std::upper_bound(table.x.begin(), table.x.end(), x);
+  if (above == table.x.begin()) {
+    return table.y.front();
+  }
+  if (above == table.x.end()) {
+    return table.y.back();
+  }
+  const auto k = static_cast<std::size_t>(above - table.x.begin());
+  const double share = (x - table.x[k - 1]) / (table.x[k] - table.x[k - 1]);
+  return table.y[k - 1] + share * (table.y[k] - table.y[k - 1]);
+}
+
+}  // namespace
+
+std::string in_words(const FittedTable& table) {
+  const auto [least, most] = std::minmax_element(table.y.begin(), table.y.end());
+  std::string text = fmt::format("{} from {:.3g} to {:.3g} {} over {} from {:.3g} to {:.3g} {}", table.meaning, *least,
+                                 *most, table.y_unit, table.x_name, table.x.front(), table.x.back(), table.x_unit);
+  constexpr int kSamples = 101;
+  const double reach = std::min(std::abs(table.x.front()), std::abs(table.x.back()));
+  const bool two_sided = table.x.front() < 0.0 && table.x.back() > 0.0;
+  double mean = 0.0;
+  double square = 0.0;
+  double odd = 0.0;
+  double even = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double place = static_cast<double>(i) / (kSamples - 1);
+    const double y = at(table, table.x.front() + place * (table.x.back() - table.x.front()));
+    mean += y / kSamples;
+    square += y * y / kSamples;
+    const double forward = at(table, reach * place);
+    const double backward = at(table, -reach * place);
+    odd += 0.25 * (forward - backward) * (forward - backward);
+    even += 0.25 * (forward + backward) * (forward + backward);
+  }
+  if (square > 0.0 && mean * mean > kMostly * square) {
+    text += "; mostly constant";
+  } else if (two_sided && odd > kMostly * (odd + even)) {
+    text += "; odd";
+    const double near_zero = at(table, 0.1 * reach) - at(table, -0.1 * reach);
+    const double whole = table.y.back() - table.y.front();
+    if (std::abs(near_zero) > 0.5 * std::abs(whole)) {
+      text += ", with most of it in a jump about zero, as dry friction has";
+    }
+  } else if (two_sided && even > kMostly * (odd + even)) {
+    text += "; even";
+  }
+  const bool rises = std::is_sorted(table.y.begin(), table.y.end());
+  const bool falls = std::is_sorted(table.y.rbegin(), table.y.rend());
+  if (rises != falls) {
+    text += rises ? "; rises throughout" : "; falls throughout";
+  }
+  return text;
+}
+
+}  // namespace hotfire::explain
