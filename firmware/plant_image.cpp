@@ -210,7 +210,9 @@ PlantImage read_plant_image(const std::string& path) {
   if (!file || !(content << file.rdbuf())) {
     return {std::nullopt, path + ": cannot be read as a plant image: " + std::strerror(errno)};
   }
-  return parse_plant_image(content.str(), path);
+  PlantImage image = parse_plant_image(content.str(), path);
+  image.text = content.str();
+  return image;
 }
 
 }  // namespace hotfire::firmware

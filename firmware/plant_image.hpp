@@ -15,6 +15,7 @@ using PlantParameters = std::variant<model::Simplex<double>::Parameters, model::
 struct PlantImage {
   std::optional<PlantParameters> parameters;
   std::string error;
+  std::string text{};  ///< the image itself
 };
 
 /// Reads a plant image: what `hotfire plant` makes of a model file, so that the real-time executable needs no TOML and no

@@ -57,8 +57,8 @@ TEST(Options, BusThatThisBuildDoesNotHaveIsRefusedNamingWhatItHas) {
 }
 
 TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
-  refused({}, "plant or timing");
-  refused({"fly"}, "plant or timing");
+  refused({}, "plant, timing or replay");
+  refused({"fly"}, "plant, timing or replay");
   refused({"plant"}, "hotfire plant --model");
   refused({"timing", "--perod-us", "500"}, "unknown argument --perod-us");
   refused({"timing", "--cycles"}, "--cycles needs a value");

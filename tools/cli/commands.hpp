@@ -10,6 +10,7 @@ void add_check(CLI::App& program);
 void add_explain(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);
+void add_replay(CLI::App& program);
 void add_timing(CLI::App& program);
 
 }  // namespace hotfire

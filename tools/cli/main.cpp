@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   add_simulate(program);
   add_plant(program);
   add_timing(program);
+  add_replay(program);
   for (CLI::App* command : program.get_subcommands(nullptr)) {
     command->set_version_flag("--version", HOTFIRE_VERSION);
   }

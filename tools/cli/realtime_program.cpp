@@ -10,7 +10,6 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <vector>
 
 #include "tools/cli/plant_image_text.hpp"
 #include "tools/files/error.hpp"
@@ -29,7 +28,15 @@ std::string share_image(const std::string& image) {
   return fmt::format("/proc/self/fd/{}", file);
 }
 
-[[noreturn]] void become_realtime_program(const std::vector<std::string>& arguments) {
+bool asks_for_text_only(const std::vector<std::string>& arguments) {
+  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
+    return argument == "--help" || argument == "-h" || argument == "--version";
+  });
+}
+
+}  // namespace
+
+void become_realtime_program(const std::vector<std::string>& arguments) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "hotfire-rt";
   std::vector<std::string> words = arguments;
   words.insert(words.begin(), program);
@@ -44,14 +51,6 @@ std::string share_image(const std::string& image) {
   throw UsageError(
       fmt::format("cannot start {}: {}; build or install hotfire-rt beside hotfire", program, std::strerror(errno)));
 }
-
-bool asks_for_text_only(const std::vector<std::string>& arguments) {
-  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
-    return argument == "--help" || argument == "-h" || argument == "--version";
-  });
-}
-
-}  // namespace
 
 void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model) {
   const auto path = std::make_shared<std::string>();

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace hotfire {
 
@@ -12,5 +13,8 @@ namespace hotfire {
 /// Throws FileError for a model that is refused, UsageError if `needs_model` and there is none, or if hotfire-rt cannot be
 /// started. Else it does not return: the process becomes hotfire-rt, whose exit status is the command's.
 void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model);
+
+/// Becomes hotfire-rt with these arguments; does not return. Throws UsageError if it cannot be started.
+[[noreturn]] void become_realtime_program(const std::vector<std::string>& arguments);
 
 }  // namespace hotfire
