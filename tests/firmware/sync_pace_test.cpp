@@ -45,7 +45,7 @@ TEST_GROUP(SyncPace) {
   std::uint64_t silent_to = ~std::uint64_t{0};
   std::uint64_t most_missed = 5;
 
-  LoopResult run(const LoopSettings& settings, std::int64_t sync_period_ns = kPeriod) {
+  LoopResult run_locked(const LoopSettings& settings, std::int64_t sync_period_ns = kPeriod) {
     Syncs syncs(world.clock, sync_period_ns);
     SilencingPlant plant(world, syncs, silent_from, silent_to);
     ScriptedBus bus(world);
@@ -60,7 +60,7 @@ TEST_GROUP(SyncPace) {
 // cycles.
 TEST(SyncPace, CyclesFollowTheSyncsAndNotTheLoopsOwnPeriod) {
   const std::int64_t rig_period = kPeriod + 1000;
-  const LoopResult result = run({kPeriod, 3000, 0, OverrunPolicy::catch_up}, rig_period);
+  const LoopResult result = run_locked({kPeriod, 3000, 0, OverrunPolicy::catch_up}, rig_period);
   UNSIGNED_LONGS_EQUAL(3000, result.account.cycles());
   UNSIGNED_LONGS_EQUAL(0, result.missed_syncs);
   UNSIGNED_LONGS_EQUAL(0, result.account.overruns());
@@ -69,13 +69,13 @@ TEST(SyncPace, CyclesFollowTheSyncsAndNotTheLoopsOwnPeriod) {
 
 TEST(SyncPace, LatencyIsCountedFromTheArrivalOfTheSync) {
   world.delays[7].wake_up_ns = 123'000;
-  LONGS_EQUAL(123'000, run({kPeriod, 20, 0, OverrunPolicy::catch_up}).account.latency().greatest_ns());
+  LONGS_EQUAL(123'000, run_locked({kPeriod, 20, 0, OverrunPolicy::catch_up}).account.latency().greatest_ns());
 }
 
 TEST(SyncPace, MissedSyncIsCountedAndItsCycleRunWithoutIt) {
   silent_from = 10;
   silent_to = 13;
-  const LoopResult result = run({kPeriod, 100, 0, OverrunPolicy::catch_up});
+  const LoopResult result = run_locked({kPeriod, 100, 0, OverrunPolicy::catch_up});
   CHECK(result.ending == Ending::completed);
   UNSIGNED_LONGS_EQUAL(3, result.missed_syncs);
   UNSIGNED_LONGS_EQUAL(100, result.account.cycles());
@@ -85,14 +85,14 @@ TEST(SyncPace, MissedSyncIsCountedAndItsCycleRunWithoutIt) {
 
 TEST(SyncPace, MoreThanTheMostMissedInARowEndTheLoop) {
   silent_from = 10;
-  const LoopResult result = run({kPeriod, 100, 0, OverrunPolicy::catch_up});
+  const LoopResult result = run_locked({kPeriod, 100, 0, OverrunPolicy::catch_up});
   CHECK(result.ending == Ending::sync_lost);
   UNSIGNED_LONGS_EQUAL(most_missed + 1, result.missed_syncs);
 }
 
 TEST(SyncPace, CatchUpRunsACycleForEverySyncThatCameDuringAnOverrun) {
   world.delays[3].step_ns = 3 * kPeriod + 500'000;
-  const LoopResult result = run({kPeriod, 10, 0, OverrunPolicy::catch_up});
+  const LoopResult result = run_locked({kPeriod, 10, 0, OverrunPolicy::catch_up});
   UNSIGNED_LONGS_EQUAL(10, result.account.cycles());
   UNSIGNED_LONGS_EQUAL(0, result.missed_syncs);
   UNSIGNED_LONGS_EQUAL(1, result.account.blamed(Blame::step));
@@ -101,7 +101,7 @@ TEST(SyncPace, CatchUpRunsACycleForEverySyncThatCameDuringAnOverrun) {
 
 TEST(SyncPace, SkipLeavesOutTheSyncsThatCameDuringAnOverrun) {
   world.delays[3].step_ns = 3 * kPeriod + 500'000;
-  const LoopResult result = run({kPeriod, 10, 0, OverrunPolicy::skip});
+  const LoopResult result = run_locked({kPeriod, 10, 0, OverrunPolicy::skip});
   UNSIGNED_LONGS_EQUAL(3, result.skipped);
   LONGS_EQUAL(13 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
 }
