@@ -77,6 +77,10 @@ std::string read_max_latency(const std::string& value, Options& options) {
   return read_number(value, 0.0, 1e9, options.max_latency_us.emplace());
 }
 
+std::string read_max_step(const std::string& value, Options& options) {
+  return read_number(value, 0.0, 1e9, options.max_step_us.emplace());
+}
+
 constexpr std::uint64_t kManyCycles = 1'000'000'000'000;
 
 constexpr OptionLine kOptionLines[] = {
@@ -100,6 +104,7 @@ constexpr OptionLine kOptionLines[] = {
     {"--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running",
      [](const std::string&, Options& o) { return o.require_realtime = true, std::string(); }},
     {"--max-latency-us", "X", "verdict: no wake-up later than this", read_max_latency},
+    {"--max-step-us", "X", "verdict: no step of the model longer than this", read_max_step},
     {"--max-overruns", "N", "verdict: no more overruns than this; default 0 for timing, no limit for plant",
      [](const std::string& value, Options& o) {
        return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());

@@ -28,6 +28,7 @@ struct Options {
   std::optional<int> cpu;                ///< none: wherever the kernel puts it
   bool require_realtime = false;
   std::optional<double> max_latency_us;
+  std::optional<double> max_step_us;
   std::optional<std::uint64_t> max_overruns;
   hal::sim::CommandSource source;
   std::string recording;  ///< path to write to, or to replay; empty: none

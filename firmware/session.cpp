@@ -176,6 +176,10 @@ Verdict judge(const Session& session) {
     const double latest = static_cast<double>(result.account.latency().greatest_ns()) * 1e-3;
     add(latest <= *options.max_latency_us, text("latest wake-up %.1f us, allowed %g us", latest, *options.max_latency_us));
   }
+  if (options.max_step_us) {
+    const double longest = static_cast<double>(result.account.step_time().greatest_ns()) * 1e-3;
+    add(longest <= *options.max_step_us, text("longest step %.1f us, allowed %g us", longest, *options.max_step_us));
+  }
   if (session.recording != nullptr) {
     const std::uint64_t dropped = session.recording->dropped();
     add(dropped <= options.max_dropped,
