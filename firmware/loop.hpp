@@ -74,7 +74,8 @@ struct NoRecorder {
 /// account for it. Nothing in it allocates, locks, throws or logs, and its only system calls are those of the pace and the
 /// bus. `Plant` has `step(command)`, `measured()`, `add_to(hash)` and `actuators()`.
 ///
-/// After every cycle it counts up a heartbeat, which whoever watches over the process may look at from another thread.
+/// It counts up a heartbeat every turn, also while it waits for a first cycle, which whoever watches over the process may
+/// look at from another thread.
 ///
 /// About 200 kB: make it on the heap, before memory is locked.
 template <class Plant, hal::PlantBus Bus, hal::Clock Clock, class Pace = OwnPace<Clock>, CycleRecorder Recorder = NoRecorder>
@@ -110,11 +111,12 @@ class Loop {
         on_warm();
       }
       Wake wake;
+      heartbeat_.store(heartbeat_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
       if (!pace_.wait(wake)) {
         continue;
       }
       const CycleTimes times = run_cycle(cycle, wake);
-      heartbeat_.store(++cycle, std::memory_order_relaxed);
+      ++cycle;
       if (ended(times)) {
         return;
       }
@@ -127,7 +129,7 @@ class Loop {
 
   const LoopResult& result() const noexcept { return result_; }
 
-  /// Cycles run so far. From any thread.
+  /// Turns so far. From any thread.
   const std::atomic<std::uint64_t>& heartbeat() const noexcept { return heartbeat_; }
 
  private:

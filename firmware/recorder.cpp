@@ -1,7 +1,5 @@
 #include "firmware/recorder.hpp"
 
-#include <csignal>
-
 #include <chrono>
 #include <cstring>
 
@@ -11,33 +9,13 @@ Recorder::Recorder(hal::RecordingSink& sink, std::size_t actuators, std::size_t 
     : sink_(sink), ring_(hal::cycle_bytes(actuators, readings), slots) {}
 
 Recorder::~Recorder() {
-  if (running_) {
+  if (thread_.running()) {
     close();
   }
 }
 
 std::optional<hal::Failure> Recorder::start() {
-  // Locked memory counts all of a stack, and the default is 8 MiB.
-  constexpr std::size_t kStackBytes = std::size_t{256} * 1024;
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, kStackBytes);
-  pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
-  pthread_attr_setschedpolicy(&attributes, SCHED_OTHER);
-  // A signal to the process is for the loop's thread.
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  const int error = pthread_create(&thread_, &attributes, &Recorder::run, this);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  pthread_attr_destroy(&attributes);
-  running_ = error == 0;
-  if (!running_) {
-    return hal::Failure{std::string("no recording: pthread_create: ") + std::strerror(error),
-                        "allow more threads: 'ulimit -u', TasksMax= in a systemd unit"};
-  }
-  return std::nullopt;
+  return thread_.start([this] { empty_until_closed(); });
 }
 
 void Recorder::record(const hal::CycleHead& head, std::span<const double> commands,
@@ -60,19 +38,13 @@ RecorderAccount Recorder::close() {
     closing_ = true;
   }
   close_asked_.notify_one();
-  pthread_join(thread_, nullptr);
-  running_ = false;
+  thread_.join();
   hal::BlockHead end;
   end.kind = hal::BlockHead::kEnd;
   end.dropped = offered_ - stored_;
   append(end, {});
   sink_.sync();
   return {offered_, stored_, failure_};
-}
-
-void* Recorder::run(void* recorder) {
-  static_cast<Recorder*>(recorder)->empty_until_closed();
-  return nullptr;
 }
 
 void Recorder::empty_until_closed() {

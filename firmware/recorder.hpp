@@ -1,7 +1,5 @@
 #pragma once
 
-#include <pthread.h>
-
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -11,7 +9,7 @@
 #include <string>
 
 #include "firmware/recording_ring.hpp"
-#include "hal/realtime.hpp"
+#include "hal/ordinary_thread.hpp"
 #include "hal/recording/format.hpp"
 #include "hal/recording/sink.hpp"
 
@@ -41,8 +39,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Starts the thread: an ordinary process on any CPU of this one, whatever the calling thread is or becomes. To be called
-  /// before the caller is bound to a CPU.
+  /// Starts the thread. Before the real-time set-up of the calling thread.
   std::optional<hal::Failure> start();
 
   /// Real-time, wait-free: copies the cycle into the ring, or drops it.
@@ -55,7 +52,6 @@ class Recorder {
   RecorderAccount close();
 
  private:
-  static void* run(void* recorder);
   void empty_until_closed();
   void empty_ring();
   void append(hal::BlockHead& head, std::span<const std::byte> content);
@@ -70,8 +66,7 @@ class Recorder {
   std::mutex mutex_;          ///< of `closing_`; the loop never takes it
   std::condition_variable close_asked_;
   bool closing_ = false;
-  bool running_ = false;
-  pthread_t thread_{};
+  hal::OrdinaryThread thread_;
 };
 
 }  // namespace hotfire::firmware

@@ -12,6 +12,7 @@
 #include "firmware/reference_plant.hpp"
 #include "firmware/status.hpp"
 #include "firmware/text.hpp"
+#include "firmware/watchdog.hpp"
 #include "hal/denormals.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/sim/plant_bus.hpp"
@@ -97,6 +98,8 @@ int finish(const Session& session) {
 template <class Loop>
 int run_loop(Loop& loop, Session& session, RecordingSession* recording) {
   const Options& options = session.options;
+  Watchdog watchdog(hal::ServiceManager::from_environment(), loop.heartbeat());
+  granted(watchdog.start(), session.failures);
   hal::WakefulCpus cpus;
   session.real_time = set_up_real_time(options, cpus, session.failures);
   if (options.require_realtime && !session.real_time) {
@@ -109,6 +112,7 @@ int run_loop(Loop& loop, Session& session, RecordingSession* recording) {
   Usage warm = Usage::now();
   loop.run(stop_asked, [&]() noexcept { warm = Usage::now(); });
   const Usage end = Usage::now();
+  watchdog.stop();
   session.ended = std::time(nullptr);
   session.place = hal::cpu_place();
   session.usage = difference(end.resources, warm.resources);
