@@ -72,7 +72,8 @@ struct NoRecorder {
 
 /// The real-time loop of a plant: at every cycle of its pace read the newest command, step the plant, write its reading,
 /// account for it. Nothing in it allocates, locks, throws or logs, and its only system calls are those of the pace and the
-/// bus. `Plant` has `step(command)`, `measured()`, `add_to(hash)` and `actuators()`.
+/// bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and
+/// `actuators()`.
 ///
 /// It counts up a heartbeat every turn, also while it waits for a first cycle, which whoever watches over the process may
 /// look at from another thread.
@@ -162,6 +163,7 @@ class Loop {
     hal::Reading& reading = result_.last_reading;
     std::copy(measured.begin(), measured.end(), reading.values.begin());
     reading.count = measured.size();
+    reading.missing = plant_.missing();
     reading.sequence = cycle;
     reading.command_sequence = command_.sequence;
     finite_ = std::all_of(measured.begin(), measured.end(), [](double value) { return std::isfinite(value); });

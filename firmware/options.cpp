@@ -157,6 +157,7 @@ std::string help() {
   }
   return result +
          "  --model FILE           with `hotfire` only: the model file, checked there and handed over as an image\n"
+         "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
          "  --help, --version\n\n"
          "Ends on SIGINT and SIGTERM with its result. Exit status: 0 good, 2 wrong use, 4 a limit is not met, stopped by "
          "an\n"

@@ -29,10 +29,10 @@ std::string differing(const hal::RecordingHeader& header, std::span<const double
 }
 
 template <class Model>
-Replay replay_model(Reader& reader, const typename Model::Parameters& parameters) {
+Replay replay_model(Reader& reader, const typename Model::Parameters& parameters, const std::vector<PlayedFault>& faults) {
   const hal::RecordingHeader& header = reader.header();
   const hal::FlushDenormals flush;
-  Plant<Model> plant(parameters, static_cast<double>(header.period_ns) * 1e-9, header.actuators);
+  Plant<Model> plant(parameters, static_cast<double>(header.period_ns) * 1e-9, header.actuators, faults);
   Replay result;
   if (plant.measured().size() != header.start.size()) {
     result.error = "its channels are not those of topology " + std::string(Model::topology);
@@ -139,12 +139,15 @@ std::string as_json(const std::string& path, const hal::RecordingHeader& header,
 Replay replay(Reader& reader) {
   const PlantImage image = parse_plant_image(reader.header().model, "the model in the header");
   if (!image.parameters) {
-    return {0, 0, 0, {}, {}, Reader::End::cut_off, image.error};
+    Replay refused;
+    refused.error = image.error;
+    return refused;
   }
   if (const auto* simplex = std::get_if<model::Simplex<double>::Parameters>(&*image.parameters)) {
-    return replay_model<model::Simplex<double>>(reader, *simplex);
+    return replay_model<model::Simplex<double>>(reader, *simplex, image.faults);
   }
-  return replay_model<model::Direct<double>>(reader, std::get<model::Direct<double>::Parameters>(*image.parameters));
+  return replay_model<model::Direct<double>>(reader, std::get<model::Direct<double>::Parameters>(*image.parameters),
+                                             image.faults);
 }
 
 int run_replay(const std::string& path, bool json) {

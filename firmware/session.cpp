@@ -126,20 +126,21 @@ int run_loop(Loop& loop, Session& session, RecordingSession* recording) {
 }
 
 template <class Model>
-int run_plant(const Options& options, const typename Model::Parameters& parameters, const std::string& image) {
-  using Bus = hal::sim::SimulatedPlantBus;
+int run_plant(const Options& options, const typename Model::Parameters& parameters, const PlantImage& image) {
+  using Bus = PlayedBus<hal::sim::SimulatedPlantBus>;
   using Clock = hal::PosixClock;
   using Syncs = hal::sim::SimulatedSyncSource<Clock>;
   const double period = static_cast<double>(options.loop.period_ns) * 1e-9;
   const int steps = model::steps_per_period(period);
   const hal::FlushDenormals flush;
-  const auto plant = std::make_unique<Plant<Model>>(parameters, period, options.actuators);
-  Bus bus(options.source, period);
+  const auto plant = std::make_unique<Plant<Model>>(parameters, period, options.actuators, image.faults);
+  hal::sim::SimulatedPlantBus wire(options.source, period);
+  Bus bus(wire, image.faults, period);
   Clock clock;
 
   std::unique_ptr<RecordingSession> recording;
   if (!options.recording.empty()) {
-    recording = std::make_unique<RecordingSession>(options, RecordedPlant::of<Model>(*plant, steps, image));
+    recording = std::make_unique<RecordingSession>(options, RecordedPlant::of<Model>(*plant, steps, image.text));
     if (const auto failure = recording->start()) {
       std::fprintf(stderr, "hotfire-rt: %s\n  mend: %s\n", failure->what.c_str(), failure->mend.c_str());
       return kWrongUse;
@@ -206,10 +207,9 @@ int run_session(const Options& options) {
     return kBadData;
   }
   if (const auto* simplex = std::get_if<model::Simplex<double>::Parameters>(&*image.parameters)) {
-    return run_plant<model::Simplex<double>>(options, *simplex, image.text);
+    return run_plant<model::Simplex<double>>(options, *simplex, image);
   }
-  return run_plant<model::Direct<double>>(options, std::get<model::Direct<double>::Parameters>(*image.parameters),
-                                          image.text);
+  return run_plant<model::Direct<double>>(options, std::get<model::Direct<double>::Parameters>(*image.parameters), image);
 }
 
 }  // namespace hotfire::firmware

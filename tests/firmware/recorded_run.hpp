@@ -54,11 +54,13 @@ inline firmware::Options recorded_options(const std::string& path, std::uint64_t
 /// Runs a plant on a manual clock and records it to a file, as the program does.
 template <class Model>
 firmware::RecorderAccount record_run(const firmware::Options& options, const typename Model::Parameters& parameters,
-                                     const std::string& image) {
+                                     const std::string& image, const std::vector<firmware::PlayedFault>& faults = {}) {
   const double period = static_cast<double>(options.loop.period_ns) * 1e-9;
   using Plant = firmware::Plant<Model>;
-  Plant plant(parameters, period, options.actuators);
-  hal::sim::SimulatedPlantBus bus(options.source, period);
+  using Bus = firmware::PlayedBus<hal::sim::SimulatedPlantBus>;
+  Plant plant(parameters, period, options.actuators, faults);
+  hal::sim::SimulatedPlantBus wire(options.source, period);
+  Bus bus(wire, faults, period);
   hal::sim::ManualClock clock;
   firmware::RecordingSession recording(options,
                                        firmware::RecordedPlant::of<Model>(plant, model::steps_per_period(period), image));
@@ -66,9 +68,8 @@ firmware::RecorderAccount record_run(const firmware::Options& options, const typ
     return {0, 0, failure->what};
   }
   using Pace = firmware::OwnPace<hal::sim::ManualClock>;
-  const auto loop =
-      std::make_unique<firmware::Loop<Plant, hal::sim::SimulatedPlantBus, hal::sim::ManualClock, Pace, firmware::Recorder>>(
-          plant, bus, clock, options.loop, Pace(clock, options.loop.period_ns), &recording.recorder());
+  const auto loop = std::make_unique<firmware::Loop<Plant, Bus, hal::sim::ManualClock, Pace, firmware::Recorder>>(
+      plant, bus, clock, options.loop, Pace(clock, options.loop.period_ns), &recording.recorder());
   loop->run(false, []() noexcept {});
   return recording.close();
 }
