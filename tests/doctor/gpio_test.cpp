@@ -30,7 +30,8 @@ TEST(DoctorGpio, MachineWithoutAChipIsBadOnlyIfLinesAreNeeded) {
   expect_mend(found("GPIO"), Level::bad, "no GPIO chip", "driver");
 }
 
-// A link to nowhere stands for a chip that this user may not open: the tests run as root too, who may open all that is there.
+// A link to nowhere stands for a chip that this user may not open: the tests run as root too, who may open all that is
+// there.
 TEST(DoctorGpio, ChipThatCannotBeOpenedIsBad) {
   std::filesystem::create_symlink("nowhere", patient.root / "dev/gpiochip1");
   expect_mend(found("GPIO"), Level::bad, "cannot be opened by this user: gpiochip1", "udev/rules.d/99-gpio.rules");
