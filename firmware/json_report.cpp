@@ -71,9 +71,14 @@ void add_overruns(Json& json, const Session& session) {
   json.open("worst_cycle_us");
   json.add("cycle", worst.cycle);
   for (std::size_t i = 0; i < worst.phases_ns.size(); ++i) {
-    json.add(kBlameNames[i], us(worst.phases_ns[i]));
+    json.add(kPhaseNames[i], us(worst.phases_ns[i]));
   }
   json.add("longest", kBlameNames[static_cast<std::size_t>(worst.blame)]);
+  json.close();
+  json.open("worst_phases_us");
+  for (std::size_t i = 0; i < kPhaseNames.size(); ++i) {
+    json.add(kPhaseNames[i], us(account.longest()[i]));
+  }
   json.close();
 }
 
@@ -95,6 +100,19 @@ void add_real_time(Json& json, const Session& session) {
   }
 }
 
+void add_recording(Json& json, const Session& session) {
+  if (session.recording == nullptr) {
+    return;
+  }
+  json.open("recording");
+  json.add("file", session.options.recording);
+  json.add("offered", session.recording->offered);
+  json.add("stored", session.recording->stored);
+  json.add("dropped", session.recording->dropped());
+  json.add("failure", session.recording->failure);
+  json.close();
+}
+
 void add_own(Json& json, const Session& session) {
   const LoopResult& result = session.result;
   const Verdict verdict = judge(session);
@@ -113,6 +131,9 @@ void add_own(Json& json, const Session& session) {
   json.add("skipped_cycles", result.skipped);
   json.add("held_commands", result.held_commands);
   json.add("lost_readings", result.lost_readings);
+  json.add("missed_syncs", result.missed_syncs);
+  json.add("actuators", static_cast<std::uint64_t>(session.options.actuators));
+  add_recording(json, session);
   add_durations(json, "wake_up_us", result.account.latency());
   add_durations(json, "step_us", result.account.step_time());
   add_real_time(json, session);

@@ -10,9 +10,10 @@
 #include <string_view>
 
 #include "firmware/cycle_account.hpp"
-#include "firmware/state_hash.hpp"
+#include "firmware/pace.hpp"
 #include "hal/clock.hpp"
 #include "hal/plant_bus.hpp"
+#include "hal/recording/format.hpp"
 
 namespace hotfire::firmware {
 
@@ -24,10 +25,12 @@ namespace hotfire::firmware {
 enum class OverrunPolicy : std::uint8_t { catch_up, skip, stop };
 inline constexpr std::array<std::string_view, 3> kOverrunPolicies{"catch-up", "skip", "stop"};
 
-/// Why a loop ended. `not_finite`: a sensor's value was NaN or infinite; that reading is not sent.
-enum class Ending : std::uint8_t { completed, asked, overrun, not_finite };
-inline constexpr std::array<std::string_view, 4> kEndings{"completed", "asked to stop", "stopped by an overrun",
-                                                          "stopped by a value that is not finite"};
+/// Why a loop ended. `not_finite`: a sensor's value was NaN or infinite; that reading is not sent. `sync_lost`: what its
+/// cycles are locked to has stopped.
+enum class Ending : std::uint8_t { completed, asked, overrun, not_finite, sync_lost };
+inline constexpr std::array<std::string_view, 5> kEndings{"completed", "asked to stop", "stopped by an overrun",
+                                                          "stopped by a value that is not finite",
+                                                          "stopped because the sync was lost"};
 
 inline constexpr std::int64_t kShortestPeriodNs = 250'000;
 inline constexpr std::int64_t kLongestPeriodNs = 10'000'000;
@@ -50,20 +53,48 @@ struct LoopResult {
   std::uint64_t skipped = 0;        ///< cycles left out after warm-up
   std::uint64_t held_commands = 0;  ///< cycles, warm-up too, that had no new command and kept the last
   std::uint64_t lost_readings = 0;  ///< readings, warm-up too, that the bus did not take
-  StateHash hash;                   ///< over every reading, warm-up too
+  std::uint64_t missed_syncs = 0;   ///< cycles, warm-up too, run without the sync they are locked to
+  hal::Fnv1a hash;                  ///< over the state and the readings of every cycle, warm-up too
   hal::Reading last_reading;
 };
 
-/// The real-time loop of a plant: at every release of an absolute schedule read the newest command, step the plant, write
-/// its reading, account for it. Nothing in it allocates, locks, throws or logs, and its only system calls are those of the
-/// clock and the bus. `Plant` has `step(command)` and `measured()`.
+/// Where the cycles of a loop are kept: called once a cycle, after its reading is sent. Real-time.
+template <class R>
+concept CycleRecorder = requires(R& recorder, const hal::CycleHead& head, std::span<const double> values) {
+  { recorder.record(head, values, values) }
+  noexcept;
+};
+
+/// Keeps nothing.
+struct NoRecorder {
+  void record(const hal::CycleHead&, std::span<const double>, std::span<const double>) noexcept {}
+};
+
+/// The real-time loop of a plant: at every cycle of its pace read the newest command, step the plant, write its reading,
+/// account for it. Nothing in it allocates, locks, throws or logs, and its only system calls are those of the pace and the
+/// bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and
+/// `actuators()`.
+///
+/// It counts up a heartbeat every turn, also while it waits for a first cycle, which whoever watches over the process may
+/// look at from another thread.
 ///
 /// About 200 kB: make it on the heap, before memory is locked.
-template <class Plant, hal::PlantBus Bus, hal::Clock Clock>
+template <class Plant, hal::PlantBus Bus, hal::Clock Clock, class Pace = OwnPace<Clock>, CycleRecorder Recorder = NoRecorder>
 class Loop {
  public:
+  /// `recorder` null: nothing is recorded.
+  Loop(Plant& plant, Bus& bus, Clock& clock, const LoopSettings& settings, Pace pace, Recorder* recorder) noexcept
+      : plant_(plant),
+        bus_(bus),
+        clock_(clock),
+        settings_(settings),
+        pace_(pace),
+        recorder_(recorder),
+        result_(settings.period_ns) {}
+
+  /// Cycles of the loop's own clock, not recorded.
   Loop(Plant& plant, Bus& bus, Clock& clock, const LoopSettings& settings) noexcept
-      : plant_(plant), bus_(bus), clock_(clock), settings_(settings), result_(settings.period_ns) {}
+      : Loop(plant, bus, clock, settings, Pace(clock, settings.period_ns), nullptr) {}
 
   /// Runs to its end. `on_warm()` is called once, when the warm-up is over. To be called once.
   template <class OnWarm>
@@ -71,51 +102,59 @@ class Loop {
     static_assert(noexcept(on_warm()));
     const std::uint64_t end =
         settings_.cycles == 0 ? std::numeric_limits<std::uint64_t>::max() : settings_.warm_up_cycles + settings_.cycles;
-    std::int64_t release = clock_.now_ns() + settings_.period_ns;
-    for (std::uint64_t cycle = 0; cycle < end; ++cycle) {
-      if (cycle == settings_.warm_up_cycles) {
-        on_warm();
-      }
+    for (std::uint64_t cycle = 0; cycle < end;) {
       if (stop.load(std::memory_order_relaxed)) {
         result_.ending = Ending::asked;
         return;
       }
-      const CycleTimes times = run_cycle(cycle, release);
-      const bool warm = cycle >= settings_.warm_up_cycles;
-      account(cycle, times, warm);
-      if (!finite_) {
-        result_.ending = Ending::not_finite;
+      if (cycle == settings_.warm_up_cycles && !warm_) {
+        warm_ = true;
+        on_warm();
+      }
+      Wake wake;
+      heartbeat_.store(heartbeat_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+      if (!pace_.wait(wake)) {
+        continue;
+      }
+      const CycleTimes times = run_cycle(cycle, wake);
+      ++cycle;
+      if (ended(times)) {
         return;
       }
-      if (warm && settings_.policy == OverrunPolicy::stop && result_.account.overran(times)) {
-        result_.ending = Ending::overrun;
-        return;
+      if (!warm_ || settings_.policy == OverrunPolicy::skip) {
+        const std::uint64_t dropped = result_.account.overran(times) ? pace_.drop_overdue(times.written) : 0;
+        result_.skipped += warm_ ? dropped : 0;
       }
-      release = next_release(times, warm);
     }
   }
 
   const LoopResult& result() const noexcept { return result_; }
 
+  /// Turns so far. From any thread.
+  const std::atomic<std::uint64_t>& heartbeat() const noexcept { return heartbeat_; }
+
  private:
-  CycleTimes run_cycle(std::uint64_t cycle, std::int64_t release) noexcept {
-    CycleTimes times{};
-    times.release = release;
-    times.woken = clock_.now_ns();
-    times.slept = times.woken < release;
-    if (times.slept) {
-      clock_.sleep_until_ns(release);
-      times.woken = clock_.now_ns();
-    }
-    result_.held_commands += bus_.try_receive_command(command_) ? 0 : 1;
+  CycleTimes run_cycle(std::uint64_t cycle, const Wake& wake) noexcept {
+    CycleTimes times{wake.release_ns, wake.woken_ns, 0, 0, 0, 0, wake.slept};
+    const bool held = !bus_.try_receive_command(command_);
     times.read = clock_.now_ns();
     plant_.step(command_);
     take_reading(cycle);
     times.stepped = clock_.now_ns();
-    if (finite_) {
-      result_.lost_readings += bus_.try_send_reading(result_.last_reading) ? 0 : 1;
-    }
+    const bool lost = finite_ && !bus_.try_send_reading(result_.last_reading);
     times.written = clock_.now_ns();
+    result_.held_commands += held ? 1 : 0;
+    result_.lost_readings += lost ? 1 : 0;
+    result_.missed_syncs = pace_.missed_syncs();
+    plant_.add_to(result_.hash);
+    record(cycle, times, held, lost);
+    times.accounted = clock_.now_ns();
+    if (warm_) {
+      result_.account.add(cycle, times);
+    } else {
+      ++result_.warm_up_cycles;
+      result_.warm_up_overruns += result_.account.overran(times) ? 1 : 0;
+    }
     return times;
   }
 
@@ -124,37 +163,47 @@ class Loop {
     hal::Reading& reading = result_.last_reading;
     std::copy(measured.begin(), measured.end(), reading.values.begin());
     reading.count = measured.size();
+    reading.missing = plant_.missing();
     reading.sequence = cycle;
     reading.command_sequence = command_.sequence;
     finite_ = std::all_of(measured.begin(), measured.end(), [](double value) { return std::isfinite(value); });
   }
 
-  void account(std::uint64_t cycle, const CycleTimes& times, bool warm) noexcept {
-    result_.hash.add(std::span(result_.last_reading.values).first(result_.last_reading.count));
-    if (warm) {
-      result_.account.add(cycle, times);
-    } else {
-      ++result_.warm_up_cycles;
-      result_.warm_up_overruns += result_.account.overran(times) ? 1 : 0;
+  void record(std::uint64_t cycle, const CycleTimes& times, bool held, bool lost) noexcept {
+    if (recorder_ == nullptr) {
+      return;
     }
+    using Head = hal::CycleHead;
+    Head head{cycle,         times.release, times.woken,       times.read,
+              times.stepped, times.written, command_.sequence, result_.hash.value()};
+    head.flags =
+        (held ? Head::kHeld : 0) | (times.slept ? Head::kSlept : 0) | (lost ? Head::kLost : 0) | (warm_ ? 0 : Head::kWarmUp);
+    recorder_->record(head, std::span(command_.values).first(plant_.actuators()),
+                      std::span(result_.last_reading.values).first(result_.last_reading.count));
   }
 
-  std::int64_t next_release(const CycleTimes& times, bool warm) noexcept {
-    const std::int64_t next = times.release + settings_.period_ns;
-    if (times.written <= next || (warm && settings_.policy != OverrunPolicy::skip)) {
-      return next;
+  /// Whether this cycle was the last for another reason than their number.
+  bool ended(const CycleTimes& times) noexcept {
+    if (!finite_) {
+      result_.ending = Ending::not_finite;
+    } else if (pace_.lost()) {
+      result_.ending = Ending::sync_lost;
+    } else if (warm_ && settings_.policy == OverrunPolicy::stop && result_.account.overran(times)) {
+      result_.ending = Ending::overrun;
     }
-    const std::int64_t missed = (times.written - next + settings_.period_ns - 1) / settings_.period_ns;
-    result_.skipped += warm ? static_cast<std::uint64_t>(missed) : 0;
-    return next + missed * settings_.period_ns;
+    return result_.ending != Ending::completed;
   }
 
   Plant& plant_;
   Bus& bus_;
   Clock& clock_;
   LoopSettings settings_;
+  Pace pace_;
+  Recorder* recorder_;
   hal::Command command_;
   bool finite_ = true;
+  bool warm_ = false;
+  std::atomic<std::uint64_t> heartbeat_{0};
   LoopResult result_;
 };
 

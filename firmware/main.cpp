@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "firmware/options.hpp"
+#include "firmware/replay.hpp"
 #include "firmware/session.hpp"
 
 int main(int count, char** values) {
@@ -10,6 +11,9 @@ int main(int count, char** values) {
   if (!parsed.options) {
     std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
     return parsed.status;
+  }
+  if (parsed.options->mode == hotfire::firmware::Mode::replay) {
+    return hotfire::firmware::run_replay(parsed.options->recording, parsed.options->json);
   }
   return hotfire::firmware::run_session(*parsed.options);
 }

@@ -6,12 +6,11 @@
 #include <cstdlib>
 #include <iterator>
 
+#include "firmware/status.hpp"
 #include "firmware/text.hpp"
 
 namespace hotfire::firmware {
 namespace {
-
-constexpr int kWrongUse = 2;
 
 /// Reads a value into the options; returns what is allowed if it is not.
 using Reader = std::string (*)(const std::string& value, Options& options);
@@ -78,6 +77,10 @@ std::string read_max_latency(const std::string& value, Options& options) {
   return read_number(value, 0.0, 1e9, options.max_latency_us.emplace());
 }
 
+std::string read_max_step(const std::string& value, Options& options) {
+  return read_number(value, 0.0, 1e9, options.max_step_us.emplace());
+}
+
 constexpr std::uint64_t kManyCycles = 1'000'000'000'000;
 
 constexpr OptionLine kOptionLines[] = {
@@ -101,10 +104,31 @@ constexpr OptionLine kOptionLines[] = {
     {"--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running",
      [](const std::string&, Options& o) { return o.require_realtime = true, std::string(); }},
     {"--max-latency-us", "X", "verdict: no wake-up later than this", read_max_latency},
+    {"--max-step-us", "X", "verdict: no step of the model longer than this", read_max_step},
     {"--max-overruns", "N", "verdict: no more overruns than this; default 0 for timing, no limit for plant",
      [](const std::string& value, Options& o) {
        return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
      }},
+    {"--actuators", "N", "plants of that model, 1 to 8, each with a command of its own; default 1",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
+     }},
+    {"--sync", "S", "what gives the cycles: clock (default), or sim (locked to simulated syncs)",
+     [](const std::string& value, Options& o) { return read_name(value, kPaceKinds, o.pace); }},
+    {"--max-missed-syncs", "N", "end after more than N in a row; default 10",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
+     }},
+    {"--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`",
+     [](const std::string& value, Options& o) { return o.recording = value, std::string(); }},
+    {"--record-buffer-s", "X", "how long the disk may stall before cycles are dropped; default 8",
+     [](const std::string& value, Options& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }},
+    {"--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::uint64_t{1}, std::uint64_t{1} << 24, o.record_max_mib);
+     }},
+    {"--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0",
+     [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped); }},
     {"--command", "SHAPE", "what bus sim commands: steps (default), sine or rest",
      [](const std::string& value, Options& o) {
        return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);
@@ -121,7 +145,9 @@ std::string help() {
       "The engine in real time: every period the newest command is read, the model stepped, its reading sent.\n\n"
       "  hotfire plant --model simplex.toml --bus sim --cycles 10000 --cpu 1 --max-latency-us 200\n"
       "  hotfire timing --cycles 60000 --max-latency-us 100 --json\n"
-      "  hotfire-rt plant --image plant.image --period-us 500\n\n";
+      "  hotfire plant --model simplex.toml --record run.hfr\n"
+      "  hotfire-rt plant --image plant.image --period-us 500\n"
+      "  hotfire-rt replay run.hfr\n\n";
   for (const OptionLine& line : kOptionLines) {
     std::string meaning(line.meaning);
     if (const std::size_t at = meaning.find('\n'); at != std::string::npos) {
@@ -131,6 +157,7 @@ std::string help() {
   }
   return result +
          "  --model FILE           with `hotfire` only: the model file, checked there and handed over as an image\n"
+         "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
          "  --help, --version\n\n"
          "Ends on SIGINT and SIGTERM with its result. Exit status: 0 good, 2 wrong use, 4 a limit is not met, stopped by "
          "an\n"
@@ -162,6 +189,33 @@ std::string apply(const std::vector<std::string>& arguments, std::size_t& i, Opt
   return allowed.empty() ? "" : name + " " + value + ": allowed is " + allowed;
 }
 
+std::string joined(const std::vector<std::string>& arguments) {
+  std::string line;
+  for (const std::string& argument : arguments) {
+    line += (line.empty() ? "" : " ") + argument;
+  }
+  return line;
+}
+
+ParsedOptions parse_replay(const std::vector<std::string>& arguments) {
+  Options options;
+  options.mode = Mode::replay;
+  options.command_line = joined(arguments);
+  for (std::size_t i = 2; i < arguments.size(); ++i) {
+    if (arguments[i] == "--json") {
+      options.json = true;
+    } else if (arguments[i].starts_with("-") || !options.recording.empty()) {
+      return wrong_use("replay takes one recording and --json; unknown argument " + arguments[i]);
+    } else {
+      options.recording = arguments[i];
+    }
+  }
+  if (options.recording.empty()) {
+    return wrong_use("replay needs a recording, as `plant --record FILE` writes it");
+  }
+  return {options, 0, {}};
+}
+
 }  // namespace
 
 ParsedOptions parse_options(const std::vector<std::string>& arguments) {
@@ -174,9 +228,12 @@ ParsedOptions parse_options(const std::vector<std::string>& arguments) {
   if (asked("--version")) {
     return {std::nullopt, 0, "hotfire-rt " HOTFIRE_VERSION "\n"};
   }
+  if (arguments.size() > 1 && arguments[1] == "replay") {
+    return parse_replay(arguments);
+  }
   Options options;
   if (arguments.size() < 2 || (arguments[1] != "plant" && arguments[1] != "timing")) {
-    return wrong_use("the first argument is plant or timing");
+    return wrong_use("the first argument is plant, timing or replay");
   }
   if (arguments[1] == "timing") {
     options.mode = Mode::timing;
@@ -192,12 +249,13 @@ ParsedOptions parse_options(const std::vector<std::string>& arguments) {
   if (options.mode == Mode::plant && options.image.empty()) {
     return wrong_use("plant needs --image FILE, or start it as: hotfire plant --model M.toml");
   }
+  if (!options.recording.empty() && options.image.empty()) {
+    return wrong_use("--record needs a model, which becomes part of the recording: --model FILE, or --image FILE");
+  }
   if (options.require_realtime && options.priority == 0) {
     return wrong_use("--require-realtime and --priority 0 exclude each other");
   }
-  for (const std::string& argument : arguments) {
-    options.command_line += (options.command_line.empty() ? "" : " ") + argument;
-  }
+  options.command_line = joined(arguments);
   return {options, 0, {}};
 }
 

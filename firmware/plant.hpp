@@ -1,34 +1,99 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
+#include "firmware/declared_faults.hpp"
 #include "hal/plant_bus.hpp"
+#include "hal/recording/fnv1a.hpp"
 #include "model/direct.hpp"
 #include "model/simplex.hpp"
 #include "model/step_size.hpp"
 
 namespace hotfire::firmware {
 
-/// A model behind the plant's side of a bus: one period a step, split into equal steps of the model. At rest at zero first.
+/// One to `hal::kMaxActuators` equal models behind the plant's side of a bus, each with a command of its own: one period a
+/// step, split into equal steps of the model. At rest at zero first. Plays the faults it is given.
 template <class Model>
 class Plant {
  public:
-  /// `period` in s.
-  Plant(const typename Model::Parameters& parameters, double period)
-      : steps_(model::steps_per_period(period)), model_(parameters, period / steps_), state_(start()) {}
+  using Parameters = typename Model::Parameters;
 
-  void step(const hal::Command& command) noexcept {
-    for (int i = 0; i < steps_; ++i) {
-      model_.step(state_, command.values[0]);
+  /// `period` in s.
+  Plant(const Parameters& parameters, double period, std::size_t actuators = 1, const std::vector<PlayedFault>& faults = {})
+      : steps_(model::steps_per_period(period)),
+        model_(parameters, period / steps_),
+        states_(actuators, start()),
+        readings_(actuators * Model::channels.size()),
+        before_(readings_.size()),
+        sensors_(faults, period, actuators, Model::channels.size()) {
+    for (const PlayedFault& fault : faults) {
+      if (is_of_actuator(fault.kind)) {
+        broken_.emplace_back(fault, period, Model(broken(parameters, fault), period / steps_));
+      }
     }
+    measure();
   }
 
-  /// What the sensors read, in the order of `Model::channels`.
-  std::span<const double> measured() const noexcept { return Model::measured(state_); }
+  void step(const hal::Command& command) noexcept {
+    for (std::size_t actuator = 0; actuator < states_.size(); ++actuator) {
+      const Model& model = model_of(actuator);
+      for (int i = 0; i < steps_; ++i) {
+        model.step(states_[actuator], command.values[actuator]);
+      }
+    }
+    before_.swap(readings_);
+    measure();
+    missing_ = sensors_.play(cycle_++, before_, readings_);
+  }
+
+  std::size_t actuators() const noexcept { return states_.size(); }
+
+  /// What the sensors read, actuator after actuator, in the order of `Model::channels`.
+  std::span<const double> measured() const noexcept { return readings_; }
+
+  /// Which of them are not sent, one bit each.
+  std::uint32_t missing() const noexcept { return missing_; }
+
+  /// Adds the continuous state of every actuator and what its sensors read. What an effect remembers is not in it: it acts
+  /// on the state in the next step.
+  void add_to(hal::Fnv1a& hash) const noexcept {
+    for (const typename Model::State& state : states_) {
+      hash.add(std::span(state.y.data(), static_cast<std::size_t>(state.y.size())));
+    }
+    hash.add(measured());
+  }
 
  private:
+  /// The model while a fault of its actuator lasts: the state goes on in it.
+  struct Broken {
+    Broken(const PlayedFault& played, double period, const Model& as_it_is)
+        : fault(played), cycles(played, period), model(as_it_is) {}
+
+    PlayedFault fault;
+    CycleSpan cycles;
+    Model model;
+  };
+
+  static Parameters broken(Parameters parameters, const PlayedFault& fault) {
+    if constexpr (requires { parameters.actuator.leakage; }) {
+      (fault.kind == PlayedKind::leak ? parameters.actuator.leakage : parameters.actuator.supply_pressure) = fault.value;
+    }
+    return parameters;
+  }
+
+  const Model& model_of(std::size_t actuator) const noexcept {
+    for (const Broken& one : broken_) {
+      if (one.fault.is_of(actuator) && one.cycles.has(cycle_)) {
+        return one.model;
+      }
+    }
+    return model_;
+  }
+
   typename Model::State start() const {
     if constexpr (requires { model_.steady(0.0); }) {
       return model_.steady(0.0);
@@ -37,9 +102,23 @@ class Plant {
     }
   }
 
+  void measure() noexcept {
+    auto next = readings_.begin();
+    for (const typename Model::State& state : states_) {
+      const auto& measured = Model::measured(state);
+      next = std::copy(measured.begin(), measured.end(), next);
+    }
+  }
+
   int steps_;
   Model model_;
-  typename Model::State state_;
+  std::vector<typename Model::State> states_;
+  std::vector<double> readings_;
+  std::vector<double> before_;  ///< what was sent in the cycle before
+  std::vector<Broken> broken_;
+  PlayedSensors sensors_;
+  std::uint64_t cycle_ = 0;
+  std::uint32_t missing_ = 0;
 };
 
 }  // namespace hotfire::firmware

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -95,6 +97,41 @@ class Entries {
   std::string error_;
 };
 
+/// One of the words, by its place; refuses any other.
+template <class Words>
+int read_word(Entries& entries, const std::string& key, const Words& words) {
+  const Entry* entry = entries.take(key);
+  if (entry == nullptr) {
+    return 0;
+  }
+  std::string allowed = "allowed are";
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (entry->value == words[i]) {
+      return static_cast<int>(i);
+    }
+    allowed.append(" ").append(words[i]);
+  }
+  entries.refuse(*entry, allowed);
+  return 0;
+}
+
+/// A number within bounds; refuses any other, NaN too.
+double read_bounded(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit) {
+  const Entry* entry = entries.take(key);
+  if (entry == nullptr) {
+    return lower;
+  }
+  char* end = nullptr;
+  const double value = std::strtod(entry->value.c_str(), &end);
+  // Written so that NaN is refused as well.
+  if (*end == '\0' && value >= lower && value <= upper) {
+    return value;
+  }
+  const std::string shown(unit == "1" ? "" : unit);
+  entries.refuse(*entry, text("allowed is a number from %g to %g %s", lower, upper, shown.c_str()));
+  return lower;
+}
+
 /// Fills the parameters it is shown (`model::visit_keys`) from the entries.
 class Filler {
  public:
@@ -102,7 +139,7 @@ class Filler {
 
   template <class Field>
   void number(const model::KeyText& key, const Field& field, double& value) {
-    value = bounded(std::string(key.view()), field.lower, field.upper, field.unit).value_or(value);
+    value = read_bounded(entries_, std::string(key.view()), field.lower, field.upper, field.unit);
   }
 
   template <class E>
@@ -113,19 +150,7 @@ class Filler {
 
   template <class Options>
   void option(const model::KeyText& key, const Options& options, int& option) {
-    const Entry* entry = entries_.take(std::string(key.view()));
-    if (entry == nullptr) {
-      return;
-    }
-    std::string allowed = "allowed are";
-    for (std::size_t i = 0; i < options.size(); ++i) {
-      if (entry->value == options[i]) {
-        option = static_cast<int>(i);
-        return;
-      }
-      allowed.append(" ").append(options[i]);
-    }
-    entries_.refuse(*entry, allowed);
+    option = read_word(entries_, std::string(key.view()), options);
   }
 
   template <class Field, class Table>
@@ -137,37 +162,81 @@ class Filler {
         return;
       }
       const double lowest = i == 0 ? -HUGE_VAL : std::nextafter(table.x[i - 1], HUGE_VAL);
-      table.x[i] = bounded(x, lowest, 1.7e308, field.x_unit).value_or(0.0);
-      table.y[i] = bounded(y, field.y_lower, field.y_upper, field.y_unit).value_or(0.0);
+      table.x[i] = read_bounded(entries_, x, lowest, 1.7e308, field.x_unit);
+      table.y[i] = read_bounded(entries_, y, field.y_lower, field.y_upper, field.y_unit);
       table.points = static_cast<int>(i) + 1;
     }
   }
 
  private:
-  std::optional<double> bounded(const std::string& key, double lower, double upper, std::string_view unit) {
-    const Entry* entry = entries_.take(key);
-    if (entry == nullptr) {
-      return std::nullopt;
-    }
-    char* end = nullptr;
-    const double value = std::strtod(entry->value.c_str(), &end);
-    // Written so that NaN is refused as well.
-    if (*end == '\0' && value >= lower && value <= upper) {
-      return value;
-    }
-    const std::string shown(unit == "1" ? "" : unit);
-    entries_.refuse(*entry, text("allowed is a number from %g to %g %s", lower, upper, shown.c_str()));
-    return std::nullopt;
-  }
-
   Entries& entries_;
 };
 
-template <class Parameters>
+PlayedFault read_fault(Entries& entries, const std::string& prefix, std::span<const std::string_view> channels,
+                       bool hydraulic) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  constexpr double kForGood = std::numeric_limits<double>::infinity();
+  PlayedFault fault;
+  fault.kind = static_cast<PlayedKind>(read_word(entries, prefix + "kind", kPlayedKinds));
+  fault.from = read_bounded(entries, prefix + "from", 0.0, kLargest, "s");
+  fault.to = read_bounded(entries, prefix + "to", fault.from, kForGood, "s");
+  if (fault.kind == PlayedKind::bus_off) {
+    return fault;
+  }
+  fault.actuator = static_cast<int>(read_bounded(entries, prefix + "actuator", 0.0, hal::kMaxActuators, ""));
+  if (is_of_sensor(fault.kind)) {
+    fault.channel = read_word(entries, prefix + "channel", channels);
+  } else if (!hydraulic) {
+    entries.refuse(prefix + "kind: leak and lost_supply are faults of a hydraulic axis");
+  }
+  switch (fault.kind) {
+    case PlayedKind::biased:
+      fault.value = read_bounded(entries, prefix + "value", -kLargest, kLargest, "in the channel's unit");
+      break;
+    case PlayedKind::noisy:
+      fault.value = read_bounded(entries, prefix + "value", 0.0, kLargest, "in the channel's unit");
+      break;
+    case PlayedKind::delayed:
+      fault.value = read_bounded(entries, prefix + "value", 0.0, kLongestSensorDelay, "s");
+      break;
+    case PlayedKind::leak:
+      fault.value = read_bounded(entries, prefix + "value", 0.0, 1e-6, "m^3/s/Pa");
+      break;
+    case PlayedKind::lost_supply:
+      fault.value = read_bounded(entries, prefix + "value", 1e4, 1e9, "Pa");
+      break;
+    default:
+      break;
+  }
+  return fault;
+}
+
+/// Two faults would each want the actuator to be another model.
+bool are_at_odds(const PlayedFault& one, const PlayedFault& other) {
+  return is_of_actuator(one.kind) && is_of_actuator(other.kind) && one.from < other.to && other.from < one.to &&
+         (one.actuator == 0 || other.actuator == 0 || one.actuator == other.actuator);
+}
+
+template <class Model>
+std::vector<PlayedFault> read_faults(Entries& entries) {
+  std::vector<PlayedFault> faults;
+  constexpr bool kHydraulic = requires(typename Model::Parameters parameters) { parameters.actuator.leakage; };
+  for (std::string prefix = "fault.0."; entries.has_prefix(prefix); prefix = text("fault.%zu.", faults.size())) {
+    const PlayedFault fault = read_fault(entries, prefix, Model::channels, kHydraulic);
+    if (std::any_of(faults.begin(), faults.end(), [&](const PlayedFault& other) { return are_at_odds(fault, other); })) {
+      entries.refuse(prefix + "kind: a leak or lost supply of an actuator that has another one at that time");
+    }
+    faults.push_back(fault);
+  }
+  return faults;
+}
+
+template <class Model>
 PlantImage fill(Entries& entries) {
-  Parameters parameters;
+  typename Model::Parameters parameters;
   Filler filler(entries);
   model::visit_keys(parameters, filler);
+  std::vector<PlayedFault> faults = read_faults<Model>(entries);
   entries.refuse_unused();
   model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
     if constexpr (requires { E::broken_relation(values); }) {
@@ -180,7 +249,7 @@ PlantImage fill(Entries& entries) {
   if (!entries.error().empty()) {
     return {std::nullopt, entries.error()};
   }
-  return {parameters, {}};
+  return {parameters, {}, std::move(faults)};
 }
 
 }  // namespace
@@ -193,10 +262,10 @@ PlantImage parse_plant_image(const std::string& text, const std::string& name) {
   }
   const Entry* topology = entries.take("topology");
   if (entries.error().empty() && topology->value == model::Simplex<double>::topology) {
-    return fill<model::Simplex<double>::Parameters>(entries);
+    return fill<model::Simplex<double>>(entries);
   }
   if (entries.error().empty() && topology->value == model::Direct<double>::topology) {
-    return fill<model::Direct<double>::Parameters>(entries);
+    return fill<model::Direct<double>>(entries);
   }
   if (topology != nullptr) {
     entries.refuse(*topology, "allowed are direct simplex");
@@ -210,7 +279,9 @@ PlantImage read_plant_image(const std::string& path) {
   if (!file || !(content << file.rdbuf())) {
     return {std::nullopt, path + ": cannot be read as a plant image: " + std::strerror(errno)};
   }
-  return parse_plant_image(content.str(), path);
+  PlantImage image = parse_plant_image(content.str(), path);
+  image.text = content.str();
+  return image;
 }
 
 }  // namespace hotfire::firmware

@@ -3,7 +3,9 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
+#include "firmware/declared_faults.hpp"
 #include "model/direct.hpp"
 #include "model/simplex.hpp"
 
@@ -15,6 +17,8 @@ using PlantParameters = std::variant<model::Simplex<double>::Parameters, model::
 struct PlantImage {
   std::optional<PlantParameters> parameters;
   std::string error;
+  std::vector<PlayedFault> faults{};  ///< that the plant plays
+  std::string text{};                 ///< the image itself
 };
 
 /// Reads a plant image: what `hotfire plant` makes of a model file, so that the real-time executable needs no TOML and no
@@ -27,6 +31,15 @@ struct PlantImage {
 ///     effects.gimbal_friction.law lugre
 ///     effects.gimbal_friction.coulomb_torque 0x1.77p+13
 ///     effects.soft_stiffness.load.0 0x0p+0
+///
+/// Faults that the plant plays follow, from 0 on, with the keys of their kind:
+///
+///     fault.0.kind biased
+///     fault.0.from 0x1p+1
+///     fault.0.to inf
+///     fault.0.actuator 0
+///     fault.0.channel piston
+///     fault.0.value 0x1p-9
 ///
 /// Every parameter of every part is there, and every parameter of an effect that is active. Strict: an unknown, repeated or
 /// missing key, a value that is no number, NaN or outside its bounds, a table that does not rise, is refused with its line.

@@ -8,19 +8,21 @@
 
 #include "firmware/plant.hpp"
 #include "firmware/plant_image.hpp"
+#include "firmware/recording_session.hpp"
 #include "firmware/reference_plant.hpp"
+#include "firmware/status.hpp"
 #include "firmware/text.hpp"
+#include "firmware/watchdog.hpp"
 #include "hal/denormals.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/sim/plant_bus.hpp"
+#include "hal/sim/sync_source.hpp"
 
 /// Allocations since the start of the process, where a test links the guard that counts them.
 extern "C" std::uint64_t hotfire_allocation_count() noexcept __attribute__((weak));
 
 namespace hotfire::firmware {
 namespace {
-
-enum Status { kGood = 0, kTiming = 4, kBadData = 6 };
 
 constexpr std::size_t kStackBytes = 512 * 1024;
 
@@ -92,18 +94,12 @@ int finish(const Session& session) {
   return judge(session).good ? kGood : kTiming;
 }
 
-template <class Model>
-int run_plant(const Options& options, const typename Model::Parameters& parameters) {
-  using Bus = hal::sim::SimulatedPlantBus;
-  const double period = static_cast<double>(options.loop.period_ns) * 1e-9;
-  const hal::FlushDenormals flush;
-  const auto plant = std::make_unique<Plant<Model>>(parameters, period);
-  Bus bus(options.source, period);
-  hal::PosixClock clock;
-  const auto loop = std::make_unique<Loop<Plant<Model>, Bus, hal::PosixClock>>(*plant, bus, clock, options.loop);
-
-  Session session{options,         loop->result(),       Model::topology,
-                  Model::channels, Model::channel_units, model::steps_per_period(period)};
+/// Runs a loop that is set up but for real time, and reports.
+template <class Loop>
+int run_loop(Loop& loop, Session& session, RecordingSession* recording) {
+  const Options& options = session.options;
+  Watchdog watchdog(hal::ServiceManager::from_environment(), loop.heartbeat());
+  granted(watchdog.start(), session.failures);
   hal::WakefulCpus cpus;
   session.real_time = set_up_real_time(options, cpus, session.failures);
   if (options.require_realtime && !session.real_time) {
@@ -114,15 +110,53 @@ int run_plant(const Options& options, const typename Model::Parameters& paramete
   announce(options);
   session.started = std::time(nullptr);
   Usage warm = Usage::now();
-  loop->run(stop_asked, [&]() noexcept { warm = Usage::now(); });
+  loop.run(stop_asked, [&]() noexcept { warm = Usage::now(); });
   const Usage end = Usage::now();
+  watchdog.stop();
   session.ended = std::time(nullptr);
   session.place = hal::cpu_place();
   session.usage = difference(end.resources, warm.resources);
   if (hotfire_allocation_count != nullptr) {
     session.allocations = end.allocations - warm.allocations;
   }
+  if (recording != nullptr) {
+    session.recording = &recording->close();
+  }
   return finish(session);
+}
+
+template <class Model>
+int run_plant(const Options& options, const typename Model::Parameters& parameters, const PlantImage& image) {
+  using Bus = PlayedBus<hal::sim::SimulatedPlantBus>;
+  using Clock = hal::PosixClock;
+  using Syncs = hal::sim::SimulatedSyncSource<Clock>;
+  const double period = static_cast<double>(options.loop.period_ns) * 1e-9;
+  const int steps = model::steps_per_period(period);
+  const hal::FlushDenormals flush;
+  const auto plant = std::make_unique<Plant<Model>>(parameters, period, options.actuators, image.faults);
+  hal::sim::SimulatedPlantBus wire(options.source, period);
+  Bus bus(wire, image.faults, period);
+  Clock clock;
+
+  std::unique_ptr<RecordingSession> recording;
+  if (!options.recording.empty()) {
+    recording = std::make_unique<RecordingSession>(options, RecordedPlant::of<Model>(*plant, steps, image.text));
+    if (const auto failure = recording->start()) {
+      std::fprintf(stderr, "hotfire-rt: %s\n  mend: %s\n", failure->what.c_str(), failure->mend.c_str());
+      return kWrongUse;
+    }
+  }
+  const auto run = [&]<class Pace>(Pace pace) {
+    const auto loop = std::make_unique<Loop<Plant<Model>, Bus, Clock, Pace, Recorder>>(
+        *plant, bus, clock, options.loop, pace, recording ? &recording->recorder() : nullptr);
+    Session session{options, loop->result(), Model::topology, Model::channels, Model::channel_units, steps};
+    return run_loop(*loop, session, recording.get());
+  };
+  if (options.pace == PaceKind::sim) {
+    Syncs syncs(clock, options.loop.period_ns);
+    return run(SyncPace<Clock, Syncs>(clock, syncs, options.loop.period_ns, options.most_missed_syncs));
+  }
+  return run(OwnPace<Clock>(clock, options.loop.period_ns));
 }
 
 }  // namespace
@@ -130,7 +164,7 @@ int run_plant(const Options& options, const typename Model::Parameters& paramete
 Verdict judge(const Session& session) {
   const Options& options = session.options;
   const LoopResult& result = session.result;
-  if (result.ending == Ending::overrun || result.ending == Ending::not_finite) {
+  if (result.ending != Ending::completed && result.ending != Ending::asked) {
     return {false, std::string(kEndings[static_cast<std::size_t>(result.ending)])};
   }
   Verdict verdict;
@@ -147,6 +181,16 @@ Verdict judge(const Session& session) {
     const double latest = static_cast<double>(result.account.latency().greatest_ns()) * 1e-3;
     add(latest <= *options.max_latency_us, text("latest wake-up %.1f us, allowed %g us", latest, *options.max_latency_us));
   }
+  if (options.max_step_us) {
+    const double longest = static_cast<double>(result.account.step_time().greatest_ns()) * 1e-3;
+    add(longest <= *options.max_step_us, text("longest step %.1f us, allowed %g us", longest, *options.max_step_us));
+  }
+  if (session.recording != nullptr) {
+    const std::uint64_t dropped = session.recording->dropped();
+    add(dropped <= options.max_dropped,
+        text("%llu cycles missing in the recording, allowed %llu", static_cast<unsigned long long>(dropped),
+             static_cast<unsigned long long>(options.max_dropped)));
+  }
   if (verdict.reason.empty()) {
     verdict.reason = "no limit asked for";
   }
@@ -155,7 +199,7 @@ Verdict judge(const Session& session) {
 
 int run_session(const Options& options) {
   if (options.image.empty()) {
-    return run_plant<model::Simplex<double>>(options, reference_plant_with_every_effect());
+    return run_plant<model::Simplex<double>>(options, reference_plant_with_every_effect(), {});
   }
   const PlantImage image = read_plant_image(options.image);
   if (!image.parameters) {
@@ -163,9 +207,9 @@ int run_session(const Options& options) {
     return kBadData;
   }
   if (const auto* simplex = std::get_if<model::Simplex<double>::Parameters>(&*image.parameters)) {
-    return run_plant<model::Simplex<double>>(options, *simplex);
+    return run_plant<model::Simplex<double>>(options, *simplex, image);
   }
-  return run_plant<model::Direct<double>>(options, std::get<model::Direct<double>::Parameters>(*image.parameters));
+  return run_plant<model::Direct<double>>(options, std::get<model::Direct<double>::Parameters>(*image.parameters), image);
 }
 
 }  // namespace hotfire::firmware

@@ -8,6 +8,7 @@
 
 #include "firmware/loop.hpp"
 #include "firmware/options.hpp"
+#include "firmware/recorder.hpp"
 #include "hal/realtime.hpp"
 
 namespace hotfire::firmware {
@@ -24,6 +25,7 @@ struct Session {
   std::vector<hal::Failure> failures{};        ///< what of the real-time set-up the machine refused
   hal::ResourceUsage usage{};                  ///< of the loop after warm-up
   std::optional<std::uint64_t> allocations{};  ///< of the loop after warm-up, if a guard is linked
+  const RecorderAccount* recording = nullptr;  ///< null: nothing was recorded
   hal::CpuPlace place{};
   std::time_t started = 0;
   std::time_t ended = 0;

@@ -60,9 +60,13 @@ std::string overruns(const CycleAccount& account) {
 
 std::string worst_cycle(const CycleAccount& account) {
   const CycleAccount::Worst& worst = account.worst();
-  return text("  worst cycle   %llu: wake-up %.1f, read %.1f, step %.1f, write %.1f us; longest: %s\n", whole(worst.cycle),
-              us(worst.phases_ns[0]), us(worst.phases_ns[1]), us(worst.phases_ns[2]), us(worst.phases_ns[3]),
-              kBlameNames[static_cast<std::size_t>(worst.blame)].data());
+  const auto phases = [](const CycleAccount::Phases& ns) {
+    return text("wake-up %.1f, read %.1f, step %.1f, write %.1f, account %.1f us", us(ns[0]), us(ns[1]), us(ns[2]),
+                us(ns[3]), us(ns[4]));
+  };
+  return text("  worst cycle   %llu: %s; longest: %s\n  worst phases  %s, each in a cycle of its own\n", whole(worst.cycle),
+              phases(worst.phases_ns).c_str(), kBlameNames[static_cast<std::size_t>(worst.blame)].data(),
+              phases(account.longest()).c_str());
 }
 
 std::string scheduling(const Session& session) {
@@ -75,11 +79,22 @@ std::string scheduling(const Session& session) {
 
 std::string last_reading(const Session& session) {
   std::string result = "  last reading  ";
+  // Of the first actuator.
   for (std::size_t i = 0; i < session.channels.size(); ++i) {
     result += text("%s%s %.6g %s", i == 0 ? "" : ", ", session.channels[i].data(), session.result.last_reading.values[i],
                    session.channel_units[i].data());
   }
   return result + "\n";
+}
+
+std::string recording(const Session& session) {
+  if (session.recording == nullptr) {
+    return {};
+  }
+  const RecorderAccount& account = *session.recording;
+  return text("  recording     %s: %llu of %llu cycles, %llu dropped%s%s\n", session.options.recording.c_str(),
+              whole(account.stored), whole(account.offered), whole(account.dropped()),
+              account.failure.empty() ? "" : "; ended early: ", account.failure.c_str());
 }
 
 }  // namespace
@@ -89,8 +104,10 @@ std::string text_report(const Session& session) {
   const CycleAccount& account = result.account;
   const Verdict verdict = judge(session);
   const double period_us = us(session.options.loop.period_ns);
-  std::string report = text("%s on bus sim, period %.0f us, %d %s a cycle, after an overrun: %s\n", session.topology.data(),
-                            period_us, session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
+  const std::size_t actuators = session.options.actuators;
+  std::string report = text("%s%s on bus sim, period %.0f us, %d %s a cycle, after an overrun: %s\n",
+                            actuators == 1 ? "" : text("%zu times ", actuators).c_str(), session.topology.data(), period_us,
+                            session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
                             kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
   report += scheduling(session);
   report += text("  cycles        %llu at %.4f Hz, %s; before them %llu of warm-up, %llu of these overran\n",
@@ -108,7 +125,10 @@ std::string text_report(const Session& session) {
   if (session.allocations) {
     report += text("  allocations   %llu\n", whole(*session.allocations));
   }
-  report += last_reading(session) + text("  state hash    %016llx\n", whole(result.hash.value()));
+  if (session.options.pace != PaceKind::clock) {
+    report += text("  syncs         %llu missed\n", whole(result.missed_syncs));
+  }
+  report += recording(session) + last_reading(session) + text("  state hash    %016llx\n", whole(result.hash.value()));
   if (account.latency().count() > 0) {
     report += picture(account.latency());
   }

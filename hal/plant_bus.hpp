@@ -20,6 +20,7 @@ struct Command {
 struct Reading {
   std::array<double, kMaxReadings> values{};
   std::size_t count = 0;               ///< how many of `values` are used
+  std::uint32_t missing = 0;           ///< bit i: `values[i]` is not sent, its sensor is silent
   std::uint64_t sequence = 0;          ///< number of the plant's cycle
   std::uint64_t command_sequence = 0;  ///< the command this reading answers
 };

@@ -137,7 +137,7 @@ struct UnlistedSignal {
     UnlistedTable<S> table{};
     static constexpr auto fields() {
       return std::array{
-          Field<Params>{"frequency", "Hz", 1e-3, 1e3, 5.0, "frequency of the sinusoid", &Params::frequency, 0b100},
+          Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100},
           Field<Params>{"amplitude", Names::unit, 0.0, Names::largest, Names::typical, "amplitude of the sinusoid",
                         &Params::amplitude, 0b100}};
     }
@@ -190,7 +190,7 @@ struct UnlistedMotion {
       return std::array{
           Field<Params>{"stiffness", Names::stiffness_unit, 1e-6, 1e15, Names::typical_stiffness,
                         "stiffness of the friction before it slides", &Params::stiffness, 0b000100},
-          Field<Params>{"frequency", "Hz", 1e-3, 1e3, 5.0, "frequency of the sinusoid", &Params::frequency, 0b100000},
+          Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100000},
           Field<Params>{"amplitude", Names::unit, 0.0, 1e12, Names::typical, "amplitude of the sinusoid", &Params::amplitude,
                         0b100000}};
     }

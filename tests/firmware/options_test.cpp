@@ -57,8 +57,8 @@ TEST(Options, BusThatThisBuildDoesNotHaveIsRefusedNamingWhatItHas) {
 }
 
 TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
-  refused({}, "plant or timing");
-  refused({"fly"}, "plant or timing");
+  refused({}, "plant, timing or replay");
+  refused({"fly"}, "plant, timing or replay");
   refused({"plant"}, "hotfire plant --model");
   refused({"timing", "--perod-us", "500"}, "unknown argument --perod-us");
   refused({"timing", "--cycles"}, "--cycles needs a value");
@@ -68,6 +68,32 @@ TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
   refused({"timing", "--cycles", "-1"}, "a whole number");
   refused({"timing", "--cycles", "10x"}, "a whole number");
   refused({"timing", "--priority", "0", "--require-realtime"}, "exclude each other");
+}
+
+TEST(Options, RecordingAndItsLimitsAreRead) {
+  const Options options =
+      accepted({"plant", "--image", "p", "--record", "run.hfr", "--record-buffer-s", "2.5", "--record-max-mib=64",
+                "--max-dropped", "7", "--actuators", "8", "--sync", "sim", "--max-missed-syncs", "0"});
+  STRCMP_EQUAL("run.hfr", options.recording.c_str());
+  DOUBLES_EQUAL(2.5, options.record_buffer_s, 0.0);
+  UNSIGNED_LONGS_EQUAL(64, options.record_max_mib);
+  UNSIGNED_LONGS_EQUAL(7, options.max_dropped);
+  UNSIGNED_LONGS_EQUAL(8, options.actuators);
+  CHECK(options.pace == PaceKind::sim);
+  UNSIGNED_LONGS_EQUAL(0, options.most_missed_syncs);
+  refused({"plant", "--image", "p", "--actuators", "9"}, "from 1 to 8");
+  refused({"plant", "--image", "p", "--sync", "can"}, "clock, sim");
+  refused({"timing", "--record", "run.hfr"}, "--record needs a model");
+}
+
+TEST(Options, ReplayTakesOneRecording) {
+  const Options options = accepted({"replay", "run.hfr", "--json"});
+  CHECK(options.mode == Mode::replay);
+  CHECK(options.json);
+  STRCMP_EQUAL("run.hfr", options.recording.c_str());
+  refused({"replay"}, "needs a recording");
+  refused({"replay", "a.hfr", "b.hfr"}, "unknown argument b.hfr");
+  refused({"replay", "a.hfr", "--image"}, "unknown argument --image");
 }
 
 TEST(Options, HelpNamesEveryOptionAndAnExample) {

@@ -50,6 +50,44 @@ TEST(Report, LimitOnLatencyLooksAtTheLatestWakeUp) {
   CHECK(!judge(session()).good);
 }
 
+TEST(Report, LimitOnTheStepLooksAtTheLongestOne) {
+  options.max_step_us = 1500.0;
+  CHECK(judge(session()).good);
+  options.max_step_us = 1499.9;
+  const Verdict verdict = judge(session());
+  CHECK(!verdict.good);
+  STRCMP_EQUAL("longest step 1500.0 us, allowed 1499.9 us", verdict.reason.c_str());
+}
+
+TEST(Report, LimitsAreJudgedWithoutTheWarmUp) {
+  options.max_latency_us = 0.0;
+  options.max_overruns = 0;
+  world = ScriptedWorld{};
+  world.delays[5] = {400'000, 10'000, 3'000'000, 10'000};
+  options.loop.cycles = 100;
+  options.loop.warm_up_cycles = 10;
+  result = std::make_unique<LoopResult>(run_scripted(world, options.loop));
+  using Simplex = model::Simplex<double>;
+  const Verdict verdict = judge({options, *result, Simplex::topology, Simplex::channels, Simplex::channel_units, 2});
+  CHECK(verdict.good);
+  UNSIGNED_LONGS_EQUAL(1, result->warm_up_overruns);
+}
+
+TEST(Report, CycleMissingInTheRecordingIsBadUnlessAllowed) {
+  const RecorderAccount account{100, 99, "the disk is full"};
+  const auto with_recording = [&] {
+    Session with = session();
+    with.recording = &account;
+    return with;
+  };
+  CHECK(!judge(with_recording()).good);
+  STRCMP_CONTAINS("99 of 100 cycles, 1 dropped; ended early: the disk is full", text_report(with_recording()).c_str());
+  STRCMP_CONTAINS("\"recording\":{\"file\":\"\",\"offered\":100,\"stored\":99,\"dropped\":1",
+                  json_report(with_recording()).c_str());
+  options.max_dropped = 1;
+  CHECK(judge(with_recording()).good);
+}
+
 TEST(Report, LoopStoppedByAnOverrunIsBadWhateverTheLimits) {
   options.max_overruns = 10;
   options.loop.policy = OverrunPolicy::stop;
@@ -63,7 +101,8 @@ TEST(Report, TextNamesTheFiguresTheBlameAndThatItWasNoRealTime) {
   STRCMP_CONTAINS("real time     NO", text.c_str());
   STRCMP_CONTAINS("cycles        100 at 1000.0000 Hz", text.c_str());
   STRCMP_CONTAINS("overruns      1, blamed on: wake_up 0, read 0, step 1, write 0, backlog 0", text.c_str());
-  STRCMP_CONTAINS("worst cycle   40: wake-up 0.0, read 10.0, step 1500.0, write 10.0 us; longest: step", text.c_str());
+  STRCMP_CONTAINS("worst cycle   40: wake-up 0.0, read 10.0, step 1500.0, write 10.0, account 0.0 us; longest: step",
+                  text.c_str());
   STRCMP_CONTAINS("max 250.0 us", text.c_str());
   STRCMP_CONTAINS("as an ordinary process", text.c_str());
 }

@@ -66,6 +66,9 @@ class ScriptedPlant {
 
   void step(const hal::Command&) noexcept { world_.clock.advance_ns(world_.now().step_ns); }
   std::span<const double> measured() const noexcept { return {&world_.measured, 1}; }
+  void add_to(hal::Fnv1a& hash) const noexcept { hash.add(measured()); }
+  static constexpr std::uint32_t missing() noexcept { return 0; }
+  static constexpr std::size_t actuators() noexcept { return 1; }
 
  private:
   ScriptedWorld& world_;

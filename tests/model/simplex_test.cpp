@@ -155,6 +155,9 @@ TEST(Simplex, MovesNoFasterThanTheSaturatedValveLets) {
 TEST(Simplex, StaysInItsSteadyStateWhateverTheEffect) {
   for_each_law([]<class E>(int option) {
     if constexpr (index_in<E>(Plant::Effects{}) < Plant::Effects::size) {
+      if (depends_on_time<E>(option)) {
+        return;
+      }
       for (const double command : {0.0, 0.001, 0.05, -0.05}) {
         Plant::Parameters parameters;
         activate<model::TorqueOffset, Plant>(parameters, {0, 3e3});

@@ -13,6 +13,7 @@
 #include "tools/files/model_file.hpp"
 #include "tools/files/model_layout.hpp"
 #include "tools/files/record.hpp"
+#include "tools/files/recording.hpp"
 
 namespace hotfire {
 
@@ -51,11 +52,13 @@ Json describe(const std::filesystem::path& path) {
   if (path.extension() == ".toml") {
     return describe_model(path);
   }
-  if (path.extension() == ".csv") {
+  if (path.extension() == ".csv" || is_recording(path)) {
     return describe_record(path);
   }
-  throw FileError(fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model), .csv (a record)",
-                              path.string(), path.extension().string()));
+  throw FileError(
+      fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model), .csv (a record), a recording of "
+                  "'hotfire plant --record'",
+                  path.string(), path.extension().string()));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -117,7 +120,8 @@ void add_check(CLI::App& program) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
-      "check", "Check model files (.toml) and records (.csv): what each is, or what is wrong, where, and the mend");
+      "check",
+      "Check model files (.toml), records (.csv) and recordings: what each is, or what is wrong, where, and the mend");
   command->add_option("FILE", options->files, "model files and records")->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");
   command->footer(

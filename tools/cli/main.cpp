@@ -66,6 +66,8 @@ int run(int argc, char** argv) {
   add_reduce(program);
   add_plant(program);
   add_timing(program);
+  add_replay(program);
+  add_doctor(program);
   for (CLI::App* command : program.get_subcommands(nullptr)) {
     command->set_version_flag("--version", HOTFIRE_VERSION);
   }

@@ -10,10 +10,10 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <vector>
 
 #include "tools/cli/plant_image_text.hpp"
 #include "tools/files/error.hpp"
+#include "tools/files/fault_file.hpp"
 #include "tools/files/model_file.hpp"
 
 namespace hotfire {
@@ -29,7 +29,15 @@ std::string share_image(const std::string& image) {
   return fmt::format("/proc/self/fd/{}", file);
 }
 
-[[noreturn]] void become_realtime_program(const std::vector<std::string>& arguments) {
+bool asks_for_text_only(const std::vector<std::string>& arguments) {
+  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
+    return argument == "--help" || argument == "-h" || argument == "--version";
+  });
+}
+
+}  // namespace
+
+void become_realtime_program(const std::vector<std::string>& arguments) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "hotfire-rt";
   std::vector<std::string> words = arguments;
   words.insert(words.begin(), program);
@@ -45,28 +53,26 @@ std::string share_image(const std::string& image) {
       fmt::format("cannot start {}: {}; build or install hotfire-rt beside hotfire", program, std::strerror(errno)));
 }
 
-bool asks_for_text_only(const std::vector<std::string>& arguments) {
-  return std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
-    return argument == "--help" || argument == "-h" || argument == "--version";
-  });
-}
-
-}  // namespace
-
 void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model) {
   const auto path = std::make_shared<std::string>();
+  const auto faults = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand(name, description);
   command->set_help_flag();
   command->allow_extras();
   command->add_option("--model", *path, "model file (.toml)");
-  command->callback([command, path, name, needs_model] {
+  command->add_option("--faults", *faults, "faults to play (.toml)");
+  command->callback([command, path, faults, name, needs_model] {
     std::vector<std::string> arguments = command->remaining();
     arguments.insert(arguments.begin(), name);
     if (!asks_for_text_only(arguments)) {
       if (!path->empty()) {
-        arguments.insert(arguments.end(), {"--image", share_image(plant_image_text(load_model(*path)))});
+        const ModelFile model = load_model(*path);
+        const std::string played = faults->empty() ? "" : load_faults(*faults, model);
+        arguments.insert(arguments.end(), {"--image", share_image(plant_image_text(model) + played)});
       } else if (needs_model) {
         throw UsageError("--model FILE is needed");
+      } else if (!faults->empty()) {
+        throw UsageError("--faults needs --model FILE, whose plant plays them");
       }
     }
     become_realtime_program(arguments);

@@ -2,15 +2,20 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace hotfire {
 
 /// Adds a command that is carried out by hotfire-rt, the small executable for the real-time target beside this one. The
-/// command has `--model` of its own: the model is read and checked here, and handed over as a plant image in memory. Every
-/// other argument is passed on as it is, so that hotfire-rt's own table of options is the only one.
+/// command has `--model` and `--faults` of its own: the model and the faults that its plant plays are read and checked here,
+/// and handed over as a plant image in memory. Every other argument is passed on as it is, so that hotfire-rt's own table of
+/// options is the only one.
 ///
 /// Throws FileError for a model that is refused, UsageError if `needs_model` and there is none, or if hotfire-rt cannot be
 /// started. Else it does not return: the process becomes hotfire-rt, whose exit status is the command's.
 void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model);
+
+/// Becomes hotfire-rt with these arguments; does not return. Throws UsageError if it cannot be started.
+[[noreturn]] void become_realtime_program(const std::vector<std::string>& arguments);
 
 }  // namespace hotfire

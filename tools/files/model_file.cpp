@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 
 #include "tools/files/error.hpp"
 #include "tools/files/model_group.hpp"
@@ -109,16 +108,6 @@ void read_tolerances(const TomlSource& source, const ModelLayout& layout, ModelF
     }
   }
   read_tolerances(source, source.table(*node, "tolerance"), "", Words(declared.begin(), declared.end()), model);
-}
-
-void require_schema(const TomlSource& source) {
-  const toml::node* schema = source.root().get("schema");
-  if (schema == nullptr) {
-    source.refuse_missing(source.root(), "schema", "missing; write schema = 1 on the first line");
-  }
-  if (schema->value_exact<std::int64_t>() != std::int64_t{1}) {
-    source.refuse(*schema, "schema", "not read by this build; allowed: 1");
-  }
 }
 
 void choose_topology(const TomlSource& source, ModelFile& model) {

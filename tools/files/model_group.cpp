@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "tools/files/suggestion.hpp"
 
@@ -148,6 +149,16 @@ std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::t
     source.refuse_missing(table, prefix.substr(0, prefix.size() - 1), broken);
   }
   return left_out;
+}
+
+void require_schema(const TomlSource& source) {
+  const toml::node* schema = source.root().get("schema");
+  if (schema == nullptr) {
+    source.refuse_missing(source.root(), "schema", "missing; write schema = 1 on the first line");
+  }
+  if (schema->value_exact<std::int64_t>() != std::int64_t{1}) {
+    source.refuse(*schema, "schema", "not read by this build; allowed: 1");
+  }
 }
 
 }  // namespace hotfire

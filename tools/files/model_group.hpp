@@ -20,6 +20,9 @@ Words names_of(const Items& items) {
   return names;
 }
 
+/// Refuses a file without `schema = 1`.
+void require_schema(const TomlSource& source);
+
 /// Refuses every key of a table that is not in `known`. `prefix` is where the table stands, "actuator." say.
 void refuse_unknown_keys(const TomlSource& source, const toml::table& table, std::string_view prefix, const Words& known);
 

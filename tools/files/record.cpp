@@ -9,6 +9,7 @@
 #include "tools/files/csv_lines.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/record_channels.hpp"
+#include "tools/files/recording.hpp"
 #include "tools/files/time_grid.hpp"
 
 namespace hotfire {
@@ -135,6 +136,9 @@ const Channel* Record::find(const std::string& channel) const {
 }
 
 Record load_record(const std::filesystem::path& path) {
+  if (is_recording(path)) {
+    return load_recording(path);
+  }
   CsvLines lines(path);
   Rows rows = read_rows(lines);
   const std::vector<double>& times = rows.values[rows.time_column];

@@ -30,9 +30,10 @@ struct Record {
   const Channel* find(const std::string& channel) const;
 };
 
-/// Reads and checks a CSV record (contract.md). Throws FileError with file, line, column, value and what is allowed: empty
-/// file, unknown channel or unit, ragged row, NaN or text, gap in time, repeated or backward time, sampling outside
-/// 50 Hz - 20 kHz, more than 10^7 rows, a binary file (refused after its first bytes, whatever its size).
+/// Reads and checks a CSV record (contract.md), or a recording of one actuator (recording.hpp). Throws FileError with file,
+/// line, column, value and what is allowed: empty file, unknown channel or unit, ragged row, NaN or text, gap in time,
+/// repeated or backward time, sampling outside 50 Hz - 20 kHz, more than 10^7 rows, a binary file (refused after its first
+/// bytes, whatever its size).
 Record load_record(const std::filesystem::path& path);
 
 /// Throws FileError unless the record has the channel; the message lists the channels it has and what the model needs.

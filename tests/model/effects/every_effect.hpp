@@ -63,6 +63,16 @@ constexpr bool is_unlisted() {
   return requires { E::is_unlisted; };
 }
 
+/// True for a term that time itself moves: it has no steady state.
+template <class E>
+bool depends_on_time(int option) {
+  if constexpr (is_unlisted<E>()) {
+    const std::string_view law = E::options[static_cast<std::size_t>(option)];
+    return law == "time" || law == "periodic";
+  }
+  return false;
+}
+
 /// A table of five points over what the smooth inputs of these tests run through; ordinates are `size` times the typical
 /// one, all positive and rising if it is positive.
 template <class E, class S>

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace hotfire::firmware {
+
+/// What can go wrong on a rig. The numbers are for good: they are in logs, recordings and people's heads, so a fault that is
+/// no longer raised keeps its number. Each has a section in docs/faults.md.
+enum class Fault : std::uint8_t {
+  stale_command = 1,
+  stale_sensor = 2,
+  out_of_range = 3,
+  readings_disagree = 4,
+  bad_frame = 5,
+  bus_off = 6,
+  bus_down = 7,
+  transmit_queue_full = 8,
+  emergency_stop = 9,
+  hydraulic_enable_lost = 10,
+  overrun = 11,
+  position_error = 12,
+  limit = 13,
+  not_finite = 14,
+  recorder_full = 15,
+};
+
+struct FaultText {
+  Fault fault;
+  std::string_view name;     ///< heading of its section in docs/faults.md
+  std::string_view meaning;  ///< one line, for a log
+};
+
+inline constexpr std::array<FaultText, 15> kFaults{{
+    {Fault::stale_command, "stale command", "no new command within its age limit"},
+    {Fault::stale_sensor, "stale sensor", "a reading is older than its age limit"},
+    {Fault::out_of_range, "out of range", "a reading is outside what its sensor can give"},
+    {Fault::readings_disagree, "readings disagree", "two redundant readings are further apart than allowed"},
+    {Fault::bad_frame, "bad frame", "a frame's CRC or sequence number is wrong"},
+    {Fault::bus_off, "bus-off", "the CAN controller has switched itself off the bus"},
+    {Fault::bus_down, "bus down", "the CAN interface is down"},
+    {Fault::transmit_queue_full, "transmit queue full", "the bus does not take frames as fast as they are due"},
+    {Fault::emergency_stop, "emergency stop", "the emergency stop is pressed, or its line is broken"},
+    {Fault::hydraulic_enable_lost, "hydraulic enable lost", "the hydraulic supply is not enabled any more"},
+    {Fault::overrun, "overrun", "a cycle ended after the next was due"},
+    {Fault::position_error, "position error", "an actuator does not follow its command"},
+    {Fault::limit, "limit", "a command, its rate or a position is beyond its limit"},
+    {Fault::not_finite, "non-finite state", "a value is not a number, or infinite"},
+    {Fault::recorder_full, "recorder full", "cycles are no longer recorded"},
+}};
+
+constexpr const FaultText& text_of(Fault fault) noexcept { return kFaults[static_cast<std::size_t>(fault) - 1]; }
+
+/// Some of the faults.
+class FaultSet {
+ public:
+  constexpr FaultSet() noexcept = default;
+  constexpr FaultSet(Fault fault) noexcept : bits_(bit(fault)) {}  // NOLINT(google-explicit-constructor): one is a set
+
+  static constexpr FaultSet all() noexcept {
+    FaultSet set;
+    for (const FaultText& text : kFaults) {
+      set |= text.fault;
+    }
+    return set;
+  }
+
+  constexpr FaultSet& operator|=(FaultSet other) noexcept {
+    bits_ |= other.bits_;
+    return *this;
+  }
+  friend constexpr FaultSet operator|(FaultSet one, FaultSet other) noexcept { return one |= other; }
+  friend constexpr bool operator==(FaultSet one, FaultSet other) noexcept = default;
+
+  /// Adds the fault if it is so.
+  constexpr void add_if(bool present, Fault fault) noexcept { bits_ |= present ? bit(fault) : 0; }
+
+  constexpr bool any() const noexcept { return bits_ != 0; }
+  constexpr bool has(Fault fault) const noexcept { return (bits_ & bit(fault)) != 0; }
+  constexpr int count() const noexcept { return std::popcount(bits_); }
+
+ private:
+  static constexpr std::uint32_t bit(Fault fault) noexcept { return std::uint32_t{1} << static_cast<unsigned>(fault); }
+
+  std::uint32_t bits_ = 0;
+};
+
+}  // namespace hotfire::firmware

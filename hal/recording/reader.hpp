@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/recording/format.hpp"
+
+namespace hotfire::hal {
+
+/// One cycle of a recording. The spans hold until the next one is read.
+struct RecordedCycle {
+  CycleHead head;
+  std::uint64_t dropped_before = 0;  ///< cycles missing between the one before and this
+  std::span<const double> commands;  ///< one an actuator
+  std::span<const double> readings;  ///< actuator after actuator
+};
+
+/// Reads a recording from its beginning to its last whole block, a block at a time. A file whose writer was killed, or that
+/// is still being written, reads like any other: what it lacks is the end, and `end()` says so.
+class RecordingReader {
+ public:
+  /// How a recording ends. `cut_off`: its writer did not close it. `damaged`: a block in its midst is not what was written,
+  /// what follows it is not read.
+  enum class End { closed, cut_off, damaged };
+
+  /// Opens the file and reads its header. `error()` is then empty, or says why it is refused.
+  explicit RecordingReader(const std::string& path);
+
+  const std::string& error() const { return error_; }
+  const RecordingHeader& header() const { return header_; }
+
+  /// The next cycle; false at the end.
+  bool next(RecordedCycle& cycle);
+
+  /// After `next` has returned false.
+  End end() const { return end_; }
+  std::uint64_t cycles() const { return cycles_; }
+  /// Cycles that ran and are not in the file, those after the last one in it too if it was closed.
+  std::uint64_t dropped() const { return end_ == End::closed ? dropped_at_end_ : dropped_; }
+
+ private:
+  bool read_block();
+  bool no_more(End end);
+
+  std::ifstream file_;
+  RecordingHeader header_;
+  std::string error_;
+  std::vector<std::byte> block_;
+  std::size_t cycle_bytes_ = 0;
+  std::size_t next_in_block_ = 0;
+  std::size_t in_block_ = 0;
+  std::vector<double> values_;
+  std::uint64_t expected_ = 0;
+  std::uint64_t cycles_ = 0;
+  std::uint64_t dropped_ = 0;
+  std::uint64_t dropped_at_end_ = 0;
+  End end_ = End::cut_off;
+};
+
+}  // namespace hotfire::hal
