@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "tools/cli/commands.hpp"
+#include "tools/files/can_schedule.hpp"
+#include "tools/files/candump.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/model_layout.hpp"
@@ -38,7 +40,7 @@ Json describe_model(const std::filesystem::path& path) {
 }
 
 Json describe_record(const std::filesystem::path& path) {
-  const Record record = load_record(path);
+  const Record record = load_record_or_log(path);
   Json channels = Json::array();
   for (const Channel& channel : record.channels) {
     channels.push_back({{"name", channel.name}, {"unit", channel.unit}});
@@ -47,15 +49,31 @@ Json describe_record(const std::filesystem::path& path) {
       {"kind", "record"}, {"rows", record.rows}, {"start", record.start}, {"period", record.period}, {"channels", channels}};
 }
 
+Json describe_schedule(const std::filesystem::path& path) {
+  const CanSchedule schedule = load_can_schedule(path);
+  Json frames = Json::array();
+  for (const ScheduledFrame& frame : schedule.frames) {
+    frames.push_back(
+        {{"message", frame.message}, {"period", frame.period}, {"longest", frame.longest}, {"load", frame.load()}});
+  }
+  return {{"kind", "schedule"},
+          {"bit_rate", schedule.bit_rate},
+          {"load", schedule.load()},
+          {"largest_load", kLargestBusLoad},
+          {"frames", frames}};
+}
+
 Json describe(const std::filesystem::path& path) {
   if (path.extension() == ".toml") {
-    return describe_model(path);
+    return is_can_schedule(path) ? describe_schedule(path) : describe_model(path);
   }
-  if (path.extension() == ".csv") {
+  if (path.extension() == ".csv" || path.extension() == ".log") {
     return describe_record(path);
   }
-  throw FileError(fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model), .csv (a record)",
-                              path.string(), path.extension().string()));
+  throw FileError(fmt::format(
+      "{}: what it is cannot be told from \"{}\"; allowed: .toml (a model or a CAN schedule), .csv (a record), .log "
+      "(a candump log)",
+      path.string(), path.extension().string()));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -72,6 +90,11 @@ std::string line_of(const Json& result) {
                        result["name"].get<std::string>(), result["topology"].get<std::string>(),
                        joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].size(),
                        reference.empty() ? "" : ", left to their reference values: " + joined(reference));
+  }
+  if (result["kind"] == "schedule") {
+    return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",
+                       result["frames"].size(), 100.0 * result["load"].get<double>(),
+                       1e-6 * result["bit_rate"].get<double>(), 100.0 * kLargestBusLoad);
   }
   std::vector<std::string> channels;
   for (const Json& channel : result["channels"]) {
@@ -116,12 +139,14 @@ void add_check(CLI::App& program) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "check", "Check model files (.toml) and records (.csv): what each is, or what is wrong, where, and the mend");
-  command->add_option("FILE", options->files, "model files and records")->required();
+  CLI::App* command = program.add_subcommand("check",
+                                             "Check model files and CAN schedules (.toml) and records (.csv, candump .log): "
+                                             "what each is, or what is wrong and the mend");
+  command->add_option("FILE", options->files, "model files, CAN schedules and records")->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");
   command->footer(
-      "Example: hotfire check declared.toml steps.csv sweep.csv\nExit status: 0 all good, 6 any refused; all are checked "
+      "Example: hotfire check declared.toml steps.csv schedule.toml\nExit status: 0 all good, 6 any refused; all are "
+      "checked "
       "first.");
   command->callback([options] { check(options->files, options->json); });
 }

@@ -204,6 +204,11 @@ class DbcReader {
 
 }  // namespace
 
+bool CanSignal::can_carry(double physical) const {
+  const double raw = std::round((physical - offset) / factor);
+  return raw >= static_cast<double>(lowest_raw) && raw <= static_cast<double>(highest_raw);
+}
+
 std::int64_t CanSignal::nearest_raw(double physical) const {
   const double raw = std::round((physical - offset) / factor);
   return static_cast<std::int64_t>(std::clamp(raw, static_cast<double>(lowest_raw), static_cast<double>(highest_raw)));

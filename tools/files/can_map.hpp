@@ -22,6 +22,8 @@ struct CanSignal {
   std::string unit;
 
   double physical(std::int64_t raw) const { return offset + factor * static_cast<double>(raw); }
+  /// Whether a physical value, rounded to the nearest code, is within the range.
+  bool can_carry(double physical) const;
   /// The raw value nearest to a physical one, at the end of the range if it is beyond.
   std::int64_t nearest_raw(double physical) const;
   std::int64_t read(std::span<const std::uint8_t> data) const;

@@ -111,16 +111,6 @@ void read_tolerances(const TomlSource& source, const ModelLayout& layout, ModelF
   read_tolerances(source, source.table(*node, "tolerance"), "", Words(declared.begin(), declared.end()), model);
 }
 
-void require_schema(const TomlSource& source) {
-  const toml::node* schema = source.root().get("schema");
-  if (schema == nullptr) {
-    source.refuse_missing(source.root(), "schema", "missing; write schema = 1 on the first line");
-  }
-  if (schema->value_exact<std::int64_t>() != std::int64_t{1}) {
-    source.refuse(*schema, "schema", "not read by this build; allowed: 1");
-  }
-}
-
 void choose_topology(const TomlSource& source, ModelFile& model) {
   const std::string allowed =
       fmt::format("allowed: \"{}\", \"{}\"", model::Simplex<double>::topology, model::Direct<double>::topology);
@@ -142,7 +132,7 @@ void choose_topology(const TomlSource& source, ModelFile& model) {
 
 ModelFile load_model(const std::filesystem::path& path) {
   const TomlSource source(path);
-  require_schema(source);
+  source.require_schema();
   ModelFile model;
   model.path = path;
   choose_topology(source, model);
