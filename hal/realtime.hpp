@@ -5,13 +5,9 @@
 #include <optional>
 #include <string>
 
-namespace hotfire::hal {
+#include "hal/failure.hpp"
 
-/// Why a step of the real-time set-up was refused by the machine, and what a person does about it.
-struct Failure {
-  std::string what;
-  std::string mend;
-};
+namespace hotfire::hal {
 
 /// The set-up of a real-time process, before its loop. Each returns nothing when done and never throws; after a failure the
 /// process goes on as it was. All of it is to be called from the thread that will run the loop, after everything the loop

@@ -56,7 +56,7 @@ TEST(Command, check_looks_at_every_file_before_it_exits_with_6) {
   LONGS_EQUAL(6, status_of("check " + bad + " " + record() + " none.toml odd.xls"));
   expect_message(out, {"bad.csv: refused", "good.csv: record", "none.toml: refused", "odd.xls: refused"});
   expect_message(err, {"hotfire: ", "bad.csv:2: column piston: \"x\"", "none.toml: cannot be opened",
-                       ".toml (a model), .csv (a record)"});
+                       ".toml (a model or a CAN schedule), .csv (a record)", ".log (a candump log)"});
 }
 
 TEST(Command, check_prints_json_on_request) {
@@ -96,6 +96,32 @@ TEST(Command, simulate_writes_a_record_on_the_grid_of_its_input_and_one_line) {
   LONGS_EQUAL(1, std::count(out.begin(), out.end(), '\n'));
   LONGS_EQUAL(0, status_of("check " + output));
   expect_message(out, {"3 rows, period 0.002 s", "command[rad], piston[m], engine[rad], load_pressure[Pa]"});
+}
+
+TEST(Command, check_says_how_much_of_a_bus_a_schedule_takes_and_refuses_one_that_does_not_fit) {
+  const std::string good =
+      scratch.write("good.toml", "schema = 1\n[bus]\nbit_rate = 1e6\n[frames]\nSYNC = 0.001\n").string();
+  const std::string bad = scratch.write("bad.toml", "schema = 1\n[bus]\nbit_rate = 1e5\n[frames]\nSYNC = 0.001\n").string();
+  LONGS_EQUAL(0, status_of("check " + good));
+  expect_message(out, {"CAN schedule, 1 frames, worst-case bus load 7.5 % of 1 Mbit/s, allowed 70 %"});
+  LONGS_EQUAL(6, status_of("check " + bad));
+  expect_message(err, {"bad.toml: worst-case bus load 75.0 %"});
+}
+
+TEST(Command, candump_log_is_written_read_back_and_simulated) {
+  const std::string csv =
+      scratch.write("r.csv", "time[s],command[rad],piston[m]\n0,0,0\n0.002,0.01,0\n0.004,0.01,0\n").string();
+  const std::string log = scratch.path("r.log").string();
+  LONGS_EQUAL(0, status_of("convert --command-per-current 5 " + csv + " " + log));
+  LONGS_EQUAL(0, status_of("check " + log));
+  expect_message(out, {"r.log: record, 3 rows, period 0.002 s (500 Hz)", "current[A], piston[m]"});
+  const std::string output = scratch.path("model.csv").string();
+  LONGS_EQUAL(0,
+              status_of("simulate --model " + model() + " --command-per-current 5 --input " + log + " --output " + output));
+  expect_message(out, {"model.csv: 3 rows"});
+  LONGS_EQUAL(6, status_of("simulate --model " + model() + " --input " + log + " --output " + output));
+  expect_message(err, {"no column command", "--command-per-current"});
+  LONGS_EQUAL(2, status_of("convert " + csv + " r.mat"));
 }
 
 TEST(Command, simulate_refuses_bad_data_with_6_and_leaves_no_output) {

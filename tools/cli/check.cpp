@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "tools/cli/commands.hpp"
+#include "tools/files/can_schedule.hpp"
+#include "tools/files/candump.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/model_layout.hpp"
@@ -39,7 +41,7 @@ Json describe_model(const std::filesystem::path& path) {
 }
 
 Json describe_record(const std::filesystem::path& path) {
-  const Record record = load_record(path);
+  const Record record = load_record_or_log(path);
   Json channels = Json::array();
   for (const Channel& channel : record.channels) {
     channels.push_back({{"name", channel.name}, {"unit", channel.unit}});
@@ -48,17 +50,31 @@ Json describe_record(const std::filesystem::path& path) {
       {"kind", "record"}, {"rows", record.rows}, {"start", record.start}, {"period", record.period}, {"channels", channels}};
 }
 
+Json describe_schedule(const std::filesystem::path& path) {
+  const CanSchedule schedule = load_can_schedule(path);
+  Json frames = Json::array();
+  for (const ScheduledFrame& frame : schedule.frames) {
+    frames.push_back(
+        {{"message", frame.message}, {"period", frame.period}, {"longest", frame.longest}, {"load", frame.load()}});
+  }
+  return {{"kind", "schedule"},
+          {"bit_rate", schedule.bit_rate},
+          {"load", schedule.load()},
+          {"largest_load", kLargestBusLoad},
+          {"frames", frames}};
+}
+
 Json describe(const std::filesystem::path& path) {
   if (path.extension() == ".toml") {
-    return describe_model(path);
+    return is_can_schedule(path) ? describe_schedule(path) : describe_model(path);
   }
-  if (path.extension() == ".csv" || is_recording(path)) {
+  if (path.extension() == ".csv" || path.extension() == ".log" || is_recording(path)) {
     return describe_record(path);
   }
-  throw FileError(
-      fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model), .csv (a record), a recording of "
-                  "'hotfire plant --record'",
-                  path.string(), path.extension().string()));
+  throw FileError(fmt::format(
+      "{}: what it is cannot be told from \"{}\"; allowed: .toml (a model or a CAN schedule), .csv (a record), .log "
+      "(a candump log), a recording of 'hotfire plant --record'",
+      path.string(), path.extension().string()));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -75,6 +91,11 @@ std::string line_of(const Json& result) {
                        result["name"].get<std::string>(), result["topology"].get<std::string>(),
                        joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].size(),
                        reference.empty() ? "" : ", left to their reference values: " + joined(reference));
+  }
+  if (result["kind"] == "schedule") {
+    return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",
+                       result["frames"].size(), 100.0 * result["load"].get<double>(),
+                       1e-6 * result["bit_rate"].get<double>(), 100.0 * kLargestBusLoad);
   }
   std::vector<std::string> channels;
   for (const Json& channel : result["channels"]) {
@@ -121,11 +142,13 @@ void add_check(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "check",
-      "Check model files (.toml), records (.csv) and recordings: what each is, or what is wrong, where, and the mend");
-  command->add_option("FILE", options->files, "model files and records")->required();
+      "Check model files and CAN schedules (.toml), records (.csv, candump .log) and recordings: what each is, or what is "
+      "wrong, where, and the mend");
+  command->add_option("FILE", options->files, "model files, CAN schedules and records")->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");
   command->footer(
-      "Example: hotfire check declared.toml steps.csv sweep.csv\nExit status: 0 all good, 6 any refused; all are checked "
+      "Example: hotfire check declared.toml steps.csv schedule.toml\nExit status: 0 all good, 6 any refused; all are "
+      "checked "
       "first.");
   command->callback([options] { check(options->files, options->json); });
 }

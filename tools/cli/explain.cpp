@@ -12,6 +12,7 @@
 #include <mutex>
 #include <thread>
 
+#include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/whole_file.hpp"
@@ -27,6 +28,7 @@ struct ExplainArguments {
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   int most_effects = 4;
   bool json = false;
+  CandumpOptions candump;
 };
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -87,7 +89,7 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   const ModelFile model = load_model(arguments.model);
   std::vector<Record> records;
   for (const std::string& path : arguments.records) {
-    records.push_back(load_record(path));
+    records.push_back(load_record_or_log(path, arguments.candump));
   }
   const std::filesystem::path out(arguments.out);
   std::error_code failed;
@@ -125,11 +127,12 @@ void add_explain(CLI::App& program) {
   CLI::App* command = program.add_subcommand("explain", "Find what a declared model lacks against measured records");
   command->add_option("--model", arguments->model, "declared model (.toml)")->required();
   command->add_option("--out", arguments->out, "folder for explained.toml, report.json and report.html")->required();
-  command->add_option("records", arguments->records, "measured records (.csv)")->required();
+  command->add_option("records", arguments->records, "measured records (.csv, or candump .log)")->required();
   command->add_option("--threads", arguments->threads, "threads to use")->check(CLI::Range(1U, 256U))->capture_default_str();
   command->add_option("--most-effects", arguments->most_effects, "most effects to add")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
+  add_candump_options(*command, arguments->candump);
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(
       "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv ramps.csv\n"

@@ -62,6 +62,7 @@ int run(int argc, char** argv) {
       "4 real-time contract not met, 5 interlock, 6 bad data.");
   add_explain(program);
   add_check(program);
+  add_convert(program);
   add_simulate(program);
   add_reduce(program);
   add_plant(program);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
 
 namespace hotfire {
@@ -20,11 +21,12 @@ struct SimulateOptions {
   std::string output;
   std::size_t fit_start = 0;
   bool json = false;
+  CandumpOptions candump;
 };
 
 void run_simulation(const SimulateOptions& options) {
   const ModelFile model = load_model(options.model);
-  const Record inputs = load_record(options.input);
+  const Record inputs = load_record_or_log(options.input, options.candump);
 
   const auto before = std::chrono::steady_clock::now();
   const Record outputs = simulate(model, inputs, options.fit_start);
@@ -51,13 +53,16 @@ void add_simulate(CLI::App& program) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = program.add_subcommand("simulate", "Run a model open loop on the commands (or forces) of a record");
   command->add_option("--model", options->model, "model file (.toml)")->required();
-  command->add_option("--input", options->input, "record with the input channel: command, or force for a direct model")
+  command
+      ->add_option("--input", options->input,
+                   "record (.csv, or a candump .log) with the input channel: command, or force for a direct model")
       ->required();
   command->add_option("--output", options->output, "record to write: time, input and every model channel")->required();
   command
       ->add_option("--fit-start", options->fit_start,
                    "fit the initial state of a direct mass on this many rows (0: start at rest)")
       ->check(CLI::Range(std::size_t{0}, kMostRows));
+  add_candump_options(*command, options->candump);
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer("Example: hotfire simulate --model declared.toml --input steps.csv --output model.csv");
   command->callback([options] { run_simulation(*options); });

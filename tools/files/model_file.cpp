@@ -131,7 +131,7 @@ void choose_topology(const TomlSource& source, ModelFile& model) {
 
 ModelFile load_model(const std::filesystem::path& path) {
   const TomlSource source(path);
-  require_schema(source);
+  source.require_schema();
   ModelFile model;
   model.path = path;
   choose_topology(source, model);

@@ -162,7 +162,9 @@ void require_channel(const Record& record, const std::string& channel, const std
   for (const Channel& own : record.channels) {
     has += fmt::format("{}{}[{}]", has.empty() ? "" : ", ", own.name, own.unit);
   }
-  throw FileError(fmt::format("{}:1: no column {}: {}; the record has {}", record.path.string(), channel, reason, has));
+  const bool has_current = channel == "command" && record.find("current") != nullptr;
+  throw FileError(fmt::format("{}:1: no column {}: {}; the record has {}{}", record.path.string(), channel, reason, has,
+                              has_current ? "; --command-per-current says what command a current stands for" : ""));
 }
 
 }  // namespace hotfire

@@ -150,6 +150,16 @@ double TomlSource::number(const toml::node& node, std::string_view key, std::str
   }
 }
 
+void TomlSource::require_schema() const {
+  const toml::node* schema = root_.get("schema");
+  if (schema == nullptr) {
+    refuse_missing(root_, "schema", "missing; write schema = 1 on the first line");
+  }
+  if (schema->value_exact<std::int64_t>() != std::int64_t{1}) {
+    refuse(*schema, "schema", "not read by this build; allowed: 1");
+  }
+}
+
 std::string TomlSource::text(const toml::node& node, std::string_view key) const {
   if (const auto* text = node.as_string()) {
     return text->get();

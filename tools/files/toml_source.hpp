@@ -25,6 +25,9 @@ class TomlSource {
   /// Throws FileError `path:line: key: problem` for what a table lacks; `table` is where it should stand.
   [[noreturn]] void refuse_missing(const toml::table& table, std::string_view key, std::string_view problem) const;
 
+  /// Refuses a file that does not say `schema = 1`.
+  void require_schema() const;
+
   /// The table behind a key; refuses anything else.
   const toml::table& table(const toml::node& node, std::string_view key) const;
 

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace hotfire::hal {
+
+inline constexpr std::size_t kMaxCanData = 64;
+inline constexpr std::size_t kMaxCanSubscriptions = 32;
+inline constexpr std::size_t kMaxCanSenders = 32;
+
+/// What tells one frame of a bus from another: 11 bits, or 29 if extended.
+struct CanId {
+  std::uint32_t value = 0;
+  bool extended = false;
+  friend bool operator==(const CanId&, const CanId&) = default;
+};
+
+/// A data frame, classic (up to 8 bytes) or FD (up to 64). Remote frames are not used.
+struct CanFrame {
+  CanId id;
+  bool fd = false;
+  bool bit_rate_switch = false;  ///< FD only: the data at the faster rate
+  std::uint8_t length = 0;       ///< bytes of `data` in use; FD allows 0 to 8, 12, 16, 20, 24, 32, 48, 64
+  std::array<std::uint8_t, kMaxCanData> data{};
+
+  std::span<const std::uint8_t> bytes() const noexcept { return {data.data(), length}; }
+};
+
+/// A frame that a program listens to. One of the other format (classic, FD) under the same id is not taken.
+struct CanSubscription {
+  CanId id;
+  bool fd = false;
+  std::int64_t age_limit_ns = std::numeric_limits<std::int64_t>::max();
+};
+
+/// The newest frame of a subscription.
+struct CanMailbox {
+  CanFrame frame;
+  std::int64_t arrived_ns = 0;   ///< on CLOCK_MONOTONIC, by the kernel's stamp
+  std::uint64_t received = 0;    ///< frames so far; 0: `frame` is none
+  std::uint64_t superseded = 0;  ///< of these, overtaken by a newer one before `receive` showed them
+  bool fresh = false;            ///< arrived by the last `receive`
+};
+
+/// How a bus is, best first. Bus-off and down are kept until a person's `rearm`, whatever the bus says later.
+enum class CanState : std::uint8_t { good, warning, passive, bus_off, down };
+inline constexpr std::array<const char*, 5> kCanStates{"good", "warning", "passive", "bus-off", "down"};
+
+struct CanCounters {
+  std::uint64_t received = 0;       ///< frames of a subscription
+  std::uint64_t superseded = 0;     ///< of these, overtaken by a newer one before they were seen
+  std::uint64_t foreign = 0;        ///< of a subscribed id, but the other format or cut short
+  std::uint64_t dropped = 0;        ///< by the kernel because `receive` was called too late
+  std::uint64_t error_frames = 0;   ///< reports of the controller
+  std::uint64_t sent = 0;           ///< handed to the bus
+  std::uint64_t confirmed = 0;      ///< of these, known to be out
+  std::uint64_t pending = 0;        ///< not sent: the last frame of that id is not out yet
+  std::uint64_t queue_full = 0;     ///< not sent: ENOBUFS
+  std::uint64_t unusable = 0;       ///< not sent: bus-off, down or stopped
+  std::uint64_t state_changes = 0;  ///< of CanState
+};
+
+/// What became of a frame.
+enum class CanSend : std::uint8_t { taken, pending, queue_full, unusable };
+
+/// One bus of a cyclic program.
+///
+/// - `receive(now_ns)`: takes in all that has arrived, `now_ns` being the loop's time. Once a cycle. Never blocks; bounded.
+/// - `mailbox(i)`: the newest frame of subscription `i`; the older ones are dropped and counted.
+/// - `in_time(i, now_ns)`: there is one, and it is no older than its age limit.
+/// - `try_send(frame)`: hands the frame over now, or drops it and says why. Never blocks, never queues behind an older frame
+///   of the same id, never retries: the next cycle has a newer one. The id is one of those named at set-up.
+/// - `state()`, `counters()`: since set-up. Bus-off and down make `try_send` refuse.
+/// - `stop()`: from its return on, nothing that was handed over leaves any more; false if that cannot be had. Outside the
+///   cycle, as it may block. `try_send` then refuses.
+/// - `rearm()`: a person's decision to use the bus again after bus-off, down or `stop`; false if it is still down. Outside
+///   the cycle.
+///
+/// All but `stop` and `rearm` without allocation, lock or exception.
+template <class B>
+concept CanBus = requires(B& bus, const B& seen, const CanFrame& frame, std::size_t i, std::int64_t now_ns) {
+  { bus.receive(now_ns) }
+  noexcept->std::same_as<void>;
+  { seen.mailbox(i) }
+  noexcept->std::same_as<const CanMailbox&>;
+  { seen.in_time(i, now_ns) }
+  noexcept->std::same_as<bool>;
+  { bus.try_send(frame) }
+  noexcept->std::same_as<CanSend>;
+  { seen.state() }
+  noexcept->std::same_as<CanState>;
+  { seen.counters() }
+  noexcept->std::same_as<const CanCounters&>;
+  { bus.stop() }
+  noexcept->std::same_as<bool>;
+  { bus.rearm() }
+  noexcept->std::same_as<bool>;
+};
+
+}  // namespace hotfire::hal

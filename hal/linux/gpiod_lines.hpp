@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "hal/failure.hpp"
+#include "hal/gpio.hpp"
+
+namespace hotfire::hal {
+
+/// Lines of a GPIO chip through libgpiod (`GpioLines`): gpiod_v1.cpp or gpiod_v2.cpp, by the version of the library.
+///
+/// Outputs, and inputs without edges, are one request and one system call each. With version 1 of the library an input with
+/// edges is a request and a call of its own, and edges that the kernel's queue of 16 loses are not noticed; with version 2
+/// all inputs are one request, and the kernel numbers its edges.
+class GpiodLines {
+ public:
+  explicit GpiodLines(GpioSettings settings);
+  ~GpiodLines();
+  GpiodLines(const GpiodLines&) = delete;
+  GpiodLines& operator=(const GpiodLines&) = delete;
+
+  /// Requests the lines. Nothing is driven unless the chip and every line are there and free. To be called once.
+  std::optional<Failure> open() noexcept;
+
+  bool try_read(GpioLevels& levels) noexcept;
+  bool try_write(GpioLevels levels) noexcept;
+  std::size_t read_edges(std::span<GpioEdge> edges) noexcept;
+  std::uint64_t lost_edges() const noexcept;
+
+ private:
+  struct Request;  ///< what the version of the library needs
+
+  GpioSettings settings_;
+  std::unique_ptr<Request> request_;
+};
+
+static_assert(GpioLines<GpiodLines>);
+
+}  // namespace hotfire::hal

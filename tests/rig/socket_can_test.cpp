@@ -1,0 +1,326 @@
+#include "hal/linux/socket_can.hpp"
+
+#include <CppUTest/TestHarness.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "hal/linux/posix_clock.hpp"
+#include "tests/support/allocation_guard.hpp"
+
+namespace hotfire::hal {
+namespace {
+
+constexpr CanId kCommand{0x100, false};
+constexpr CanId kOtherCommand{0x101, false};
+constexpr CanId kReading{0x200, false};
+constexpr CanId kLong{0x300, false};
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+void shell(const std::string& command) {
+  if (std::system(command.c_str()) != 0) {
+    FAIL(command.c_str());
+  }
+}
+
+/// The other side of the bus: a plain socket that sends and sees everything.
+class Peer {
+ public:
+  Peer() : socket_(socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK, CAN_RAW)) {
+    const int on = 1;
+    setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
+    sockaddr_can address{};
+    address.can_family = AF_CAN;
+    address.can_ifindex = static_cast<int>(if_nametoindex("can0"));
+    CHECK_EQUAL(0, bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address));
+  }
+  ~Peer() { close(socket_); }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  void send(canid_t id, std::uint8_t first, std::size_t size = CAN_MTU) const {
+    canfd_frame frame{};
+    frame.can_id = id;
+    frame.len = size == CAN_MTU ? 8 : 64;
+    frame.data[0] = first;
+    CHECK_EQUAL(static_cast<ssize_t>(size), write(socket_, &frame, size));
+  }
+
+  void report(canid_t classes, std::uint8_t controller) const {
+    canfd_frame frame{};
+    frame.can_id = CAN_ERR_FLAG | classes;
+    frame.len = CAN_ERR_DLC;
+    frame.data[1] = controller;
+    CHECK_EQUAL(static_cast<ssize_t>(CAN_MTU), write(socket_, &frame, CAN_MTU));
+  }
+
+  /// First bytes of the data frames seen since the last call.
+  std::vector<int> seen() const {
+    std::vector<int> result;
+    for (;;) {
+      canfd_frame frame{};
+      const ssize_t size = read(socket_, &frame, sizeof frame);
+      if (size < 0 && errno != ENETDOWN) {
+        return result;
+      }
+      if (size > 0) {
+        result.push_back(frame.data[0]);
+      }
+    }
+  }
+
+ private:
+  int socket_;
+};
+
+CanFrame frame(const CanId& id, std::uint8_t first, bool fd = false) {
+  CanFrame made;
+  made.id = id;
+  made.fd = fd;
+  made.length = fd ? 64 : 8;
+  made.data[0] = first;
+  return made;
+}
+
+}  // namespace
+
+TEST_GROUP(SocketCan) {
+  PosixClock clock;
+  std::unique_ptr<Peer> peer;
+  std::unique_ptr<SocketCan> bus;
+
+  void setup() override {
+    shell("ip link add dev can0 type vcan; ip link set can0 mtu 72 up");
+    peer = std::make_unique<Peer>();
+    bus = std::make_unique<SocketCan>(SocketCan::Settings{
+        "can0", {{kReading, false, 10 * kMillisecond}, {kLong, true}}, {kCommand, kOtherCommand, kLong}, true});
+    const auto refused = bus->open();
+    STRCMP_EQUAL("", refused ? refused->what.c_str() : "");
+  }
+  void teardown() override {
+    bus.reset();
+    peer.reset();
+    shell("ip link del can0");
+  }
+
+  void receive() { bus->receive(clock.now_ns()); }
+
+  /// Frames stay `delay` before the bus, `limit` of them at most.
+  void queue_with(const std::string& options) { shell("tc qdisc add dev can0 root netem " + options); }
+};
+
+TEST(SocketCan, OnlyTheExactIdGetsThrough) {
+  peer->send(0x200, 1);
+  peer->send(0x201, 2);
+  peer->send(0x200 | CAN_EFF_FLAG, 3);
+  peer->send(0x200 | CAN_RTR_FLAG, 4);
+  receive();
+  UNSIGNED_LONGS_EQUAL(1, bus->counters().received);
+  UNSIGNED_LONGS_EQUAL(0, bus->counters().foreign);
+  BYTES_EQUAL(1, bus->mailbox(0).frame.data[0]);
+}
+
+TEST(SocketCan, NewestFrameIsKeptAndOlderOnesAreCounted) {
+  for (std::uint8_t i = 1; i <= 5; ++i) {
+    peer->send(0x200, i);
+  }
+  receive();
+  BYTES_EQUAL(5, bus->mailbox(0).frame.data[0]);
+  UNSIGNED_LONGS_EQUAL(4, bus->mailbox(0).superseded);
+  receive();
+  CHECK(!bus->mailbox(0).fresh);
+}
+
+TEST(SocketCan, FdFramesGoBothWaysAndTheWrongFormatIsForeign) {
+  peer->send(0x300, 7, CANFD_MTU);
+  peer->send(0x200, 8, CANFD_MTU);
+  peer->send(0x300, 9);
+  receive();
+  CHECK(bus->mailbox(1).frame.fd);
+  BYTES_EQUAL(64, bus->mailbox(1).frame.length);
+  BYTES_EQUAL(7, bus->mailbox(1).frame.data[0]);
+  UNSIGNED_LONGS_EQUAL(0, bus->mailbox(0).received);
+  UNSIGNED_LONGS_EQUAL(2, bus->counters().foreign);
+  CHECK(bus->try_send(frame(kLong, 6, true)) == CanSend::taken);
+  CHECK((peer->seen() == std::vector<int>{6}));
+}
+
+TEST(SocketCan, WhatALateReceiveLosesIsCountedAndOneReceiveEmptiesTheSocket) {
+  constexpr unsigned kSent = 1000;
+  for (unsigned i = 0; i < kSent; ++i) {
+    peer->send(0x200, 1);
+  }
+  receive();
+  const std::uint64_t received = bus->counters().received;
+  CHECK(received >= 100);
+  CHECK(received < kSent);
+  receive();
+  UNSIGNED_LONGS_EQUAL(received, bus->counters().received);
+  // The kernel tells the count with the next frame that it takes in.
+  peer->send(0x200, 2);
+  receive();
+  UNSIGNED_LONGS_EQUAL(kSent + 1, bus->counters().received + bus->counters().dropped);
+}
+
+TEST(SocketCan, ArrivalIsTheKernelsStampAndAStaleFrameIsNotInTime) {
+  // The kernel begins to stamp some time after the first socket asks for it; until then it stamps on reading.
+  clock.sleep_until_ns(clock.now_ns() + 200 * kMillisecond);
+  const std::int64_t before = clock.now_ns();
+  peer->send(0x200, 1);
+  const std::int64_t after = clock.now_ns();
+  clock.sleep_until_ns(after + 20 * kMillisecond);
+  const std::int64_t now = clock.now_ns();
+  bus->receive(now);
+  // The offset of the clocks is read in two calls, between which another process may run.
+  CHECK(bus->mailbox(0).arrived_ns >= before - 5 * kMillisecond);
+  CHECK(bus->mailbox(0).arrived_ns <= after + 5 * kMillisecond);
+  CHECK(!bus->in_time(0, now));
+  CHECK(bus->in_time(0, bus->mailbox(0).arrived_ns + 10 * kMillisecond));
+  CHECK(bus->realtime_offset_ns() != 0);
+}
+
+TEST(SocketCan, SentFrameIsConfirmedAndNotReceivedBack) {
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::taken);
+  receive();
+  UNSIGNED_LONGS_EQUAL(1, bus->counters().confirmed);
+  UNSIGNED_LONGS_EQUAL(0, bus->counters().received);
+  CHECK(bus->try_send(frame(kCommand, 2)) == CanSend::taken);
+  CHECK((peer->seen() == std::vector<int>{1, 2}));
+}
+
+TEST(SocketCan, FrameBehindOneThatIsNotOutIsNotQueued) {
+  queue_with("delay 100ms");
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::taken);
+  for (std::uint8_t i = 2; i < 10; ++i) {
+    receive();
+    CHECK(bus->try_send(frame(kCommand, i)) == CanSend::pending);
+  }
+  clock.sleep_until_ns(clock.now_ns() + 300 * kMillisecond);
+  receive();
+  CHECK(bus->try_send(frame(kCommand, 10)) == CanSend::taken);
+  clock.sleep_until_ns(clock.now_ns() + 300 * kMillisecond);
+  CHECK((peer->seen() == std::vector<int>{1, 10}));
+}
+
+TEST(SocketCan, StopLosesWhatIsQueuedForGood) {
+  queue_with("delay 300ms");
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::taken);
+  CHECK(bus->stop());
+  shell("ip link set can0 up");
+  clock.sleep_until_ns(clock.now_ns() + 500 * kMillisecond);
+  CHECK(peer->seen().empty());
+  CHECK(bus->try_send(frame(kCommand, 2)) == CanSend::unusable);
+  CHECK(bus->rearm());
+  CHECK(bus->try_send(frame(kCommand, 3)) == CanSend::taken);
+  clock.sleep_until_ns(clock.now_ns() + 500 * kMillisecond);
+  CHECK((peer->seen() == std::vector<int>{3}));
+}
+
+TEST(SocketCan, StopWithNothingQueuedLeavesTheInterfaceUp) {
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::taken);
+  CHECK(bus->stop());
+  CHECK(bus->rearm());
+}
+
+TEST(SocketCan, FullQueueIsCountedAndNotRetried) {
+  queue_with("delay 200ms limit 1");
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::taken);
+  CHECK(bus->try_send(frame(kOtherCommand, 2)) == CanSend::queue_full);
+  UNSIGNED_LONGS_EQUAL(1, bus->counters().queue_full);
+  clock.sleep_until_ns(clock.now_ns() + 400 * kMillisecond);
+  CHECK((peer->seen() == std::vector<int>{1}));
+}
+
+TEST(SocketCan, BusOffStaysUntilRearmedThoughTheControllerRestarts) {
+  peer->report(CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
+  receive();
+  CHECK(bus->state() == CanState::passive);
+  peer->report(CAN_ERR_BUSOFF, 0);
+  peer->report(CAN_ERR_RESTARTED, 0);
+  peer->report(CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE);
+  receive();
+  CHECK(bus->state() == CanState::bus_off);
+  UNSIGNED_LONGS_EQUAL(4, bus->counters().error_frames);
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::unusable);
+  CHECK(bus->rearm());
+  CHECK(bus->state() == CanState::good);
+  CHECK(bus->try_send(frame(kCommand, 2)) == CanSend::taken);
+  CHECK((peer->seen() == std::vector<int>{2}));
+}
+
+TEST(SocketCan, PassiveControllerThatRecoversIsGoodAgain) {
+  peer->report(CAN_ERR_CRTL, CAN_ERR_CRTL_RX_WARNING);
+  receive();
+  CHECK(bus->state() == CanState::warning);
+  peer->report(CAN_ERR_CRTL, CAN_ERR_CRTL_ACTIVE);
+  receive();
+  CHECK(bus->state() == CanState::good);
+}
+
+TEST(SocketCan, NothingOfferedWhileTheBusIsDownLeavesWhenItIsBack) {
+  shell("ip link set can0 down");
+  receive();
+  CHECK(bus->state() == CanState::down);
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::unusable);
+  CHECK(!bus->rearm());
+  shell("ip link set can0 up");
+  receive();
+  CHECK(bus->try_send(frame(kCommand, 2)) == CanSend::unusable);
+  CHECK(peer->seen().empty());
+  CHECK(bus->rearm());
+  CHECK(bus->try_send(frame(kCommand, 3)) == CanSend::taken);
+  CHECK((peer->seen() == std::vector<int>{3}));
+}
+
+TEST(SocketCan, InterfaceThatIsPulledOutAndPluggedInIsUsableAfterRearm) {
+  shell("ip link del can0");
+  receive();
+  CHECK(bus->state() == CanState::down);
+  CHECK(!bus->rearm());
+  shell("ip link add dev can0 type vcan; ip link set can0 mtu 72 up");
+  peer = std::make_unique<Peer>();
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::unusable);
+  CHECK(bus->rearm());
+  CHECK(bus->try_send(frame(kCommand, 2)) == CanSend::taken);
+  CHECK((peer->seen() == std::vector<int>{2}));
+  peer->send(0x201, 1);
+  peer->send(0x200, 2);
+  receive();
+  UNSIGNED_LONGS_EQUAL(1, bus->counters().received);
+}
+
+TEST(SocketCan, CycleAllocatesNothing) {
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    peer->send(0x200, 1);
+    receive();
+    CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::taken);
+  }
+  UNSIGNED_LONGS_EQUAL(0, guard.allocations());
+}
+
+TEST(SocketCan, WhatCannotWorkIsRefusedWithTheMend) {
+  const auto refusal = [](const std::string& interface, bool fd) {
+    SocketCan other({interface, {}, {}, fd});
+    const auto failure = other.open();
+    return failure ? failure->what + "; " + failure->mend : std::string();
+  };
+  STRCMP_CONTAINS("no interface can7; see 'ip -brief link'", refusal("can7", false).c_str());
+  STRCMP_CONTAINS("no interface a-name-that-is-too-long", refusal("a-name-that-is-too-long", false).c_str());
+  STRCMP_CONTAINS("lo is no CAN interface", refusal("lo", false).c_str());
+  shell("ip link set can0 down");
+  STRCMP_CONTAINS("can0 is down; 'ip link set can0 up'", refusal("can0", false).c_str());
+  shell("ip link set can0 mtu 16 up");
+  STRCMP_CONTAINS("not set up for CAN FD (MTU 16); 'ip link set can0 down", refusal("can0", true).c_str());
+  STRCMP_EQUAL("", refusal("can0", false).c_str());
+}
+
+}  // namespace hotfire::hal

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/files/csv_lines.hpp"
+
+namespace hotfire {
+
+/// One line of a candump log.
+struct CandumpFrame {
+  double time = 0.0;  ///< [s]
+  std::string interface;
+  std::uint32_t id = 0;
+  bool is_data = false;  ///< a data frame with an 11-bit id; the others carry nothing that is read
+  bool fd = false;
+  std::vector<std::uint8_t> data;
+};
+
+/// Reads the line that `lines` gave last; refuses what candump does not write.
+CandumpFrame read_candump_line(const CsvLines& lines, std::string_view line);
+
+/// The line of a data frame, with its end.
+std::string candump_line(const CandumpFrame& frame);
+
+}  // namespace hotfire
