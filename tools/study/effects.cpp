@@ -99,7 +99,7 @@ void plan_structural_mode(Plan& plan, Random& random, std::uint64_t) {
 
 void plan_variable_moment_arm(Plan& plan, Random& random, std::uint64_t) {
   plan.axis.linkage.length = plan.values["actuator_length"] = random.uniform(1.0, 2.0);
-  plan.axis.linkage.angle = plan.values["lever_angle"] = random.uniform(75.0, 110.0) * kDegree;
+  plan.axis.linkage.angle = plan.values["lever_angle"] = random.uniform(92.0, 120.0) * kDegree;
 }
 
 void plan_sensor_lag(Plan& plan, Random& random, std::uint64_t seed) {
@@ -127,14 +127,20 @@ void plan_track_wear(Plan& plan, Random& random, std::uint64_t) {
 void plan_position_dependent_friction(Plan& plan, Random& random, std::uint64_t) {
   const double level = random.uniform(4e3, 8e3);
   plan.axis.bristle = {level, random.log_uniform(5e6, 2e7), 1.0, 1.0, 0.0, 1.0};
-  // Doubled to fivefold at 1 deg, where most of the motion ends.
-  plan.axis.unlisted.friction_growth = random.uniform(1.0, 4.0) / (kDegree * kDegree);
+  // Twice to four times the level at 4 deg, which only the ramps reach.
+  plan.axis.unlisted.friction_growth = random.uniform(1.0, 3.0) / (16.0 * kDegree * kDegree);
   plan.values = {{"coulomb_torque", level}, {"growth", plan.axis.unlisted.friction_growth}};
 }
 
+/// The valve opens on with the spool: 1 + 3 c x_v^2 stays positive up to x_v = 1.
+void plan_flow_gain_curvature(Plan& plan, Random& random, std::uint64_t) {
+  plan.axis.unlisted.flow_curvature = plan.values["curvature"] =
+      random.sign() > 0.0 ? random.uniform(0.3, 0.9) : -random.uniform(0.15, 0.3);
+}
+
 void plan_aerated_oil(Plan& plan, Random& random, std::uint64_t) {
-  plan.axis.unlisted.aeration = plan.values["share"] = random.uniform(0.6, 0.9);
-  plan.axis.unlisted.aeration_pressure = plan.values["pressure"] = random.uniform(5e5, 2e6);
+  plan.axis.unlisted.aeration = plan.values["share"] = random.uniform(0.8, 0.95);
+  plan.axis.unlisted.aeration_pressure = plan.values["pressure"] = random.uniform(1e6, 4e6);
 }
 
 void plan_cushion(Plan& plan, Random& random, std::uint64_t) {
@@ -143,7 +149,7 @@ void plan_cushion(Plan& plan, Random& random, std::uint64_t) {
 }
 
 void plan_creep(Plan& plan, Random& random, std::uint64_t) {
-  plan.axis.unlisted.creep_stiffness = plan.values["stiffness"] = random.uniform(4e7, 1.2e8);
+  plan.axis.unlisted.creep_stiffness = plan.values["stiffness"] = random.uniform(1.5e7, 3.5e7);
   plan.axis.unlisted.creep_time = plan.values["time_constant"] = random.log_uniform(0.3, 2.0);
 }
 
@@ -154,7 +160,7 @@ void plan_supply_sag(Plan& plan, Random& random, std::uint64_t) {
 }
 
 void plan_periodic_torque(Plan& plan, Random& random, std::uint64_t) {
-  plan.axis.unlisted.periodic_torque = plan.values["amplitude"] = random.uniform(1.5e3, 5e3);
+  plan.axis.unlisted.periodic_torque = plan.values["amplitude"] = random.log_uniform(6e3, 2.5e4);
   plan.axis.unlisted.periodic_frequency = plan.values["frequency"] = random.uniform(1.3, 17.0);
 }
 
@@ -196,10 +202,7 @@ constexpr std::array kListed{
 
 constexpr std::array kUnlisted{
     StudiedEffect{"position_dependent_friction", "engine_torque", plan_position_dependent_friction, "gimbal_friction"},
-    StudiedEffect{"flow_gain_curvature", "valve|flow",
-                  [](Plan& p, Random& r, std::uint64_t) {
-                    p.axis.unlisted.flow_curvature = p.values["curvature"] = r.sign() * r.uniform(0.5, 0.9);
-                  }},
+    StudiedEffect{"flow_gain_curvature", "valve|flow", plan_flow_gain_curvature},
     // More flow into a stiffer oil and less into a softer one are the same pressure rate.
     StudiedEffect{"aerated_oil", "pressure|flow", plan_aerated_oil}, StudiedEffect{"cushion", "piston", plan_cushion},
     StudiedEffect{"creeping_spring", "load_spring|structure", plan_creep},

@@ -108,6 +108,7 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
   Judgement judgement;
   judgement.name = folder.filename().string();
   judgement.wanted = truth.at("effects").get<std::vector<std::string>>();
+  judgement.wanted_law = truth.value("law", "");
   judgement.effect = truth.at("effect_size").get<Errors>();
   const ModelFile declared = load_model(folder / "given/declared.toml");
   const std::vector<Record> records = given_records(folder / "given");
@@ -153,16 +154,19 @@ std::string line_of(const Judgement& judgement) {
   for (std::size_t i = 0; i < judgement.found.size(); ++i) {
     found.push_back(judgement.found[i] + (judgement.found_laws[i].empty() ? "" : ":" + judgement.found_laws[i]));
   }
+  const std::string law = judgement.wanted_law.empty() ? "" : " (" + judgement.wanted_law + ")";
   std::string line = fmt::format(
       "{:<34} {:<16} {:<18} before {:>13} effect {:>13} after {:>11} {:6.1f} s ({:.1f} s of processor)  {} -> {}",
       judgement.name, ruling(judgement), judgement.verdict, pair_of(judgement.before), pair_of(judgement.effect),
-      pair_of(judgement.after), judgement.seconds, judgement.processor_seconds, joined(judgement.wanted), joined(found));
+      pair_of(judgement.after), judgement.seconds, judgement.processor_seconds, joined(judgement.wanted) + law,
+      joined(found));
   return judgement.failure.empty() ? line : line + "; failed: " + judgement.failure;
 }
 
 nlohmann::json json_of(const Judgement& judgement) {
   nlohmann::json result{{"case", judgement.name},
                         {"wanted", judgement.wanted},
+                        {"wanted_law", judgement.wanted_law},
                         {"found", judgement.found},
                         {"laws", judgement.found_laws},
                         {"sites", judgement.found_sites},

@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <stdexcept>
 
 #include "tools/files/error.hpp"
 #include "tools/study/case.hpp"
@@ -90,16 +91,25 @@ ExitStatus study(const std::vector<CaseOrder>& orders, const Options& options) {
   }
   const Workplace workplace(options.out);
   Court court(options);
+  bool all_made = true;
   for (const CaseOrder& order : orders) {
     const std::filesystem::path folder = workplace.folder() / order.name;
-    write_case(make_case(order), folder);
+    // One case that cannot be made is no reason to lose the others.
+    try {
+      write_case(make_case(order), folder);
+    } catch (const std::runtime_error& error) {
+      std::cerr << "hotfire-study: " << order.name << " is left out: " << error.what() << std::endl;
+      all_made = false;
+      continue;
+    }
     if (options.generate_only) {
       std::cout << folder.string() << std::endl;
     } else {
       court.judge_case(folder);
     }
   }
-  return options.generate_only ? ExitStatus::good : court.close();
+  const ExitStatus status = options.generate_only ? ExitStatus::good : court.close();
+  return all_made ? status : ExitStatus::bad_data;
 }
 
 ExitStatus judge_folders(const Options& options) {
@@ -137,7 +147,7 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(
       "Example: hotfire-study effects --seeds 3 --out cases\n"
-      "Exit status: 0 all figures met, 1 one is not, 2 wrong use, 6 bad data.");
+      "Exit status: 0 all figures met, 1 one is not, 2 wrong use, 6 bad data or a case that cannot be made.");
   Options effects;
   Options pairs;
   Options unlisted;
