@@ -129,12 +129,11 @@ TEST(AgreesWithCvode, OnDahlFriction) {
   check_agreement(test);
 }
 
-// A spring of 1e11 N.m/rad that slips stands for the rigid law: it yields 8e-8 rad at the level, 1e-5 of the motion.
 TEST(AgreesWithCvode, OnRigidCoulombFriction) {
   Case test{"gimbal_friction coulomb"};
   activate<model::GimbalFriction, Plant>(test.parameters,
                                          {option_named<model::GimbalFriction>("coulomb"), 8e3, 1e7, 1.0, 0.01, 0.0});
-  test.reference.coulomb = {8e3, 1e11, 1.0, 1.0, 1e9};
+  test.reference.coulomb.level = 8e3;
   check_agreement(test);
 }
 

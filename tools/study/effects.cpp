@@ -24,8 +24,7 @@ void plan_gimbal_friction(Plan& plan, Random& random, std::uint64_t seed) {
   plan.values["coulomb_torque"] = level;
   if (seed % 3 == 0) {
     plan.law = "coulomb";
-    // Yields 1e-6 rad at its level, a fiftieth of the noise: rigid to the sensor.
-    plan.axis.coulomb = {level, 1e10, 1.0, 1.0, 1e8};
+    plan.axis.coulomb.level = level;
     return;
   }
   const double stiffness = random.log_uniform(5e6, 2e7);

@@ -41,7 +41,7 @@ struct ReferenceAxis {
   double laminar_leak = 0.0;
   double orifice_leak = 0.0;
 
-  // Elastic, then slipping, friction: the seal of the piston [N], and a stiff stand-in for rigid Coulomb friction [N m].
+  /// Elastic, then slipping, friction: the seal of the piston [N].
   struct Slip {
     double level = 0.0;
     double stiffness = 0.0;
@@ -50,7 +50,14 @@ struct ReferenceAxis {
     double gives_way = 1e8;  ///< rate at which it yields beyond its level [1/s]: v / gives_way is the excess stretch
   };
   Slip seal;
-  Slip coulomb;
+
+  /// Rigid friction of the gimbal [N m], as a viscous law that is all but a step: level tanh(speed / creep). In stick it
+  /// creeps at less than a few times `creep`, 1e-6 of what a sensor sees in a second.
+  struct Coulomb {
+    double level = 0.0;
+    double creep = 1e-7;  ///< [rad/s]
+  };
+  Coulomb coulomb;
 
   /// Bristle, physics.md section 3; Dahl with ratio 1 and no damping.
   struct Bristle {

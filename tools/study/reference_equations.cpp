@@ -160,7 +160,6 @@ std::vector<ReferenceState> states_of(const ReferenceAxis& axis) {
   }
   add(kPlay, axis.play > 0.0);
   add(kSeal, axis.seal.stiffness > 0.0);
-  add(kCoulomb, axis.coulomb.stiffness > 0.0);
   add(kBristle, axis.bristle.level > 0.0);
   add(kSealBristle, axis.seal_bristle.level > 0.0);
   add(kMode, axis.mode_shape > 0.0);
@@ -204,20 +203,19 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   d[kPiston] = v;
   d[kPistonRate] = (a.area * y[kPressure] - force - damping * v - seal.force - seal_bristle.force) / a.piston_mass;
 
-  const Friction coulomb = elastic_slip(a.coulomb, w, y[kCoulomb]);
+  const double coulomb = a.coulomb.level * std::tanh(w / a.coulomb.creep);
   const Friction bristle = gimbal_friction(a, w, beta, y[kBristle]);
   const double forcing =
       a.unlisted.periodic_torque * std::sin(2.0 * std::numbers::pi * a.unlisted.periodic_frequency * elapsed);
   d[kAngle] = w;
   d[kAngleRate] = (lever.arm * force - a.damping * w - a.duct_stiffness * beta - a.duct_cubic * beta * beta * beta -
-                   a.torque_offset - coulomb.force - bristle.force - forcing) /
+                   a.torque_offset - coulomb - bristle.force - forcing) /
                   a.inertia;
 
   const double torque_motor_rate = -a.position_gain * v - a.pressure_gain * (d[kPressure] - d[kWashout]);
   d[kPlay] = (std::abs(torque_motor) < 1.0 ? torque_motor_rate : 0.0) - kPlayGivesWay * beyond(y[kPlay], a.play);
   d[kSeal] = seal.rate;
   d[kSealBristle] = seal_bristle.rate;
-  d[kCoulomb] = coulomb.rate;
   d[kBristle] = bristle.rate;
   const double natural = 2.0 * std::numbers::pi * a.mode_frequency;
   d[kMode] = y[kModeRate];

@@ -20,7 +20,6 @@ enum ReferenceState {
   kAngleRate,
   kPlay,
   kSeal,
-  kCoulomb,
   kBristle,
   kSealBristle,
   kMode,
@@ -35,7 +34,7 @@ enum ReferenceState {
 using StateVector = std::array<double, kStates>;
 
 /// What a state is measured in; tolerances are a tiny part of it.
-inline constexpr StateVector kStateScale{0.01, 1.0,  1e6,  1e6, 0.01, 0.1,  0.01, 0.1, 0.01, 1e-5,
+inline constexpr StateVector kStateScale{0.01, 1.0,  1e6,  1e6, 0.01, 0.1,  0.01, 0.1, 0.01,
                                          1e-5, 1e-4, 1e-5, 0.1, 1.0,  0.01, 0.01, 1e6, 1e-4};
 
 /// The states that an axis has, in order.
