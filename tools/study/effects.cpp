@@ -66,7 +66,7 @@ void plan_piston_friction(Plan& plan, Random& random, std::uint64_t seed) {
       {"coulomb_force", level}, {"static_ratio", ratio}, {"stribeck_velocity", stribeck}, {"stiffness", stiffness}};
   if (seed % 2 == 0) {
     plan.law = "elastoplastic";
-    plan.axis.seal = {level, stiffness, ratio, stribeck, 1e6};
+    plan.axis.seal = {level, stiffness, ratio, stribeck, 1e7};
   } else {
     plan.law = "lugre";
     plan.axis.seal_bristle = {level, stiffness, ratio, stribeck, 0.0, 1.0};
