@@ -6,32 +6,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "model/effects/valve_deadband.hpp"
 #include "tests/files/scratch.hpp"
-#include "tests/model/plants.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace hotfire::study {
 namespace {
-
-/// The declared model with the parameters of the true axis.
-ModelFile true_model(const StudyCase& made, const std::filesystem::path& folder) {
-  ModelFile model = load_model(folder / "given/declared.toml");
-  auto& parameters = std::get<SimplexParameters>(model.parameters);
-  const ReferenceAxis& axis = made.plan.axis;
-  parameters.servovalve.natural_frequency = axis.valve_frequency;
-  parameters.servovalve.position_gain = axis.position_gain;
-  parameters.servovalve.pressure_feedback_gain = axis.pressure_gain;
-  parameters.actuator.bulk_modulus = axis.bulk_modulus;
-  parameters.actuator.leakage = axis.leakage;
-  parameters.actuator.piston_damping = axis.piston_damping;
-  parameters.structure.stiffness = axis.load_stiffness;
-  parameters.engine.inertia = axis.inertia;
-  parameters.engine.viscous_damping = axis.damping;
-  parameters.engine.duct_stiffness = axis.duct_stiffness;
-  return model;
-}
 
 double rms(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
@@ -71,18 +51,16 @@ TEST_GROUP(StudyCases) { test::Scratch scratch; };
 TEST(StudyCases, ANullCaseIsTheModelWithTheTrueParameters) {
   const StudyCase made = make_case({"null-1", {}, 1});
   write_case(made, scratch.path("null-1"));
-  check_truth(true_model(made, scratch.path("null-1")), made);
+  check_truth(load_model(scratch.path("null-1") / "kept/true.toml"), made);
 }
 
 TEST(StudyCases, ACaseWithAnEffectIsTheModelWithThatEffect) {
   const StudyCase made = make_case({"valve_deadband-1", {"valve_deadband"}, 1});
   write_case(made, scratch.path("valve_deadband-1"));
-  ModelFile model = true_model(made, scratch.path("valve_deadband-1"));
-  CHECK_TRUE(rms(simulate(model, made.unseen).find("piston")->values, made.unseen.find("piston")->values) >
+  const ModelFile declared = load_model(scratch.path("valve_deadband-1") / "given/declared.toml");
+  CHECK_TRUE(rms(simulate(declared, made.unseen).find("piston")->values, made.unseen.find("piston")->values) >
              kSmallestEffect * kSensorGrades[0].noise);
-  test::activate<model::ValveDeadband, model::Simplex<double>>(std::get<SimplexParameters>(model.parameters),
-                                                               {0, made.plan.axis.deadband});
-  check_truth(model, made);
+  check_truth(load_model(scratch.path("valve_deadband-1") / "kept/true.toml"), made);
 }
 
 TEST(StudyCases, TheSameOrderGivesTheSameBytesAndAnotherSeedDoesNot) {

@@ -57,8 +57,7 @@ constexpr std::array kExact{
 
 bool measures_load_pressure(const CaseOrder& order) { return order.seed % 3 == 0; }
 
-std::string declared_text(const CaseOrder& order, const std::string& effects) {
-  const ReferenceAxis declared;
+std::string model_toml(const ReferenceAxis& axis, const CaseOrder& order, const std::string& effects) {
   std::string text =
       "schema = 1\nname = \"single-axis TVC actuator, as its engineer declares it\"\ntopology = \"simplex\"\n";
   for (const char* section : {"servovalve", "actuator", "structure", "engine"}) {
@@ -66,7 +65,7 @@ std::string declared_text(const CaseOrder& order, const std::string& effects) {
     const auto add = [&](const auto& entries) {
       for (const auto& entry : entries) {
         if (std::string(entry.section) == section) {
-          text += fmt::format("{} = {}\n", entry.key, declared.*entry.member);
+          text += fmt::format("{} = {}\n", entry.key, axis.*entry.member);
         }
       }
     };
@@ -134,6 +133,18 @@ std::map<std::string, double> difference(const ReferenceRows& a, const Reference
   return sizes;
 }
 
+/// An effect under the names that the model has for its parameters.
+std::string effect_toml(const StudiedEffect& effect, const Plan& alone) {
+  std::string text = fmt::format("[effects.{}]\n", effect.name);
+  if (!alone.law.empty()) {
+    text += fmt::format("{} = \"{}\"\n", effect.site == "sensor" ? "channel" : "law", alone.law);
+  }
+  for (const auto& [name, value] : alone.values) {
+    text += fmt::format("{} = {}\n", name, value);
+  }
+  return text + "\n";
+}
+
 /// Adds an effect to the case's plan, with the first of the drawn magnitudes that shows as it should.
 void add_effect(const StudiedEffect& effect, const CaseOrder& order, const ReferenceAxis& plain, const Profile& unseen,
                 const ReferenceRows& plain_rows, StudyCase& made) {
@@ -156,6 +167,8 @@ void add_effect(const StudiedEffect& effect, const CaseOrder& order, const Refer
         made.plan.values[std::string(effect.name) + "." + name] = value;
       }
       together.values = made.plan.values;
+      together.true_effects += effect_toml(effect, alone);
+      together.in_model_terms = together.in_model_terms && is_listed(effect);
       together.law = made.plan.law + (made.plan.law.empty() || alone.law.empty() ? "" : " ") + alone.law;
       made.plan = together;
       return;
@@ -168,7 +181,7 @@ void add_effect(const StudiedEffect& effect, const CaseOrder& order, const Refer
 }  // namespace
 
 StudyCase make_case(const CaseOrder& order) {
-  StudyCase made{order, {}, {}, {}, {}, {}};
+  StudyCase made{order, {}, {}, {}, {}, {}, {}};
   ReferenceAxis plain;
   Random scatter(order.name, order.seed, 1);
   for (const Scattered& entry : kScattered) {
@@ -193,7 +206,10 @@ StudyCase make_case(const CaseOrder& order) {
     made.given.push_back(record_of(profile, run(made.plan.axis, profile), channels));
     add_noise(made.given.back(), order.noise_factor, noise);
   }
-  made.declared = declared_text(order, made.plan.declared_effects);
+  made.declared = model_toml({}, order, made.plan.declared_effects);
+  if (made.plan.in_model_terms) {
+    made.truth = model_toml(made.plan.axis, order, made.plan.declared_effects + made.plan.true_effects);
+  }
   return made;
 }
 

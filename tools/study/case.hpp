@@ -23,9 +23,10 @@ struct CaseOrder {
 struct StudyCase {
   CaseOrder order;
   Plan plan;
-  std::string declared;                       ///< declared.toml
-  std::vector<Record> given;                  ///< with sensor noise and quantisation
-  Record unseen;                              ///< noise-free, for scoring
+  std::string declared;       ///< declared.toml
+  std::string truth;          ///< the same with the true values and effects; empty if the model has no keys for them
+  std::vector<Record> given;  ///< with sensor noise and quantisation
+  Record unseen;              ///< noise-free, for scoring
   std::map<std::string, double> effect_size;  ///< rms that the effects alone make on `unseen`, in sensor noise, by channel
 };
 
@@ -50,7 +51,8 @@ inline constexpr double kLargestEffect = 150.0;
 StudyCase make_case(const CaseOrder& order);
 
 /// Writes a case as FOLDER/given/{declared.toml,sweep.csv,steps.csv,ramps.csv} and
-/// FOLDER/kept/{truth.json,score_noisefree.csv}.
+/// FOLDER/kept/{truth.json,score_noisefree.csv}, and
+/// kept/true.toml if the model has keys for what is missing.
 void write_case(const StudyCase& made, const std::filesystem::path& folder);
 
 }  // namespace hotfire::study

@@ -12,8 +12,7 @@ nlohmann::json wanted_words(const CaseOrder& order) {
   nlohmann::json words = nlohmann::json::array();
   for (const std::string& name : order.effects) {
     const StudiedEffect& effect = studied_effect(name);
-    const bool listed = &effect >= listed_effects().data() && &effect < listed_effects().data() + listed_effects().size();
-    words.push_back(listed ? name : "unlisted@" + std::string(effect.site));
+    words.push_back(is_listed(effect) ? name : "unlisted@" + std::string(effect.site));
   }
   return words;
 }
@@ -58,6 +57,9 @@ void write_case(const StudyCase& made, const std::filesystem::path& folder) {
     write_record(record, folder / "given" / record.name);
   }
   write_record(made.unseen, folder / "kept" / made.unseen.name);
+  if (!made.truth.empty()) {
+    write_whole_file(folder / "kept/true.toml", made.truth);
+  }
   // Last: a folder that has it is whole.
   write_whole_file(folder / "kept/truth.json", truth_of(made).dump(1) + "\n");
 }

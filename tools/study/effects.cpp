@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -97,6 +98,7 @@ void plan_structural_mode(Plan& plan, Random& random, std::uint64_t) {
 }
 
 void plan_variable_moment_arm(Plan& plan, Random& random, std::uint64_t) {
+  plan.in_model_terms = false;
   plan.axis.linkage.length = plan.values["actuator_length"] = random.uniform(1.0, 2.0);
   plan.axis.linkage.angle = plan.values["lever_angle"] = random.uniform(92.0, 120.0) * kDegree;
 }
@@ -187,10 +189,9 @@ constexpr std::array kListed{
     StudiedEffect{"structural_mode", "structure", plan_structural_mode},
     StudiedEffect{"gimbal_friction", "engine_torque", plan_gimbal_friction},
     StudiedEffect{"gimbal_compliance", "engine_torque", plan_gimbal_compliance},
-    StudiedEffect{"duct_hardening", "engine_torque",
-                  [](Plan& p, Random& r, std::uint64_t) {
-                    p.axis.duct_cubic = p.values["cubic_stiffness"] = r.log_uniform(1e7, 6e7);
-                  }},
+    StudiedEffect{
+        "duct_hardening", "engine_torque",
+        [](Plan& p, Random& r, std::uint64_t) { p.axis.duct_cubic = p.values["cubic"] = r.log_uniform(1e7, 6e7); }},
     StudiedEffect{"torque_offset", "engine_torque",
                   [](Plan& p, Random& r, std::uint64_t) {
                     p.axis.torque_offset = p.values["torque"] = r.sign() * r.log_uniform(1e4, 4e4);
@@ -234,6 +235,11 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kPairs{{
 std::span<const StudiedEffect> listed_effects() { return kListed; }
 std::span<const StudiedEffect> unlisted_effects() { return kUnlisted; }
 std::span<const std::pair<std::string_view, std::string_view>> studied_pairs() { return kPairs; }
+
+bool is_listed(const StudiedEffect& effect) {
+  return std::any_of(kListed.begin(), kListed.end(),
+                     [&](const StudiedEffect& listed) { return listed.name == effect.name; });
+}
 
 const StudiedEffect& studied_effect(std::string_view name) {
   std::string names;

@@ -19,6 +19,8 @@ struct Plan {
   std::map<std::string, double> values;  ///< of the effects, by name
   std::string law;                       ///< of the effect, if it has laws
   std::string declared_effects;          ///< what the declared model knows of effects, as TOML
+  std::string true_effects;              ///< the true effects in the model's own keys, as TOML
+  bool in_model_terms = true;            ///< whether the model has keys for all of them
 };
 
 /// One effect that a case may lack.
@@ -38,6 +40,9 @@ std::span<const StudiedEffect> listed_effects();
 
 /// Effects that are in no list.
 std::span<const StudiedEffect> unlisted_effects();
+
+/// Whether an effect is one of the listed.
+bool is_listed(const StudiedEffect& effect);
 
 /// The effect of that name, listed or not. Throws UsageError that lists the names if there is none.
 const StudiedEffect& studied_effect(std::string_view name);

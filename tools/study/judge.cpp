@@ -115,6 +115,15 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
   const Record unseen = load_record(folder / "kept/score_noisefree.csv");
   judgement.before = errors_of(declared, unseen, declared.noise);
 
+  if (const auto path = folder / "kept/true.toml"; std::filesystem::exists(path)) {
+    // An effect of physics.md that the model does not have yet is refused.
+    try {
+      judgement.truth = errors_of(load_model(path), unseen, declared.noise);
+    } catch (const FileError&) {
+      judgement.truth.clear();
+    }
+  }
+
   const auto began = std::chrono::steady_clock::now();
   const std::clock_t processor_began = std::clock();
   try {
@@ -156,10 +165,10 @@ std::string line_of(const Judgement& judgement) {
   }
   const std::string law = judgement.wanted_law.empty() ? "" : " (" + judgement.wanted_law + ")";
   std::string line = fmt::format(
-      "{:<34} {:<16} {:<18} before {:>13} effect {:>13} after {:>11} {:6.1f} s ({:.1f} s of processor)  {} -> {}",
+      "{:<34} {:<16} {:<18} before {:>13} effect {:>13} true {:>9} after {:>11} {:6.1f} s ({:.1f} s of processor)  {} -> {}",
       judgement.name, ruling(judgement), judgement.verdict, pair_of(judgement.before), pair_of(judgement.effect),
-      pair_of(judgement.after), judgement.seconds, judgement.processor_seconds, joined(judgement.wanted) + law,
-      joined(found));
+      pair_of(judgement.truth), pair_of(judgement.after), judgement.seconds, judgement.processor_seconds,
+      joined(judgement.wanted) + law, joined(found));
   return judgement.failure.empty() ? line : line + "; failed: " + judgement.failure;
 }
 
@@ -174,6 +183,7 @@ nlohmann::json json_of(const Judgement& judgement) {
                         {"before", judgement.before},
                         {"effect", judgement.effect},
                         {"after", judgement.after},
+                        {"true_model", judgement.truth},
                         {"seconds", judgement.seconds},
                         {"processor_seconds", judgement.processor_seconds},
                         {"below_noise", judgement.below_noise}};

@@ -21,8 +21,9 @@ struct Judgement {
   std::map<std::string, double> before;  ///< declared model on the unseen record, rms in sensor noise, by channel
   std::map<std::string, double> effect;  ///< what the effects alone make
   std::map<std::string, double> after;   ///< explained model
-  double seconds = 0.0;                  ///< that the finder took
-  double processor_seconds = 0.0;        ///< the same of all threads' processor time
+  std::map<std::string, double> truth;  ///< the model with the true parameters, if it has keys for them: what can be reached
+  double seconds = 0.0;                 ///< that the finder took
+  double processor_seconds = 0.0;       ///< the same of all threads' processor time
   bool names_right = false;  ///< listed: all that is missing is named and nothing else; null: nothing said to be missing
   bool below_noise = false;  ///< `after` below 1 in every channel
   // Unlisted only.
