@@ -1,0 +1,67 @@
+#include <nlohmann/json.hpp>
+
+#include "tools/files/whole_file.hpp"
+#include "tools/study/case.hpp"
+
+namespace hotfire::study {
+
+namespace {
+
+/// "unlisted@SITE|SITE" for what is in no list, else the name: one word for each effect that is missing.
+nlohmann::json wanted_words(const CaseOrder& order) {
+  nlohmann::json words = nlohmann::json::array();
+  for (const std::string& name : order.effects) {
+    const StudiedEffect& effect = studied_effect(name);
+    words.push_back(is_listed(effect) ? name : "unlisted@" + std::string(effect.site));
+  }
+  return words;
+}
+
+nlohmann::json truth_of(const StudyCase& made) {
+  const ReferenceAxis& axis = made.plan.axis;
+  nlohmann::json truth{{"case", made.order.name},
+                       {"seed", made.order.seed},
+                       {"effects", wanted_words(made.order)},
+                       {"kinds", made.order.effects},
+                       {"law", made.plan.law},
+                       {"effect_values", made.plan.values},
+                       {"effect_size", made.effect_size},
+                       {"noise_factor", made.order.noise_factor},
+                       {"scatter_factor", made.order.scatter_factor}};
+  truth["may_name"] = nlohmann::json::array();
+  for (const std::string& name : made.order.effects) {
+    if (!studied_effect(name).contains.empty()) {
+      truth["may_name"].push_back(studied_effect(name).contains);
+    }
+  }
+  truth["parameters"] = {{"valve_natural_frequency", axis.valve_frequency},
+                         {"position_gain", axis.position_gain},
+                         {"pressure_feedback_gain", axis.pressure_gain},
+                         {"bulk_modulus", axis.bulk_modulus},
+                         {"leakage", axis.leakage},
+                         {"piston_damping", axis.piston_damping},
+                         {"structure_stiffness", axis.load_stiffness},
+                         {"inertia", axis.inertia},
+                         {"viscous_damping", axis.damping},
+                         {"duct_stiffness", axis.duct_stiffness}};
+  return truth;
+}
+
+}  // namespace
+
+void write_case(const StudyCase& made, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder / "given");
+  std::filesystem::create_directories(folder / "kept");
+  write_whole_file(folder / "given/declared.toml", made.declared);
+  for (const Record& record : made.given) {
+    write_record(record, folder / "given" / record.name);
+  }
+  write_record(made.unseen, folder / "kept" / made.unseen.name);
+  if (!made.truth.empty()) {
+    write_whole_file(folder / "kept/true.toml", made.truth);
+  }
+  // Last: a folder that has it is whole.
+  write_whole_file(folder / "kept/truth.json", truth_of(made).dump(1) + "\n");
+}
+
+}  // namespace hotfire::study

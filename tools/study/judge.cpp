@@ -1,0 +1,203 @@
+#include "tools/study/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <set>
+
+#include "tools/explain/explain.hpp"
+#include "tools/files/error.hpp"
+#include "tools/simulate/simulate.hpp"
+
+namespace hotfire::study {
+namespace {
+
+using Errors = std::map<std::string, double>;
+
+/// Rms against the noise-free record in sensor noise; load pressure is not scored.
+Errors errors_of(const ModelFile& model, const Record& truth, const std::map<std::string, double>& noise) {
+  const Record modelled = simulate(model, truth);
+  Errors errors;
+  for (const char* name : {"piston", "engine"}) {
+    const Channel* wanted = truth.find(name);
+    if (wanted == nullptr) {
+      continue;
+    }
+    const std::vector<double>& got = modelled.find(name)->values;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      sum += (got[i] - wanted->values[i]) * (got[i] - wanted->values[i]);
+    }
+    errors[name] = std::sqrt(sum / static_cast<double>(got.size())) / noise.at(name);
+  }
+  return errors;
+}
+
+std::vector<Record> given_records(const std::filesystem::path& folder) {
+  std::set<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".csv") {
+      paths.insert(entry.path());
+    }
+  }
+  std::vector<Record> records;
+  records.reserve(paths.size());
+  for (const auto& path : paths) {
+    records.push_back(load_record(path));
+  }
+  return records;
+}
+
+nlohmann::json truth_of(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "kept/truth.json";
+  std::ifstream file(path);
+  if (!file) {
+    throw FileError(fmt::format("{}: cannot be read; give the folder of a case, with given/ and kept/", path.string()));
+  }
+  return nlohmann::json::parse(file);
+}
+
+bool is_one_of(const std::string& site, const std::string& sites) {
+  return ("|" + sites + "|").find("|" + site + "|") != std::string::npos;
+}
+
+void judge_unlisted(const std::set<std::string>& may_name, Judgement& judgement) {
+  const std::string sites = judgement.wanted.front().substr(std::string("unlisted@").size());
+  judgement.site_right = !judgement.found.empty();
+  for (std::size_t i = 0; i < judgement.found.size(); ++i) {
+    const bool named = !judgement.found[i].starts_with("unlisted@");
+    judgement.wrong_name = judgement.wrong_name || (named && !may_name.contains(judgement.found[i]));
+    judgement.site_right = judgement.site_right && is_one_of(judgement.found_sites[i], sites);
+  }
+  if (!judgement.after.empty()) {
+    const auto loudest = std::max_element(judgement.effect.begin(), judgement.effect.end(),
+                                          [](const auto& a, const auto& b) { return a.second < b.second; });
+    judgement.halved = judgement.after.at(loudest->first) < 0.5 * loudest->second;
+  }
+}
+
+std::string joined(std::vector<std::string> words) {
+  std::sort(words.begin(), words.end());
+  return words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, " + "));
+}
+
+std::string pair_of(const Errors& errors) {
+  std::vector<std::string> numbers;
+  for (const char* channel : {"piston", "engine"}) {
+    numbers.push_back(errors.contains(channel) ? fmt::format("{:.2f}", errors.at(channel)) : "-");
+  }
+  return fmt::format("{}", fmt::join(numbers, "/"));
+}
+
+std::string ruling(const Judgement& judgement) {
+  if (judgement.is_unlisted()) {
+    return fmt::format("{} {} {}", judgement.wrong_name ? "NAME" : "name", judgement.site_right ? "site" : "SITE",
+                       judgement.halved ? "halved" : "HALVED");
+  }
+  return fmt::format("{} {}", judgement.names_right ? "right" : "WRONG", judgement.below_noise ? "below" : "ABOVE");
+}
+
+}  // namespace
+
+Judgement judge(const std::filesystem::path& folder, unsigned threads) {
+  const nlohmann::json truth = truth_of(folder);
+  Judgement judgement;
+  judgement.name = folder.filename().string();
+  judgement.wanted = truth.at("effects").get<std::vector<std::string>>();
+  judgement.wanted_law = truth.value("law", "");
+  judgement.effect = truth.at("effect_size").get<Errors>();
+  const ModelFile declared = load_model(folder / "given/declared.toml");
+  const std::vector<Record> records = given_records(folder / "given");
+  const Record unseen = load_record(folder / "kept/score_noisefree.csv");
+  judgement.before = errors_of(declared, unseen, declared.noise);
+
+  if (const auto path = folder / "kept/true.toml"; std::filesystem::exists(path)) {
+    // An effect of physics.md that the model does not have yet is refused.
+    try {
+      judgement.truth = errors_of(load_model(path), unseen, declared.noise);
+    } catch (const FileError&) {
+      judgement.truth.clear();
+    }
+  }
+
+  const auto began = std::chrono::steady_clock::now();
+  const std::clock_t processor_began = std::clock();
+  try {
+    explain::ExplainOptions options;
+    options.threads = threads;
+    options.most_effects = 4;
+    const explain::Explanation explanation = explain::explain(declared, records, options);
+    judgement.verdict = explanation.report.at("verdict");
+    for (const auto& effect : explanation.report.at("effects")) {
+      const std::string name = effect.at("name");
+      judgement.found_sites.push_back(effect.at("site"));
+      judgement.found.push_back(name == "unlisted" ? name + "@" + judgement.found_sites.back() : name);
+      judgement.found_laws.push_back(effect.value("law", ""));
+    }
+    judgement.after = errors_of(explanation.model, unseen, declared.noise);
+  } catch (const std::exception& error) {
+    judgement.failure = error.what();
+  }
+  judgement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  judgement.processor_seconds = static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
+
+  judgement.below_noise = !judgement.after.empty() && std::all_of(judgement.after.begin(), judgement.after.end(),
+                                                                  [](const auto& error) { return error.second < 1.0; });
+  if (judgement.is_unlisted()) {
+    judge_unlisted(truth.value("may_name", std::set<std::string>{}), judgement);
+  } else {
+    const std::multiset<std::string> wanted(judgement.wanted.begin(), judgement.wanted.end());
+    const std::multiset<std::string> found(judgement.found.begin(), judgement.found.end());
+    const bool verdict_fits = !wanted.empty() || judgement.verdict == "nothing-missing";
+    judgement.names_right = judgement.failure.empty() && wanted == found && verdict_fits;
+  }
+  return judgement;
+}
+
+std::string line_of(const Judgement& judgement) {
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < judgement.found.size(); ++i) {
+    found.push_back(judgement.found[i] + (judgement.found_laws[i].empty() ? "" : ":" + judgement.found_laws[i]));
+  }
+  const std::string law = judgement.wanted_law.empty() ? "" : " (" + judgement.wanted_law + ")";
+  std::string line = fmt::format(
+      "{:<34} {:<16} {:<18} before {:>13} effect {:>13} true {:>9} after {:>11} {:6.1f} s ({:.1f} s of processor)  {} -> {}",
+      judgement.name, ruling(judgement), judgement.verdict, pair_of(judgement.before), pair_of(judgement.effect),
+      pair_of(judgement.truth), pair_of(judgement.after), judgement.seconds, judgement.processor_seconds,
+      joined(judgement.wanted) + law, joined(found));
+  return judgement.failure.empty() ? line : line + "; failed: " + judgement.failure;
+}
+
+nlohmann::json json_of(const Judgement& judgement) {
+  nlohmann::json result{{"case", judgement.name},
+                        {"wanted", judgement.wanted},
+                        {"wanted_law", judgement.wanted_law},
+                        {"found", judgement.found},
+                        {"laws", judgement.found_laws},
+                        {"sites", judgement.found_sites},
+                        {"verdict", judgement.verdict},
+                        {"before", judgement.before},
+                        {"effect", judgement.effect},
+                        {"after", judgement.after},
+                        {"true_model", judgement.truth},
+                        {"seconds", judgement.seconds},
+                        {"processor_seconds", judgement.processor_seconds},
+                        {"below_noise", judgement.below_noise}};
+  if (judgement.is_unlisted()) {
+    result["wrong_name"] = judgement.wrong_name;
+    result["site_right"] = judgement.site_right;
+    result["halved"] = judgement.halved;
+  } else {
+    result["names_right"] = judgement.names_right;
+  }
+  if (!judgement.failure.empty()) {
+    result["failure"] = judgement.failure;
+  }
+  return result;
+}
+
+}  // namespace hotfire::study

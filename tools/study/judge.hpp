@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace hotfire::study {
+
+/// What the finder made of one case.
+struct Judgement {
+  std::string name;
+  std::vector<std::string> wanted;      ///< names, or "unlisted@SITE|SITE"
+  std::string wanted_law;               ///< the law of what is missing, if it has laws; one of the model's or not
+  std::vector<std::string> found;       ///< names, those without a name as "unlisted@SITE"
+  std::vector<std::string> found_laws;  ///< in the order of `found`; "" for an effect without laws
+  std::vector<std::string> found_sites;
+  std::string verdict;
+  std::map<std::string, double> before;  ///< declared model on the unseen record, rms in sensor noise, by channel
+  std::map<std::string, double> effect;  ///< what the effects alone make
+  std::map<std::string, double> after;   ///< explained model
+  std::map<std::string, double> truth;  ///< the model with the true parameters, if it has keys for them: what can be reached
+  double seconds = 0.0;                 ///< that the finder took
+  double processor_seconds = 0.0;       ///< the same of all threads' processor time
+  bool names_right = false;  ///< listed: all that is missing is named and nothing else; null: nothing said to be missing
+  bool below_noise = false;  ///< `after` below 1 in every channel
+  // Unlisted only.
+  bool wrong_name = false;  ///< a listed effect was named that is no part of the truth
+  bool site_right = false;  ///< something was found, and all of it where the effect acts
+  bool halved = false;      ///< in the channel where the effect shows most, `after` is below half of `effect`
+  std::string failure;      ///< what was thrown, if the finder gave up
+  bool is_unlisted() const { return !wanted.empty() && wanted.front().starts_with("unlisted@"); }
+  bool is_null() const { return wanted.empty(); }
+};
+
+/// Explains the case in a folder (case.hpp) from its files and compares with what was kept from the finder. Errors of the
+/// finder are part of the judgement; throws FileError if the folder is no case.
+Judgement judge(const std::filesystem::path& folder, unsigned threads);
+
+/// One line for a person.
+std::string line_of(const Judgement& judgement);
+
+nlohmann::json json_of(const Judgement& judgement);
+
+}  // namespace hotfire::study

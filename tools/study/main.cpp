@@ -1,0 +1,197 @@
+// hotfire-study: how often the finder is right, on cases made by an independent simulator (docs/study.md).
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+#include <stdlib.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+
+#include "tools/files/error.hpp"
+#include "tools/study/case.hpp"
+#include "tools/study/judge.hpp"
+#include "tools/study/orders.hpp"
+#include "tools/study/tally.hpp"
+
+namespace hotfire::study {
+namespace {
+
+struct Options {
+  Selection selection;
+  std::string out;
+  std::vector<std::string> folders;
+  unsigned threads = 1;
+  bool generate_only = false;
+  bool json = false;
+};
+
+/// Where cases are written: the user's folder, or one of our own that goes with us.
+class Workplace {
+ public:
+  explicit Workplace(const std::string& wanted) : kept_(!wanted.empty()) {
+    if (kept_) {
+      folder_ = wanted;
+    } else {
+      std::string pattern = (std::filesystem::temp_directory_path() / "hotfire-study-XXXXXX").string();
+      if (mkdtemp(pattern.data()) == nullptr) {
+        throw UsageError(pattern + ": cannot be made; give a folder with --out");
+      }
+      folder_ = pattern;
+    }
+  }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+  ~Workplace() {
+    if (!kept_) {
+      std::error_code ignored;
+      std::filesystem::remove_all(folder_, ignored);
+    }
+  }
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  bool kept_;
+  std::filesystem::path folder_;
+};
+
+/// Judges case after case, a line each as it goes.
+class Court {
+ public:
+  explicit Court(const Options& options) : options_(options) { google::SetCommandLineOption("minloglevel", "3"); }
+
+  void judge_case(const std::filesystem::path& folder) {
+    judgements_.push_back(judge(folder, options_.threads));
+    if (options_.json) {
+      std::cout << json_of(judgements_.back()).dump() << std::endl;
+    } else {
+      std::cout << line_of(judgements_.back()) << std::endl;
+    }
+  }
+
+  ExitStatus close() const {
+    if (options_.json) {
+      std::cout << summary_json(judgements_).dump() << '\n';
+    } else {
+      std::cout << '\n' << summary_of(judgements_);
+    }
+    return all_met(judgements_) ? ExitStatus::good : ExitStatus::bad_verdict;
+  }
+
+ private:
+  const Options& options_;
+  std::vector<Judgement> judgements_;
+};
+
+ExitStatus study(const std::vector<CaseOrder>& orders, const Options& options) {
+  if (options.generate_only && options.out.empty()) {
+    throw UsageError("--generate-only: say with --out where the cases shall stay");
+  }
+  const Workplace workplace(options.out);
+  Court court(options);
+  bool all_made = true;
+  for (const CaseOrder& order : orders) {
+    const std::filesystem::path folder = workplace.folder() / order.name;
+    // One case that cannot be made is no reason to lose the others.
+    try {
+      write_case(make_case(order), folder);
+    } catch (const std::runtime_error& error) {
+      std::cerr << "hotfire-study: " << order.name << " is left out: " << error.what() << std::endl;
+      all_made = false;
+      continue;
+    }
+    if (options.generate_only) {
+      std::cout << folder.string() << std::endl;
+    } else {
+      court.judge_case(folder);
+    }
+  }
+  const ExitStatus status = options.generate_only ? ExitStatus::good : court.close();
+  return all_made ? status : ExitStatus::bad_data;
+}
+
+ExitStatus judge_folders(const Options& options) {
+  Court court(options);
+  for (const std::string& folder : options.folders) {
+    court.judge_case(std::filesystem::path(folder).lexically_normal());
+  }
+  return court.close();
+}
+
+void add_judging(CLI::App& command, Options& options) {
+  command.add_option("--threads", options.threads, "threads of the finder")
+      ->check(CLI::Range(1U, 256U))
+      ->capture_default_str();
+  command.add_flag("--json", options.json, "one JSON object a line: every case, then the summary");
+}
+
+void add_study(CLI::App& program, const char* name, const char* what, std::uint64_t seeds, Options& options) {
+  CLI::App* command = program.add_subcommand(name, what);
+  options.selection.seeds = seeds;
+  command->add_option(std::string(name) == "null" ? "--count" : "--seeds", options.selection.seeds, "how many seeds")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100'000}))
+      ->capture_default_str();
+  command->add_option("--first-seed", options.selection.first_seed, "the first of them")->capture_default_str();
+  if (std::string(name) != "null") {
+    command->add_option("--only", options.selection.only, "only these effects, or pairs as leakage+rate_limit");
+  }
+  command->add_option("--out", options.out, "keep the cases in this folder, one folder a case");
+  command->add_flag("--generate-only", options.generate_only, "make the cases and do not explain them");
+  add_judging(*command, options);
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("How often hotfire explain is right, on cases made by an independent simulator", "hotfire-study");
+  program.require_subcommand(1);
+  program.footer(
+      "Example: hotfire-study effects --seeds 3 --out cases\n"
+      "Exit status: 0 all figures met, 1 one is not, 2 wrong use, 6 bad data or a case that cannot be made.");
+  Options effects;
+  Options pairs;
+  Options unlisted;
+  Options null;
+  Options folders;
+  add_study(program, "effects", "Every listed effect, alone", 3, effects);
+  add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
+  add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
+  add_study(program, "null", "Records in which nothing is missing", 40, null);
+  CLI::App* judging = program.add_subcommand("judge", "Explain cases that are there");
+  judging->add_option("folders", folders.folders, "folders with given/ and kept/")->required();
+  add_judging(*judging, folders);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : static_cast<int>(ExitStatus::wrong_use);
+  }
+  ExitStatus status = ExitStatus::good;
+  if (program.got_subcommand("effects")) {
+    status = study(effect_orders(effects.selection), effects);
+  } else if (program.got_subcommand("pairs")) {
+    status = study(pair_orders(pairs.selection), pairs);
+  } else if (program.got_subcommand("unlisted")) {
+    status = study(unlisted_orders(unlisted.selection), unlisted);
+  } else if (program.got_subcommand("null")) {
+    status = study(null_orders(null.selection), null);
+  } else {
+    status = judge_folders(folders);
+  }
+  return static_cast<int>(status);
+}
+
+}  // namespace
+}  // namespace hotfire::study
+
+int main(int argc, char** argv) {
+  using hotfire::ExitStatus;
+  try {
+    return hotfire::study::run(argc, argv);
+  } catch (const hotfire::UsageError& error) {
+    std::cerr << "hotfire-study: " << error.what() << '\n';
+    return static_cast<int>(ExitStatus::wrong_use);
+  } catch (const std::exception& error) {
+    std::cerr << "hotfire-study: " << error.what() << '\n';
+    return static_cast<int>(ExitStatus::bad_data);
+  }
+}

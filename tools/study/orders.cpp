@@ -1,0 +1,74 @@
+#include "tools/study/orders.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/files/error.hpp"
+
+namespace hotfire::study {
+namespace {
+
+/// What is missing in each case of a study, before seeds.
+using Kinds = std::vector<std::vector<std::string>>;
+
+std::string name_of(const std::vector<std::string>& effects) { return fmt::format("{}", fmt::join(effects, "+")); }
+
+std::vector<CaseOrder> orders_of(const Kinds& kinds, const Selection& selection) {
+  for (const std::string& name : selection.only) {
+    if (std::none_of(kinds.begin(), kinds.end(), [&](const auto& effects) { return name_of(effects) == name; })) {
+      std::string names;
+      for (const auto& effects : kinds) {
+        names += (names.empty() ? "" : ", ") + name_of(effects);
+      }
+      throw UsageError(fmt::format("--only {}: this study has no such case; it has {}", name, names));
+    }
+  }
+  std::vector<CaseOrder> orders;
+  for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {
+    for (const auto& effects : kinds) {
+      const std::string name = name_of(effects);
+      if (selection.only.empty() || std::find(selection.only.begin(), selection.only.end(), name) != selection.only.end()) {
+        orders.push_back({fmt::format("{}-{}", name, seed), effects, seed});
+      }
+    }
+  }
+  return orders;
+}
+
+Kinds each_of(std::span<const StudiedEffect> effects) {
+  Kinds kinds;
+  for (const StudiedEffect& effect : effects) {
+    kinds.push_back({std::string(effect.name)});
+  }
+  return kinds;
+}
+
+}  // namespace
+
+std::vector<CaseOrder> effect_orders(const Selection& selection) { return orders_of(each_of(listed_effects()), selection); }
+
+std::vector<CaseOrder> unlisted_orders(const Selection& selection) {
+  return orders_of(each_of(unlisted_effects()), selection);
+}
+
+std::vector<CaseOrder> pair_orders(const Selection& selection) {
+  Kinds kinds;
+  for (const auto& [first, second] : studied_pairs()) {
+    kinds.push_back({std::string(first), std::string(second)});
+  }
+  return orders_of(kinds, selection);
+}
+
+std::vector<CaseOrder> null_orders(const Selection& selection) {
+  std::vector<CaseOrder> orders;
+  for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {
+    Random random("null levels", seed);
+    const double noise = random.log_uniform(0.5, 5.0);
+    const double scatter = random.log_uniform(0.5, 2.0);
+    orders.push_back({fmt::format("null-{}", seed), {}, seed, noise, scatter});
+  }
+  return orders;
+}
+
+}  // namespace hotfire::study

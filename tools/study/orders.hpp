@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/study/case.hpp"
+
+namespace hotfire::study {
+
+/// Which cases of a study: seeds `first_seed` onward, and only those named (all if none is).
+struct Selection {
+  std::uint64_t first_seed = 1;
+  std::uint64_t seeds = 3;
+  std::vector<std::string> only;
+};
+
+/// The cases of a study, seed by seed. A case is named after its effects and its seed, "backlash-2", "leakage+rate_limit-1",
+/// "null-7". `only` names effects, or pairs as "leakage+rate_limit". Throws UsageError for a name that the study does not
+/// have.
+std::vector<CaseOrder> effect_orders(const Selection& selection);
+std::vector<CaseOrder> pair_orders(const Selection& selection);
+std::vector<CaseOrder> unlisted_orders(const Selection& selection);
+
+/// Null records: noise of half to five times the usual, true parameters scattered within half to twice the tolerances.
+std::vector<CaseOrder> null_orders(const Selection& selection);
+
+}  // namespace hotfire::study

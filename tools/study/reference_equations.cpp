@@ -1,0 +1,241 @@
+#include "tools/study/reference_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hotfire::study {
+namespace {
+
+/// Rate at which the play between valve command and spool gives way beyond its width [1/s].
+constexpr double kPlayGivesWay = 1e7;
+
+double clamp_to(double x, double limit) { return std::clamp(x, -limit, limit); }
+double sign(double x) { return (x > 0.0) - (x < 0.0); }
+double beyond(double x, double limit) { return x - clamp_to(x, limit); }
+
+double stribeck(double level, double ratio, double at, double v) {
+  return level * (1.0 + (ratio - 1.0) * std::exp(-(v / at) * (v / at)));
+}
+
+struct Friction {
+  double force = 0.0;
+  double rate = 0.0;  ///< of the bristle
+};
+
+Friction lugre(const ReferenceAxis::Bristle& law, double growth, double velocity, double z) {
+  if (law.level == 0.0) {
+    return {};
+  }
+  const double level = growth * stribeck(law.level, law.static_ratio, law.stribeck, velocity);
+  const double rate = velocity - law.stiffness * std::abs(velocity) * z / level;
+  const double fading = std::exp(-(velocity / law.damping_dies_at) * (velocity / law.damping_dies_at));
+  return {law.stiffness * z + law.damping * fading * rate, rate};
+}
+
+/// Dahl's bristle behind a spring. Both carry the same torque, sigma0 z = k twist, so that the bristle's own velocity v
+/// solves sigma0 (v - sigma0 |v| z / level) = k (w - v); v has the sign of w, and the factor of v is at least k in stick and
+/// in slip.
+Friction sprung_dahl(const ReferenceAxis::Bristle& law, double spring, double velocity, double z) {
+  const double stuck = 1.0 - law.stiffness * z * sign(velocity) / law.level;
+  const double own = spring * velocity / (spring + law.stiffness * stuck);
+  return {law.stiffness * z, own * stuck};
+}
+
+Friction gimbal_friction(const ReferenceAxis& axis, double velocity, double angle, double z) {
+  if (axis.gimbal_stiffness > 0.0) {
+    return sprung_dahl(axis.bristle, axis.gimbal_stiffness, velocity, z);
+  }
+  return lugre(axis.bristle, 1.0 + axis.unlisted.friction_growth * angle * angle, velocity, z);
+}
+
+Friction elastic_slip(const ReferenceAxis::Slip& law, double velocity, double stretch) {
+  if (law.stiffness == 0.0) {
+    return {};
+  }
+  const double level = stribeck(law.level, law.static_ratio, law.stribeck, velocity);
+  return {law.stiffness * stretch, velocity - law.gives_way * beyond(stretch, level / law.stiffness)};
+}
+
+/// Deflection of actuator and load in series under a force F >= 0.
+double soft_deflection(const ReferenceAxis& axis, double force) {
+  const double k = axis.actuator_stiffness;
+  const double low = axis.low_stiffness;
+  const double scale = axis.load_scale;
+  double own = 0.0;
+  if (axis.soft == ReferenceAxis::Soft::compliance) {
+    own = force / k + (1.0 / low - 1.0 / k) * scale * -std::expm1(-force / scale);
+  } else if (axis.soft == ReferenceAxis::Soft::stiffness) {
+    own = scale / k * std::log((k * std::exp(force / scale) - (k - low)) / low);
+  } else if (axis.soft == ReferenceAxis::Soft::saturation) {
+    own = force / k + (1.0 / low - 1.0 / k) * scale * std::tanh(force / scale);
+  } else {
+    for (std::size_t i = 0; i < axis.stiffness_table.size(); ++i) {
+      const bool last = i + 1 == axis.stiffness_table.size();
+      const double from = axis.stiffness_table[i][0];
+      const double to = last ? std::numeric_limits<double>::infinity() : axis.stiffness_table[i + 1][0];
+      const double here = 1.0 / axis.stiffness_table[i][1];
+      const double next = last ? here : 1.0 / axis.stiffness_table[i + 1][1];
+      own += std::clamp(force - from, 0.0, to - from) * 0.5 * (here + next);
+    }
+  }
+  return own + force / axis.load_stiffness;
+}
+
+double spring_force(const ReferenceAxis& axis, double deflection) {
+  const double total = 1.0 / (1.0 / axis.actuator_stiffness + 1.0 / axis.load_stiffness);
+  const double played = beyond(deflection, axis.backlash);
+  if (axis.soft == ReferenceAxis::Soft::none) {
+    return total * played;
+  }
+  // Bisection: the force lies between none and that of the stiff branch.
+  const double wanted = std::abs(played);
+  double low = 0.0;
+  double high = total * wanted;
+  for (int i = 0; i < 200 && low < high; ++i) {
+    const double middle = 0.5 * (low + high);
+    if (middle == low || middle == high) {
+      break;
+    }
+    (soft_deflection(axis, middle) < wanted ? low : high) = middle;
+  }
+  return sign(played) * high;
+}
+
+struct Lever {
+  double stroke = 0.0;  ///< of the actuator [m]
+  double arm = 0.0;     ///< its derivative [m]
+};
+
+/// With p the product of the two distances from the pivot, length^2 = const - 2 p cos(angle + beta).
+Lever lever_of(const ReferenceAxis& a, double beta) {
+  if (a.linkage.length == 0.0) {
+    return {a.arm * beta * (1.0 + beta * (a.arm_linear / 2.0 + a.arm_quadratic * beta / 3.0)),
+            a.arm * (1.0 + beta * (a.arm_linear + a.arm_quadratic * beta))};
+  }
+  const double product = a.arm * a.linkage.length / std::sin(a.linkage.angle);
+  const double length = std::sqrt(a.linkage.length * a.linkage.length +
+                                  2.0 * product * (std::cos(a.linkage.angle) - std::cos(a.linkage.angle + beta)));
+  return {length - a.linkage.length, product * std::sin(a.linkage.angle + beta) / length};
+}
+
+double reading_without_lag(const ReferenceAxis::Sensor& sensor, double x) {
+  double y = x * (1.0 + x * (sensor.quadratic + sensor.cubic * x));
+  for (const ReferenceAxis::Bump& bump : sensor.bumps) {
+    const double distance = (x - bump.at) / bump.width;
+    y += bump.height * std::exp(-distance * distance);
+  }
+  return y;
+}
+
+/// Opening, flow and pressure; `d` gets their rates.
+void oil(const ReferenceAxis& a, const StateVector& y, StateVector& d) {
+  const double lapped = beyond(y[kSpool], a.deadband);
+  const double opening = lapped * (1.0 + a.asymmetry * sign(lapped)) * (1.0 + a.unlisted.flow_curvature * lapped * lapped);
+  const double p = y[kPressure];
+  const double supply = a.supply - y[kSupplyDroop];
+  const double turbulent = a.orifice_leak * p * std::sqrt(a.supply / (std::abs(p) + 1e-3 * a.supply));
+  // Rated flow is told at the declared supply pressure.
+  const double flow = a.rated_flow * opening * std::sqrt(std::max(0.0, (supply - sign(opening) * p) / a.supply));
+  const double modulus =
+      a.bulk_modulus * (1.0 - a.unlisted.aeration * std::exp(-std::abs(p) / a.unlisted.aeration_pressure));
+  d[kPressure] = 4.0 * modulus / a.volume * (flow - a.area * y[kPistonRate] - (a.leakage + a.laminar_leak) * p - turbulent);
+  d[kWashout] = a.pressure_corner * (p - y[kWashout]);
+  if (a.unlisted.supply_droop > 0.0) {
+    d[kSupplyDroop] = (a.unlisted.supply_droop * std::abs(flow) - y[kSupplyDroop]) / a.unlisted.supply_recovery;
+  }
+}
+
+}  // namespace
+
+std::vector<ReferenceState> states_of(const ReferenceAxis& axis) {
+  std::vector<ReferenceState> states;
+  const auto add = [&](ReferenceState state, bool there) {
+    if (there) {
+      states.push_back(state);
+    }
+  };
+  for (int s = kSpool; s <= kAngleRate; ++s) {
+    add(static_cast<ReferenceState>(s), true);
+  }
+  add(kPlay, axis.play > 0.0);
+  add(kSeal, axis.seal.stiffness > 0.0);
+  add(kBristle, axis.bristle.level > 0.0);
+  add(kSealBristle, axis.seal_bristle.level > 0.0);
+  add(kMode, axis.mode_shape > 0.0);
+  add(kModeRate, axis.mode_shape > 0.0);
+  add(kPistonReading, axis.piston_sensor.lag > 0.0);
+  add(kEngineReading, axis.engine_sensor.lag > 0.0);
+  add(kSupplyDroop, axis.unlisted.supply_droop > 0.0);
+  add(kCreep, axis.unlisted.creep_stiffness > 0.0);
+  return states;
+}
+
+double command_at(const ReferenceProblem& problem, double t) {
+  const double reach = problem.axis.rate_limit * (t - problem.start_time);
+  return t > problem.start_time ? problem.command_start + clamp_to(problem.command - problem.command_start, reach)
+                                : problem.command_start;
+}
+
+StateVector derivative(const ReferenceProblem& problem, double t, const StateVector& y) {
+  const ReferenceAxis& a = problem.axis;
+  const double elapsed = std::max(0.0, t - problem.first_row);
+  StateVector d{};
+
+  // A limit of infinity makes the command jump at the start of the interval.
+  const double angle = std::isinf(a.rate_limit) ? problem.command : command_at(problem, t);
+  const double torque_motor = a.position_gain * (a.arm * angle - y[kPiston]) -
+                              a.pressure_gain * (y[kPressure] - y[kWashout]) + a.unlisted.null_drift * elapsed;
+  const double valve_command = clamp_to(torque_motor, 1.0) - clamp_to(y[kPlay], a.play);
+  d[kSpool] = y[kSpoolRate];
+  d[kSpoolRate] = a.valve_frequency * a.valve_frequency * (valve_command - y[kSpool]) -
+                  2.0 * a.valve_damping * a.valve_frequency * y[kSpoolRate];
+  oil(a, y, d);
+
+  const double v = y[kPistonRate];
+  const double w = y[kAngleRate];
+  const double beta = y[kAngle];
+  const Lever lever = lever_of(a, beta);
+  const double force = spring_force(a, y[kPiston] - lever.stroke - a.mode_shape * y[kMode] - y[kCreep]);
+  const Friction seal = elastic_slip(a.seal, v, y[kSeal]);
+  const Friction seal_bristle = lugre(a.seal_bristle, 1.0, v, y[kSealBristle]);
+  const double damping = a.piston_damping + a.unlisted.cushion * std::abs(beyond(y[kPiston], a.unlisted.cushion_from));
+  d[kPiston] = v;
+  d[kPistonRate] = (a.area * y[kPressure] - force - damping * v - seal.force - seal_bristle.force) / a.piston_mass;
+
+  const double coulomb = a.coulomb.level * std::tanh(w / a.coulomb.creep);
+  const Friction bristle = gimbal_friction(a, w, beta, y[kBristle]);
+  const double forcing =
+      a.unlisted.periodic_torque * std::sin(2.0 * std::numbers::pi * a.unlisted.periodic_frequency * elapsed);
+  d[kAngle] = w;
+  d[kAngleRate] = (lever.arm * force - a.damping * w - a.duct_stiffness * beta - a.duct_cubic * beta * beta * beta -
+                   a.torque_offset - coulomb - bristle.force - forcing) /
+                  a.inertia;
+
+  const double torque_motor_rate = -a.position_gain * v - a.pressure_gain * (d[kPressure] - d[kWashout]);
+  d[kPlay] = (std::abs(torque_motor) < 1.0 ? torque_motor_rate : 0.0) - kPlayGivesWay * beyond(y[kPlay], a.play);
+  d[kSeal] = seal.rate;
+  d[kSealBristle] = seal_bristle.rate;
+  d[kBristle] = bristle.rate;
+  const double natural = 2.0 * std::numbers::pi * a.mode_frequency;
+  d[kMode] = y[kModeRate];
+  d[kModeRate] = a.mode_shape * force - 2.0 * a.mode_damping * natural * y[kModeRate] - natural * natural * y[kMode];
+  if (a.piston_sensor.lag > 0.0) {
+    d[kPistonReading] = (reading_without_lag(a.piston_sensor, y[kPiston]) - y[kPistonReading]) / a.piston_sensor.lag;
+  }
+  if (a.engine_sensor.lag > 0.0) {
+    d[kEngineReading] = (reading_without_lag(a.engine_sensor, beta) - y[kEngineReading]) / a.engine_sensor.lag;
+  }
+  if (a.unlisted.creep_stiffness > 0.0) {
+    d[kCreep] = (force / a.unlisted.creep_stiffness - y[kCreep]) / a.unlisted.creep_time;
+  }
+  return d;
+}
+
+std::array<double, 3> readings(const ReferenceAxis& axis, const StateVector& y) {
+  return {axis.piston_sensor.lag > 0.0 ? y[kPistonReading] : reading_without_lag(axis.piston_sensor, y[kPiston]),
+          axis.engine_sensor.lag > 0.0 ? y[kEngineReading] : reading_without_lag(axis.engine_sensor, y[kAngle]),
+          y[kPressure]};
+}
+
+}  // namespace hotfire::study

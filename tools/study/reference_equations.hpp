@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "tools/study/reference_axis.hpp"
+
+namespace hotfire::study {
+
+/// The states of the reference axis. Those after the engine's exist only with their effect.
+enum ReferenceState {
+  kSpool,
+  kSpoolRate,
+  kPressure,
+  kWashout,
+  kPiston,
+  kPistonRate,
+  kAngle,
+  kAngleRate,
+  kPlay,
+  kSeal,
+  kBristle,
+  kSealBristle,
+  kMode,
+  kModeRate,
+  kPistonReading,
+  kEngineReading,
+  kSupplyDroop,
+  kCreep,
+  kStates
+};
+
+using StateVector = std::array<double, kStates>;
+
+/// What a state is measured in; tolerances are a tiny part of it.
+inline constexpr StateVector kStateScale{0.01, 1.0,  1e6,  1e6, 0.01, 0.1,  0.01, 0.1, 0.01,
+                                         1e-5, 1e-4, 1e-5, 0.1, 1.0,  0.01, 0.01, 1e6, 1e-4};
+
+/// The states that an axis has, in order.
+std::vector<ReferenceState> states_of(const ReferenceAxis& axis);
+
+/// An axis and what drives it in the present interval.
+struct ReferenceProblem {
+  const ReferenceAxis& axis;
+  std::vector<ReferenceState> states;
+  double command = 0.0;        ///< what is asked for in this interval [rad]
+  double command_start = 0.0;  ///< where a limited command stands at its beginning
+  double start_time = 0.0;
+  double first_row = 0.0;  ///< when the record begins
+};
+
+/// The command behind the rate limit.
+double command_at(const ReferenceProblem& problem, double t);
+
+/// The axis' equations. The states it does not have are zero in `y`, and what comes out for them is not used.
+StateVector derivative(const ReferenceProblem& problem, double t, const StateVector& y);
+
+/// What the three channels read.
+std::array<double, 3> readings(const ReferenceAxis& axis, const StateVector& y);
+
+}  // namespace hotfire::study
