@@ -147,8 +147,8 @@ class Axis {
     State state;
     const Signal<S> always{command, h_};
     settle<Site::command>(parameters_.effects, state.effects, always);
-    const S angle = pass_through<Site::command>(parameters_.effects, state.effects, always, Keep::no).value;
-    state.inputs(kCommand) = parameters_.actuator.moment_arm * angle;
+    const S commanded = pass_through<Site::command>(parameters_.effects, state.effects, always, Keep::no).value;
+    state.inputs(kCommand) = parameters_.actuator.moment_arm * commanded;
     constexpr double kWidth = 1e-6;  // m, rad: far below what a sensor sees
     const auto flow_at = [&](const S& piston) {
       state.y(kPiston) = piston;
