@@ -297,7 +297,7 @@ class Axis {
   template <class Around>
   S net_flow(State& state, const Around& around) const noexcept {
     const Servovalve<S>& valve = parameters_.servovalve;
-    state.y(kPressure) = state.spring_force / parameters_.actuator.piston_area;
+    state.y(kPressure) = (state.spring_force + state.inputs(kPistonForce)) / parameters_.actuator.piston_area;
     state.y(kWashout) = state.y(kPressure);
     evaluate(state, at_rest(state), around, Keep::no);
     state.y(kOpening) = valve.position_gain * (state.inputs(kCommand) - state.y(kPiston)) + state.inputs(kValveCommand);

@@ -44,8 +44,15 @@ void fill_group(KeyGroup& group, int option, RandomNumbers& random) {
       *number.value = random.between(number.lower, number.upper);
     }
   }
+  // Curves of one group may share their points, whatever they depend on.
   for (const CurveKey& curve : group.curves) {
-    *curve.points = group.uses(curve.options) ? static_cast<int>(curve.capacity) : 0;
+    *curve.points = 0;
+  }
+  for (const CurveKey& curve : group.curves) {
+    if (!group.uses(curve.options)) {
+      continue;
+    }
+    *curve.points = static_cast<int>(curve.capacity);
     for (int point = 0; point < *curve.points; ++point) {
       curve.x[point] = point + random.between(0.1, 0.9);
       curve.y[point] = random.between(curve.y_lower, curve.y_upper);

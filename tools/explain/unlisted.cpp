@@ -120,6 +120,60 @@ constexpr bool is_unlisted_effect() {
   return requires { E::is_unlisted; };
 }
 
+/// Squared residuals of every record at a point; infinite where it can't be simulated.
+template <class Family>
+std::vector<double> cost_by_record(const Evaluator<Family>& evaluator, const Fitted<Family>& model,
+                                   const std::vector<double>& u) {
+  const std::size_t records = evaluator.data().experiments.size();
+  Prediction prediction;
+  if (!evaluator.predict(model.base, model.free, u, 1, prediction)) {
+    return std::vector<double>(records, std::numeric_limits<double>::infinity());
+  }
+  std::vector<double> cost(records, 0.0);
+  const Eigen::VectorXd residual = evaluator.residuals(prediction);
+  for (const Stretch& s : evaluator.stretches()) {
+    cost[s.experiment] +=
+        residual.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first)).squaredNorm();
+  }
+  return cost;
+}
+
+/// A sinusoid's own coordinates at a frequency and a factor of its typical amplitude, each record's clock at the best of the
+/// phases tried. Records do not depend on each other's clock: one simulation tries a phase on all of them.
+template <class Family>
+std::vector<double> at_best_phases(const Evaluator<Family>& evaluator, const Fitted<Family>& model, std::size_t own_first,
+                                   double frequency, double factor) {
+  const std::span<const FreeParameter> own = std::span(model.free).subspan(own_first);
+  const std::size_t records = evaluator.data().experiments.size();
+  std::vector<double> best(records, 0.0);
+  std::vector<double> least(records, std::numeric_limits<double>::infinity());
+  const auto point_at = [&](auto&& clock) {
+    std::vector<double> point;
+    for (const FreeParameter& parameter : own) {
+      const double amplitude = factor * parameter.unit_size;
+      const double value = parameter.is_initial_state() ? clock(static_cast<std::size_t>(parameter.experiment))
+                           : parameter.unit == "Hz"     ? frequency
+                                                        : amplitude;
+      point.push_back(parameter.coordinate(value));
+    }
+    return point;
+  };
+  for (int phase = 0; phase < kPhases; ++phase) {
+    const double clock = static_cast<double>(phase) / (kPhases * frequency);
+    const std::vector<double> point = point_at([&](std::size_t) { return clock; });
+    std::vector<double> u(model.u.begin(), model.u.begin() + static_cast<std::ptrdiff_t>(own_first));
+    u.insert(u.end(), point.begin(), point.end());
+    const std::vector<double> cost = cost_by_record(evaluator, model, u);
+    for (std::size_t e = 0; e < records; ++e) {
+      if (cost[e] < least[e]) {
+        least[e] = cost[e];
+        best[e] = clock;
+      }
+    }
+  }
+  return point_at([&](std::size_t e) { return best[e]; });
+}
+
 }  // namespace
 
 template <class Family>
@@ -217,49 +271,10 @@ std::vector<FreeParameter> clocks(const Dataset& data) {
 template <class Family>
 std::vector<std::vector<double>> periodic_starts(const Evaluator<Family>& evaluator, const Fitted<Family>& with_candidate,
                                                  std::size_t own_first, const std::vector<double>& frequencies) {
-  const std::size_t records = evaluator.data().experiments.size();
-  const std::span<const FreeParameter> own = std::span(with_candidate.free).subspan(own_first);
   std::vector<std::vector<double>> starts;
   for (const double frequency : frequencies) {
     for (const double factor : {0.3, 1.0, 3.0}) {
-      std::vector<double> best_clock(records, 0.0);
-      std::vector<double> least(records, std::numeric_limits<double>::infinity());
-      std::vector<double> point;
-      for (int phase = 0; phase < kPhases; ++phase) {
-        point.clear();
-        const double clock = static_cast<double>(phase) / (kPhases * frequency);
-        for (const FreeParameter& parameter : own) {
-          const double value = parameter.unit == "Hz"         ? frequency
-                               : parameter.is_initial_state() ? clock
-                                                              : factor * parameter.unit_size;
-          point.push_back(parameter.coordinate(value));
-        }
-        std::vector<double> u(with_candidate.u.begin(), with_candidate.u.begin() + static_cast<std::ptrdiff_t>(own_first));
-        u.insert(u.end(), point.begin(), point.end());
-        Prediction prediction;
-        if (!evaluator.predict(with_candidate.base, with_candidate.free, u, 1, prediction)) {
-          continue;
-        }
-        const Eigen::VectorXd residual = evaluator.residuals(prediction);
-        std::vector<double> cost(records, 0.0);
-        for (const Stretch& s : evaluator.stretches()) {
-          cost[s.experiment] +=
-              residual.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
-                  .squaredNorm();
-        }
-        for (std::size_t e = 0; e < records; ++e) {
-          if (cost[e] < least[e]) {
-            least[e] = cost[e];
-            best_clock[e] = clock;
-          }
-        }
-      }
-      for (std::size_t k = 0; k < point.size(); ++k) {
-        if (own[k].is_initial_state()) {
-          point[k] = own[k].coordinate(best_clock[static_cast<std::size_t>(own[k].experiment)]);
-        }
-      }
-      starts.push_back(std::move(point));
+      starts.push_back(at_best_phases(evaluator, with_candidate, own_first, frequency, factor));
     }
   }
   return starts;

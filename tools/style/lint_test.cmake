@@ -30,7 +30,6 @@ expect_finding(bugprone-use-after-move
 expect_finding(bugprone-integer-division "double f(int a, int b) { return a / b; }")
 expect_finding(bugprone-narrowing-conversions "int f(long a) {\n  int b = 0;\n  b = a;\n  return b;\n}")
 expect_finding(bugprone-branch-clone "int f(bool a) {\n  if (a) {\n    return 1;\n  } else {\n    return 1;\n  }\n}")
-expect_finding(clang-analyzer-core "int f() {\n  int* p = nullptr;\n  return *p;\n}")
 expect_finding(cppcoreguidelines-pro-type-member-init "struct Point {\n  int x;\n  int y;\n};\nint f() {\n  Point p;\n  return p.x;\n}")
 expect_finding(modernize-use-override "struct A {\n  virtual ~A() = default;\n  virtual void f();\n};\nstruct B : A {\n  virtual void f();\n};")
 expect_finding(performance-unnecessary-value-param
