@@ -53,10 +53,10 @@ bool emps(const fs::path& folder) {
   const auto result = explained(folder);
   const auto& friction = result.report["effects"][0]["parameters"];
   const bool asymmetric = friction["viscous_forward"]["value"] < friction["viscous_backward"]["value"];
-  // A frictionless mass is off by metres. 11 mm is what the friction of the training record gives on the other record, in
-  // which friction is larger by a fortieth; it guards what is reached, not what is aimed at (docs/explain.md).
+  // A frictionless mass is off by metres. The friction of the other record is larger by a fortieth, and fits that follow the
+  // training record alike give 5.2 to 6.0 mm on it; 7 mm guards what is reached, not what is aimed at (docs/explain.md).
   return found_first(result, "sliding_friction") && asymmetric &&
-         check("EMPS", 1e3 * test_error(result.model, folder / "test.csv", 0, 20, SIZE_MAX), 11.0);
+         check("EMPS", 1e3 * test_error(result.model, folder / "test.csv", 0, 20, SIZE_MAX), 7.0);
 }
 
 bool silverbox(const fs::path& folder) {
