@@ -216,7 +216,7 @@ class Axis {
 
     const S attach_motion = sum_over<Site::structure>(effects, state.effects, AttachPoint<S>{state.spring_force, h_}, keep);
     const S linear_deflection = mean(kPiston) - actuator.moment_arm * mean(kAngle);
-    const Spring<S> spring = pass_through<Site::load_spring>(
+    Spring<S> spring = pass_through<Site::load_spring>(
         effects, state.effects,
         spring_around(around,
                       Spring<S>{linear_deflection - attach_motion, mean(kAngle), actuator.moment_arm, actuator.moment_arm,

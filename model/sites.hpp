@@ -39,7 +39,7 @@ template <class S>
 struct Signal {
   using Scalar = S;
   S value;
-  double h;
+  double h = 0.0;
   S time{0.0};  ///< of the record, mean over the step [s]
 };
 
@@ -50,7 +50,7 @@ struct Hydraulics {
   S load_pressure;  ///< mean over the step [Pa]
   S opening;        ///< mean spool position after the valve's effects [-]
   S supply_pressure;
-  double h;
+  double h = 0.0;
   S time{0.0};  ///< of the record, mean over the step [s]
 };
 
@@ -76,7 +76,7 @@ struct Motion {
   S velocity;
   S free_velocity;
   S compliance;
-  double h;
+  double h = 0.0;
   S time{0.0};  ///< of the record, mean over the step [s]
 };
 
