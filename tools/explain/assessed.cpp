@@ -103,7 +103,7 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
         reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
       }
     }
-    const Assessed<Family> simple = refined(fine, threads, reduced, kFinal);
+    Assessed<Family> simple = refined(fine, threads, reduced, kFinal);
     const std::vector<ChannelFit>& effective = winner.goodness.fitted;
     if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {
       candidate = law;

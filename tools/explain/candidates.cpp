@@ -72,6 +72,24 @@ void append_ordinates(const Parameters& base, const Candidate& candidate, const 
 
 bool is_frequency(const FreeParameter& parameter) { return parameter.unit == "Hz"; }
 
+/// Coordinate of parameter k at point n of the cover, with frequencies at `frequency`. The first point is the typical value
+/// itself; ordinates start at zero.
+double start_coordinate(const FreeParameter& parameter, std::size_t k, std::size_t n, double frequency) {
+  constexpr std::array<std::size_t, 8> kPrimes{2, 3, 5, 7, 11, 13, 17, 19};
+  const double place = n == 0 ? 0.5 : van_der_corput(n, kPrimes[k % kPrimes.size()]);
+  const double factor = std::pow(kStartSpan, 2.0 * place - 1.0);
+  if (is_frequency(parameter)) {
+    return parameter.coordinate(std::clamp(frequency, parameter.lower, parameter.upper));
+  }
+  if (parameter.is_ordinate) {
+    return parameter.coordinate(n == 0 ? 0.0 : parameter.unit_size * factor);
+  }
+  if (parameter.scale == FreeParameter::Scale::linear) {
+    return n % 2 == 0 ? factor : -factor;
+  }
+  return parameter.coordinate(std::clamp(parameter.unit_size * factor, parameter.lower, parameter.upper));
+}
+
 }  // namespace
 
 template <class Family>
@@ -189,7 +207,6 @@ std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& sca
 
 std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& own,
                                               const std::vector<double>& frequencies) {
-  constexpr std::array<std::size_t, 8> kPrimes{2, 3, 5, 7, 11, 13, 17, 19};
   std::vector<double> tried{1.0};
   const bool has_frequency = std::any_of(own.begin(), own.end(), is_frequency);
   if (has_frequency) {
@@ -206,23 +223,10 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
   std::vector<std::vector<double>> starts;
   for (const double frequency : tried) {
     for (std::size_t n = 0; n < covers; ++n) {
-      std::vector<double> u;
+      starts.emplace_back();
       for (std::size_t k = 0; k < own.size(); ++k) {
-        const FreeParameter& parameter = own[k];
-        // The first point is the typical value itself.
-        const double place = n == 0 ? 0.5 : van_der_corput(n, kPrimes[k % kPrimes.size()]);
-        const double factor = std::pow(kStartSpan, 2.0 * place - 1.0);
-        if (is_frequency(parameter)) {
-          u.push_back(parameter.coordinate(std::clamp(frequency, parameter.lower, parameter.upper)));
-        } else if (parameter.is_ordinate) {
-          u.push_back(parameter.coordinate(n == 0 ? 0.0 : parameter.unit_size * factor));
-        } else if (parameter.scale == FreeParameter::Scale::linear) {
-          u.push_back(n % 2 == 0 ? factor : -factor);
-        } else {
-          u.push_back(parameter.coordinate(std::clamp(parameter.unit_size * factor, parameter.lower, parameter.upper)));
-        }
+        starts.back().push_back(start_coordinate(own[k], k, n, frequency));
       }
-      starts.push_back(std::move(u));
     }
   }
   return starts;
