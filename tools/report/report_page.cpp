@@ -55,10 +55,12 @@ std::string text_at(const nlohmann::json& report, const char* key) {
 }
 
 void check(const nlohmann::json& report) {
-  if (!report.is_object())
+  if (!report.is_object()) {
     throw std::invalid_argument("report: not a JSON object");
-  if (text_at(report, "verdict").empty())
+  }
+  if (text_at(report, "verdict").empty()) {
     throw std::invalid_argument("report: 'verdict' is missing or not a text");
+  }
   if (!report.contains("channels") || !report["channels"].is_object()) {
     throw std::invalid_argument("report: 'channels' is missing or not an object");
   }
@@ -67,8 +69,9 @@ void check(const nlohmann::json& report) {
 /// Moves what comes before the place from `rest` to `page` and appends the filling.
 void fill(std::string& page, std::string_view& rest, std::string_view place, std::string_view filling) {
   const std::size_t at = rest.find(place);
-  if (at == std::string_view::npos)
+  if (at == std::string_view::npos) {
     throw std::logic_error("report page: its template lacks a place to fill");
+  }
   page += rest.substr(0, at);
   page += filling;
   rest.remove_prefix(at + place.size());
