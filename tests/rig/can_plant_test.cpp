@@ -125,6 +125,19 @@ class Controller {
     return true;
   }
 
+  /// Waits until the plant has begun and ended a cycle after this call: of two readings that come after all that are there
+  /// now, the second belongs to such a cycle. False if the plant is silent.
+  bool take_cycle() {
+    take_readings(0);
+    const std::uint64_t before = readings;
+    while (readings < before + 2) {
+      if (!take_readings(2000)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   std::uint64_t lost() const { return sequence_.lost(); }
 
   std::array<double, 2> pistons{};
@@ -192,8 +205,9 @@ TEST(CanPlant, AnswersWhatCanplayerReplays) {
   std::fclose(log);
   Controller listener;
   Answering plant(1'000'000);
+  CHECK(listener.take_cycle());
   shell("canplayer -I /tmp/replay.log");
-  listener.take_readings(2000);
+  CHECK(listener.take_cycle());
   plant.ask_to_stop();
   plant.finish();
   UNSIGNED_LONGS_EQUAL(kCommands, plant.bus().commands + plant.bus().skipped);
