@@ -190,12 +190,12 @@ class Axis {
     const auto& effects = parameters_.effects;
     const S time = mid_step(state);
 
-    const S linear_command = valve.position_gain * (state.inputs(kCommand) - mean(kPiston)) -
-                             valve.pressure_feedback_gain * (mean(kPressure) - mean(kWashout));
-    const S saturated = clamp_symmetric<S>(linear_command, S{1.0});
-    state.inputs(kValveCommand) =
-        pass_through<Site::valve_command>(effects, state.effects, Signal<S>{saturated, h_, time}, keep).value -
-        linear_command;
+    const S linear_command = torque_motor(state, mean);
+    const S change = saturated(torque_motor(state, advance.end)) - saturated(torque_motor(state, advance.start));
+    state.inputs(kValveCommand) = pass_through<Site::valve_command>(
+                                      effects, state.effects, Signal<S>{saturated(linear_command), h_, time, change}, keep)
+                                      .value -
+                                  linear_command;
 
     const S opening = pass_through<Site::valve>(effects, state.effects, Signal<S>{mean(kOpening), h_, time}, keep).value;
     const S drop = 1.0 - sign_of(opening) * mean(kPressure) / actuator.supply_pressure;
@@ -266,6 +266,14 @@ class Axis {
   }
   static S torque_around(const Uncoupled&, const S& own) noexcept { return own; }
   static S torque_around(const Coupling<S>& around, const S& own) noexcept { return own + around.torque; }
+
+  /// The command of the torque motor before saturation, with the axis at `y`.
+  S torque_motor(const State& state, const Eigen::Matrix<S, 8, 1>& y) const noexcept {
+    const Servovalve<S>& valve = parameters_.servovalve;
+    return valve.position_gain * (state.inputs(kCommand) - y(kPiston)) -
+           valve.pressure_feedback_gain * (y(kPressure) - y(kWashout));
+  }
+  static S saturated(const S& command) noexcept { return clamp_symmetric<S>(command, S{1.0}); }
 
   S mid_step(const State& state) const noexcept { return state.clock + 0.5 * h_; }
 

@@ -19,6 +19,9 @@ namespace hotfire::model {
 /// - `step(params, state, input)`: advances the state over one step and returns the site's output. It never throws,
 ///   allocates or blocks.
 ///
+/// An effect may carry another one of the same additive site: `carries` is that one's name, and `carry(params, state, input,
+/// step)` evaluates it by `step(input)`, on what it sees through the carrier. Such an effect adds nothing of its own.
+///
 /// Optional: `settle(params, state, input)` puts the state where a constant input leaves it; `broken_relation(params)` names
 /// a relation between fields that the values break, empty if none.
 template <class E, class S>
@@ -104,6 +107,46 @@ auto evaluate(const Params& params, State& state, const Input& input, Keep keep)
 
 }  // namespace detail
 
+namespace detail {
+
+/// Calls `f.template operator()<Carrier, index>()` for the effect of the list that carries E, if there is one.
+template <class E, class List, class F>
+void with_carrier(F&& f) noexcept {
+  List::for_each([&]<class C, std::size_t I>() {
+    if constexpr (requires { C::carries; }) {
+      if constexpr (C::carries == E::name) {
+        f.template operator()<C, I>();
+      }
+    }
+  });
+}
+
+/// The output of one effect of an additive site, through its carrier if that is active.
+template <class E, std::size_t I, class S, class List, class Input>
+S output_of(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states, const Input& input,
+            Keep keep) noexcept {
+  bool carried = false;
+  S output{0.0};
+  with_carrier<E, List>([&]<class C, std::size_t K>() {
+    if (parameters.active[K]) {
+      auto own = std::get<I>(states.values);
+      auto carrier = std::get<K>(states.values);
+      carried = true;
+      output = C::carry(std::get<K>(parameters.values), carrier, input, [&](const Input& seen) {
+        own = std::get<I>(states.values);
+        return E::step(std::get<I>(parameters.values), own, seen);
+      });
+      if (keep == Keep::yes) {
+        std::get<I>(states.values) = own;
+        std::get<K>(states.values) = carrier;
+      }
+    }
+  });
+  return carried ? output : evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values), input, keep);
+}
+
+}  // namespace detail
+
 /// Passes `input` through the active effects of a serial site, in the order of the list.
 template <Site site, class S, class List>
 typename SiteInput<site, S>::type pass_through(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
@@ -160,8 +203,8 @@ S sum_over(const EffectParameters<S, List>& parameters, EffectStates<S, List>& s
   List::for_each([&]<class E, std::size_t I>() {
     if constexpr (E::site == site) {
       if (parameters.active[I]) {
-        states.outputs[I] = detail::evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values),
-                                                detail::without_force(input, states.outputs[I]), keep);
+        states.outputs[I] =
+            detail::output_of<E, I>(parameters, states, detail::without_force(input, states.outputs[I]), keep);
         total += states.outputs[I];
       }
     }

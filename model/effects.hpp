@@ -5,14 +5,17 @@
 #include "model/effects/cubic_stiffness.hpp"
 #include "model/effects/duct_hardening.hpp"
 #include "model/effects/force_offset.hpp"
+#include "model/effects/gimbal_compliance.hpp"
 #include "model/effects/gimbal_friction.hpp"
 #include "model/effects/leakage.hpp"
 #include "model/effects/piston_friction.hpp"
 #include "model/effects/position_damping.hpp"
 #include "model/effects/quadratic_stiffness.hpp"
 #include "model/effects/rate_limit.hpp"
+#include "model/effects/sensor_delay.hpp"
 #include "model/effects/sensor_lag.hpp"
 #include "model/effects/sensor_nonlinearity.hpp"
+#include "model/effects/sensor_scale.hpp"
 #include "model/effects/sliding_friction.hpp"
 #include "model/effects/soft_stiffness.hpp"
 #include "model/effects/structural_mode.hpp"
@@ -31,12 +34,13 @@ using SimplexEffects =
     EffectList<RateLimit, CommandDelay, UnlistedSignal<Site::command>, UnlistedSignal<Site::valve_command>, ValveHysteresis,
                UnlistedSignal<Site::valve>, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
                PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
-               StructuralMode, GimbalFriction, DuctHardening, TorqueOffset, UnlistedMotion<Site::engine_torque>,
-               SensorNonlinearity, UnlistedReading, SensorLag>;
+               StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset,
+               UnlistedMotion<Site::engine_torque>, SensorNonlinearity, UnlistedReading, SensorLag, SensorDelay,
+               SensorScale>;
 
 /// Every effect an axis of a `Vehicle` knows, in the same order. What the vehicle has itself is not among them: geometry,
-/// modes and the friction of its bearings. Nor is the transport delay, whose memory of 16 KiB an axis would be most of its
-/// state.
+/// modes and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would
+/// be most of its state.
 using VehicleEffects = EffectList<RateLimit, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction,
                                   Backlash, SoftStiffness, DuctHardening, TorqueOffset, SensorNonlinearity, SensorLag>;
 

@@ -49,6 +49,28 @@ S vibrated_level(const S& speed, const S& level, const S& ratio, const S& vibrat
   return level * (1.0 + (ratio - 1.0) * fading_exponential<S>(speed / vibration_velocity));
 }
 
+/// The Stribeck level of a friction that vibration lowers at low speed.
+template <class S>
+S vibrated_stribeck_level(const S& speed, const S& level, const S& static_ratio, const S& stribeck_velocity,
+                          const S& vibration_ratio, const S& vibration_velocity) noexcept {
+  const S vibrated = vibrated_level<S>(speed, level, vibration_ratio, vibration_velocity);
+  // Friction that vibration takes away altogether leaves a level of zero at rest, and a bristle that follows at once.
+  const S least = level * S(1e-9);
+  return stribeck_level<S>(speed, value_of(vibrated) > value_of(least) ? vibrated : least, static_ratio, stribeck_velocity);
+}
+
+/// The limit of a sequence whose errors shrink by a constant factor (Aitken), held to what three members can say. Of a
+/// speed: never below zero.
+template <class S>
+S extrapolated_speed(const S& guess, const S& first, const S& second) noexcept {
+  const S before = first - guess;
+  const bool settled = !(value_of(before) != 0.0);
+  const S ratio = settled ? S{0.0} : (second - first) / before;
+  const S factor = value_of(ratio) > 0.9 ? S{0.9} : value_of(ratio) < -10.0 ? S{-10.0} : ratio;
+  const S limit = (second - factor * first) / (1.0 - factor);
+  return value_of(limit) > 0.0 ? limit : S{0.0};
+}
+
 /// Bristle damping that dies with speed, damping e^{-(v/v_d)^2} with v_d = 2 sqrt(2e) level / damping: half of the bound
 /// that is sufficient for passivity, whatever the Stribeck ratio [Astrom and Canudas de Wit 2008, Revisiting the LuGre
 /// Friction Model, IEEE Control Systems 28(6), p. 107].

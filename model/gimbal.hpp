@@ -71,20 +71,10 @@ struct BearingFriction {
     };
     const S first = speed_under(torque_at(guess));
     const S second = speed_under(torque_at(first));
-    return torque_at(extrapolated(guess, first, second));
+    return torque_at(extrapolated_speed<S>(guess, first, second));
   }
 
  private:
-  /// The limit of a sequence whose errors shrink by a constant factor, held to what three members can say.
-  static S extrapolated(const S& guess, const S& first, const S& second) noexcept {
-    const S before = first - guess;
-    const bool settled = !(value_of(before) != 0.0);
-    const S ratio = settled ? S{0.0} : (second - first) / before;
-    const S factor = value_of(ratio) > 0.9 ? S{0.9} : value_of(ratio) < -10.0 ? S{-10.0} : ratio;
-    const S limit = (second - factor * first) / (1.0 - factor);
-    return value_of(limit) > 0.0 ? limit : S{0.0};
-  }
-
   S level_at(const S& speed) const noexcept {
     if (option == 1) {
       return coulomb_torque;
@@ -92,11 +82,8 @@ struct BearingFriction {
     if (option == 2) {
       return stribeck_level<S>(speed, coulomb_torque, static_ratio, stribeck_velocity);
     }
-    const S vibrated = vibrated_level<S>(speed, coulomb_torque, vibration_ratio, vibration_velocity);
-    // Friction that vibration takes away altogether leaves a level of zero at rest, and a bristle that follows at once.
-    const S least = coulomb_torque * S(1e-9);
-    return stribeck_level<S>(speed, value_of(vibrated) > value_of(least) ? vibrated : least, static_ratio,
-                             stribeck_velocity);
+    return vibrated_stribeck_level<S>(speed, coulomb_torque, static_ratio, stribeck_velocity, vibration_ratio,
+                                      vibration_velocity);
   }
 
   /// The bound of passivity holds for the least level that the law reaches.

@@ -38,9 +38,10 @@ constexpr bool is_serial(Site site) noexcept {
 template <class S>
 struct Signal {
   using Scalar = S;
-  S value;
+  S value;  ///< mean over the step
   double h = 0.0;
-  S time{0.0};  ///< of the record, mean over the step [s]
+  S time{0.0};    ///< of the record, mean over the step [s]
+  S change{0.0};  ///< end of the step less its start; known at `valve_command` only
 };
 
 /// What an effect sees at the site `flow`: it returns flow added into the extend chamber [m^3/s].

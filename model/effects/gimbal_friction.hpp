@@ -5,8 +5,9 @@
 
 namespace hotfire::model {
 
-/// Friction of the gimbal bearing, by one of three laws: `coulomb` (rigid), `dahl` (bristle, one level), `lugre` (bristle,
-/// Stribeck level, bristle damping). The bearing's viscous part is the engine's `viscous_damping`.
+/// Friction of the gimbal bearing, by one of four laws: `coulomb` (rigid), `dahl` (bristle, one level), `lugre` (bristle,
+/// Stribeck level, bristle damping), `vibrated_lugre` (its level lowered by vibration at low speed, [GF] slide Vibration:
+/// ratio gamma2, velocity v_s2). The bearing's viscous part is the engine's `viscous_damping`.
 ///
 /// Passivity of LuGre needs viscous > damping (static_ratio - 1); the bristle damping here dies with speed
 /// (`passive_damping`), so that the law is passive for any values. Source of the laws: [GF] slides Coulomb, Dahl, LuGre;
@@ -14,10 +15,11 @@ namespace hotfire::model {
 struct GimbalFriction {
   static constexpr std::string_view name = "gimbal_friction";
   static constexpr Site site = Site::engine_torque;
-  static constexpr std::array<std::string_view, 3> options{"coulomb", "dahl", "lugre"};
+  static constexpr std::array<std::string_view, 4> options{"coulomb", "dahl", "lugre", "vibrated_lugre"};
   static constexpr std::string_view option_key = "law";
-  static constexpr unsigned kBristle = 0b110;
-  static constexpr unsigned kLugre = 0b100;
+  static constexpr unsigned kBristle = 0b1110;
+  static constexpr unsigned kLugre = 0b1100;
+  static constexpr unsigned kVibrated = 0b1000;
 
   template <class S>
   struct Params {
@@ -28,6 +30,8 @@ struct GimbalFriction {
     S static_ratio{1.0};
     S stribeck_velocity{0.01};
     S damping{0.0};
+    S vibration_ratio{1.0};
+    S vibration_velocity{0.01};
     static constexpr auto fields() {
       return std::array{
           Field<Params>{"coulomb_torque", "N.m", 0.0, 1e7, 8e3, "friction torque of steady sliding",
@@ -38,7 +42,11 @@ struct GimbalFriction {
                         kLugre},
           Field<Params>{"stribeck_velocity", "rad/s", 1e-6, 1.0, 0.01, "speed at which static friction dies out",
                         &Params::stribeck_velocity, kLugre},
-          Field<Params>{"damping", "N.m.s/rad", 0.0, 1e8, 1e3, "bristle damping sigma1", &Params::damping, kLugre}};
+          Field<Params>{"damping", "N.m.s/rad", 0.0, 1e8, 1e3, "bristle damping sigma1", &Params::damping, kLugre},
+          Field<Params>{"vibration_ratio", "1", 0.0, 1.0, 0.5, "friction left at rest under vibration",
+                        &Params::vibration_ratio, kVibrated},
+          Field<Params>{"vibration_velocity", "rad/s", 1e-6, 1.0, 0.01, "speed at which the loss to vibration dies out",
+                        &Params::vibration_velocity, kVibrated}};
     }
   };
 
@@ -59,10 +67,22 @@ struct GimbalFriction {
     if (params.option == 1) {
       return bristle_force<S>(state.deflection, input, params.coulomb_torque, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
     }
-    const S level = stribeck_level<S>(input.velocity, params.coulomb_torque, params.static_ratio, params.stribeck_velocity);
-    return bristle_force<S>(
-        state.deflection, input, level,
-        Bristle<S>{params.stiffness, passive_damping<S>(params.damping, params.coulomb_torque, input.velocity), S{0.0}});
+    const S speed = input.velocity * sign_of(input.velocity);
+    if (params.option == 2) {
+      const S level = stribeck_level<S>(speed, params.coulomb_torque, params.static_ratio, params.stribeck_velocity);
+      return lugre(params, state, input, level, params.coulomb_torque);
+    }
+    const S level = vibrated_stribeck_level<S>(speed, params.coulomb_torque, params.static_ratio, params.stribeck_velocity,
+                                               params.vibration_ratio, params.vibration_velocity);
+    return lugre(params, state, input, level, params.coulomb_torque * params.vibration_ratio);
+  }
+
+ private:
+  /// `least` is the least level that the law reaches: the bound of passivity holds for it.
+  template <class S>
+  static S lugre(const Params<S>& params, State<S>& state, const Motion<S>& input, const S& level, const S& least) noexcept {
+    const S damping = value_of(least) > 0.0 ? passive_damping<S>(params.damping, least, input.velocity) : S{0.0};
+    return bristle_force<S>(state.deflection, input, level, Bristle<S>{params.stiffness, damping, S{0.0}});
   }
 };
 

@@ -26,14 +26,21 @@ struct ValveHysteresis {
   template <class S>
   struct State {
     S distance{0.0};  ///< command minus output, within +- half_width
-    S last{0.0};
+    S last{0.0};      ///< command at the end of the last step
   };
 
+  /// The command runs straight from its start to its end; the mean of the play over that line is exact.
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
-    state.distance = clamp_symmetric<S>(state.distance + (input.value - state.last), params.half_width);
-    state.last = input.value;
-    return input.value - state.distance;
+    const S half_change = 0.5 * input.change;
+    const S start = clamp_symmetric<S>(state.distance + (input.value - half_change - state.last), params.half_width);
+    const S end = clamp_symmetric<S>(start + input.change, params.half_width);
+    // The share of the step after which the play is taken up.
+    const bool moves = value_of(input.change) != 0.0;
+    const S share = moves ? S((end - start) / input.change) : S{0.0};
+    state.distance = end;
+    state.last = input.value + half_change;
+    return input.value - (end - 0.5 * share * (end - start));
   }
 };
 

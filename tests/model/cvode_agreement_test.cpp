@@ -129,6 +129,28 @@ TEST(AgreesWithCvode, OnDahlFriction) {
   check_agreement(test);
 }
 
+TEST(AgreesWithCvode, OnFrictionThatVibrationLowers) {
+  Case test{"gimbal_friction vibrated"};
+  activate<model::GimbalFriction, Plant>(
+      test.parameters, {option_named<model::GimbalFriction>("vibrated_lugre"), 8e3, 1e7, 1.1, 0.01, 1e3, 0.4, 0.02});
+  const double dies_at = 2.0 * std::sqrt(2.0 * std::numbers::e) * 0.4 * 8e3 / 1e3;
+  test.reference.bristle = {8e3, 1e7, 1.1, 0.01, 1e3, dies_at, 0.4, 0.02};
+  check_agreement(test);
+}
+
+// The spring takes as much as the bristle, then five times as much.
+TEST(AgreesWithCvode, OnFrictionBehindTheComplianceOfTheGimbal) {
+  for (const double spring : {1e7, 2e6}) {
+    Case test{spring > 5e6 ? "gimbal_compliance 1e7" : "gimbal_compliance 2e6"};
+    activate<model::GimbalFriction, Plant>(test.parameters,
+                                           {option_named<model::GimbalFriction>("dahl"), 8e3, 1e7, 1.0, 0.01, 0.0});
+    activate<model::GimbalCompliance, Plant>(test.parameters, {0, spring});
+    test.reference.bristle = {8e3, 1e7, 1.0, 1.0, 0.0, 1.0};
+    test.reference.gimbal_stiffness = spring;
+    check_agreement(test);
+  }
+}
+
 TEST(AgreesWithCvode, OnRigidCoulombFriction) {
   Case test{"gimbal_friction coulomb"};
   activate<model::GimbalFriction, Plant>(test.parameters,

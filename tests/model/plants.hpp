@@ -43,6 +43,20 @@ typename Plant::Parameters reference_parameters() {
   return reference_parameters(static_cast<const Plant*>(nullptr));
 }
 
+/// What effect E is planted in: the reference parameters, with the effect that E carries at its typical values.
+template <class Plant, class E>
+typename Plant::Parameters parameters_around() {
+  auto parameters = reference_parameters<Plant>();
+  if constexpr (carries_another<E>()) {
+    Plant::Effects::for_each([&]<class Carried, std::size_t>() {
+      if constexpr (Carried::name == E::carries) {
+        activate<Carried, Plant>(parameters, typical<Carried, typename Plant::Scalar>(1));
+      }
+    });
+  }
+  return parameters;
+}
+
 /// At rest: the steady state under a zero command, a mass at zero.
 template <class S, class List>
 typename model::Simplex<S, List>::State rest(const model::Simplex<S, List>& plant) {

@@ -27,6 +27,7 @@ struct ExplainArguments {
   std::vector<std::string> records;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   int most_effects = 4;
+  std::vector<std::string> excluded;
   bool json = false;
   CandumpOptions candump;
 };
@@ -91,6 +92,10 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   for (const std::string& path : arguments.records) {
     records.push_back(load_record_or_log(path, arguments.candump));
   }
+  explain::ExplainOptions options;
+  for (const std::string& text : arguments.excluded) {
+    options.exclusions.push_back(explain::exclusion_from(text));
+  }
   const std::filesystem::path out(arguments.out);
   std::error_code failed;
   std::filesystem::create_directories(out, failed);
@@ -101,7 +106,6 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
 
   std::signal(SIGINT, [](int) { interrupted = 1; });
   Progress progress;
-  explain::ExplainOptions options;
   options.threads = arguments.threads;
   options.most_effects = arguments.most_effects;
   options.watch.progress = [&](const std::string& what) { progress.say(what); };
@@ -132,6 +136,8 @@ void add_explain(CLI::App& program) {
   command->add_option("--most-effects", arguments->most_effects, "most effects to add")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
+  command->add_option("--exclude", arguments->excluded, "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out")
+      ->allow_extra_args(false);
   add_candump_options(*command, arguments->candump);
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(
@@ -141,6 +147,9 @@ void add_explain(CLI::App& program) {
     std::string line = "hotfire explain --model " + arguments->model + " --out " + arguments->out;
     for (const std::string& record : arguments->records) {
       line += " " + record;
+    }
+    for (const std::string& excluded : arguments->excluded) {
+      line += " --exclude " + excluded;
     }
     run_explain(*arguments, line);
   });

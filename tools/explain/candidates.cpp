@@ -124,6 +124,21 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
 }
 
 template <class Family>
+bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate) {
+  std::string_view carried;
+  visit_effect(parameters, candidate.effect, [&]<class E>(const auto&) {
+    if constexpr (requires { E::carries; }) {
+      carried = E::carries;
+    }
+  });
+  bool active = carried.empty();
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto&) {
+    active = active || (E::name == carried && parameters.effects.active[index]);
+  });
+  return active;
+}
+
+template <class Family>
 std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,
                                                const std::map<std::string, double>& tolerance) {
   std::vector<FreeParameter> free;
@@ -240,6 +255,7 @@ void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
 
 #define HOTFIRE_INSTANTIATE(Family)                                                                               \
   template std::vector<Candidate> all_candidates<Family>(const Dataset&);                                         \
+  template bool has_what_it_carries<Family>(const PlainParameters<Family>&, const Candidate&);                    \
   template std::vector<FreeParameter> declared_parameters<Family>(const PlainParameters<Family>&,                 \
                                                                   const std::map<std::string, double>&);          \
   template std::vector<FreeParameter> effect_parameters<Family>(const PlainParameters<Family>&, const Candidate&, \

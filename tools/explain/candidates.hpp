@@ -23,6 +23,10 @@ struct Candidate {
 template <class Family>
 std::vector<Candidate> all_candidates(const Dataset& data);
 
+/// False for an effect that carries another one (`Effect` in model/effect.hpp) which is not active.
+template <class Family>
+bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate);
+
 /// The declared parameters that have a tolerance, in the order of the model's keys.
 template <class Family>
 std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,

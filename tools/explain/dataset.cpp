@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/explain/statistics.hpp"
+#include "tools/files/error.hpp"
 
 namespace hotfire::explain {
 
@@ -28,6 +29,64 @@ std::vector<Block> hold_out(std::size_t rows, double period, std::size_t shift) 
   return held;
 }
 
+/// The rows of `blocks` that are in none of `taken`; both ascending.
+std::vector<Block> without(const std::vector<Block>& blocks, const std::vector<Block>& taken) {
+  std::vector<Block> rest;
+  for (Block block : blocks) {
+    for (const Block& hole : taken) {
+      if (hole.last <= block.first || hole.first >= block.last) {
+        continue;
+      }
+      if (hole.first > block.first) {
+        rest.push_back({block.first, hole.first});
+      }
+      block.first = std::min(block.last, hole.last);
+    }
+    if (block.last > block.first) {
+      rest.push_back(block);
+    }
+  }
+  return rest;
+}
+
+/// The rows of a record that its user excludes.
+std::vector<Block> excluded_rows(const Record& record, const std::vector<Exclusion>& exclusions) {
+  std::vector<Block> rows;
+  for (const Exclusion& exclusion : exclusions) {
+    if (exclusion.record != record.name) {
+      continue;
+    }
+    const auto row_at = [&](double time) {
+      return static_cast<std::size_t>(
+          std::clamp(std::ceil((time - record.start) / record.period - 1e-6), 0.0, static_cast<double>(record.rows)));
+    };
+    rows.push_back({row_at(exclusion.from), row_at(exclusion.to)});
+  }
+  std::sort(rows.begin(), rows.end(), [](const Block& a, const Block& b) { return a.first < b.first; });
+  return rows;
+}
+
+/// Shares the rows of an experiment out between fit and judgement.
+void share_out(Experiment& experiment) {
+  std::vector<Block> taken{{0, experiment.first_scored}};
+  taken.insert(taken.end(), experiment.excluded.begin(), experiment.excluded.end());
+  std::erase_if(experiment.held_out, [&](const Block& block) { return block.first < experiment.first_scored; });
+  experiment.fitted = without(without({{0, experiment.rows()}}, experiment.held_out), taken);
+  experiment.held_out = without(experiment.held_out, experiment.excluded);
+  if (experiment.fitted.empty()) {
+    throw UsageError(fmt::format("--exclude leaves no row of {} to fit", experiment.name));
+  }
+}
+
+std::vector<std::string> names_of(const std::vector<Record>& records) {
+  std::vector<std::string> names;
+  names.reserve(records.size());
+  for (const Record& record : records) {
+    names.push_back(record.name);
+  }
+  return names;
+}
+
 template <class Parameters>
 struct ChannelsOf;
 template <>
@@ -41,7 +100,42 @@ struct ChannelsOf<DirectParameters> {
 
 }  // namespace
 
-Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records) {
+std::vector<Block> Experiment::scored() const {
+  std::vector<Block> blocks = fitted;
+  blocks.insert(blocks.end(), held_out.begin(), held_out.end());
+  std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.first < b.first; });
+  return blocks;
+}
+
+Exclusion exclusion_from(const std::string& text) {
+  const auto at = text.rfind('@');
+  const auto dash = at == std::string::npos ? at : text.find('-', at + 2);
+  Exclusion exclusion;
+  try {
+    exclusion.record = text.substr(0, at);
+    std::size_t used = 0;
+    const std::string from = text.substr(at + 1, dash - at - 1);
+    const std::string to = text.substr(dash + 1);
+    exclusion.from = std::stod(from, &used);
+    bool whole = used == from.size();
+    exclusion.to = std::stod(to, &used);
+    whole = whole && used == to.size();
+    if (at != std::string::npos && dash != std::string::npos && whole && exclusion.to > exclusion.from) {
+      return exclusion;
+    }
+  } catch (const std::logic_error&) {
+    // Not a number: said below, with the form that is wanted.
+  }
+  throw UsageError(fmt::format("--exclude {}: write RECORD@FROM-TO with times in seconds, such as steps.csv@3.0-3.5", text));
+}
+
+Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records, const std::vector<Exclusion>& exclusions) {
+  for (const Exclusion& exclusion : exclusions) {
+    if (std::none_of(records.begin(), records.end(), [&](const Record& r) { return r.name == exclusion.record; })) {
+      throw UsageError(fmt::format("--exclude {}: no record of that name; there are: {}", exclusion.record,
+                                   fmt::join(names_of(records), ", ")));
+    }
+  }
   Dataset data;
   std::string input;
   std::visit(
@@ -101,8 +195,11 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records)
     for (Experiment& experiment : data.experiments) {
       experiment.first_scored = rows_to_forget_start(std::get<SimplexParameters>(model.parameters), experiment.input,
                                                      experiment.measured, experiment.period, data.noise);
-      std::erase_if(experiment.held_out, [&](const Block& block) { return block.first < experiment.first_scored; });
     }
+  }
+  for (std::size_t e = 0; e < records.size(); ++e) {
+    data.experiments[e].excluded = excluded_rows(records[e], exclusions);
+    share_out(data.experiments[e]);
   }
   return data;
 }
@@ -111,9 +208,8 @@ std::vector<std::string> held_out_names(const Dataset& data) {
   std::vector<std::string> names;
   for (const Experiment& experiment : data.experiments) {
     for (const Block& block : experiment.held_out) {
-      names.push_back(fmt::format("{}@{:.1f}-{:.1f}", experiment.name,
-                                  experiment.start + static_cast<double>(block.first) * experiment.period,
-                                  experiment.start + static_cast<double>(block.last) * experiment.period));
+      names.push_back(
+          fmt::format("{}@{:.1f}-{:.1f}", experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
     }
   }
   return names;

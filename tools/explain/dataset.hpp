@@ -23,12 +23,27 @@ struct Experiment {
   double period = 0.0;
   std::vector<double> input;
   std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record lacks the channel
+  std::vector<Block> fitted;                  ///< rows that a fit sees
   std::vector<Block> held_out;                ///< rows that no fit sees
+  std::vector<Block> excluded;                ///< rows that the user excludes
   StartState start_state;                     ///< of a force-driven mass
   std::size_t first_scored = 0;               ///< rows before it are simulated, not compared: the start is not at rest
 
   std::size_t rows() const { return input.size(); }
+  double time_of(std::size_t row) const { return start + static_cast<double>(row) * period; }
+  /// Rows that are compared with the model, fitted or held out, in their order.
+  std::vector<Block> scored() const;
 };
+
+/// A stretch of a record that its user knows to be wrong, such as a drop-out: simulated, not compared.
+struct Exclusion {
+  std::string record;  ///< "steps.csv"
+  double from = 0.0;   ///< [s], in the record's own time
+  double to = 0.0;
+};
+
+/// "steps.csv@3.0-3.5". Throws UsageError if the text is not of this form.
+Exclusion exclusion_from(const std::string& text);
 
 /// All records of one run of the finder.
 struct Dataset {
@@ -41,8 +56,10 @@ struct Dataset {
 
 /// Puts records into the model's channels, estimates noise where it is not declared, and holds out every fourth block of
 /// about four seconds (at least eight blocks a record), so that each kind of motion is in both parts.
-/// Throws FileError if a record lacks the input or has none of the model's channels.
-Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records);
+/// Throws FileError if a record lacks the input or has none of the model's channels, UsageError if an exclusion names no
+/// record or leaves nothing of one.
+Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
+                     const std::vector<Exclusion>& exclusions = {});
 
 /// "steps.csv@8.0-12.0" for every held-out block.
 std::vector<std::string> held_out_names(const Dataset& data);

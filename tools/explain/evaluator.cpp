@@ -165,18 +165,10 @@ Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution) : data_
       if (experiment.measured[c].empty()) {
         continue;
       }
-      std::size_t first = experiment.first_scored;
-      const auto add = [&](std::size_t last) {
-        if (last > first) {
-          stretches_.push_back({e, c, first, last, fit_rows_});
-          fit_rows_ += last - first;
-        }
-      };
-      for (const Block& block : experiment.held_out) {
-        add(block.first);
-        first = block.last;
+      for (const Block& block : experiment.fitted) {
+        stretches_.push_back({e, c, block.first, block.last, fit_rows_});
+        fit_rows_ += block.last - block.first;
       }
-      add(experiment.rows());
     }
   }
 }

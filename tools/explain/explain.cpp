@@ -17,8 +17,7 @@ ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, 
     record.start = experiment.start;
     record.period = experiment.period;
     for (const Block& block : experiment.held_out) {
-      record.held_out.emplace_back(experiment.start + static_cast<double>(block.first) * experiment.period,
-                                   experiment.start + static_cast<double>(block.last) * experiment.period);
+      record.held_out.emplace_back(experiment.time_of(block.first), experiment.time_of(block.last));
     }
     record.input_name = Family::template Plant<double>::input_channel;
     record.input_unit = records[e].find(record.input_name)->unit;
@@ -37,7 +36,7 @@ ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, 
 
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
-  const Dataset data = make_dataset(model, records);
+  const Dataset data = make_dataset(model, records, options.exclusions);
   const SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model};
   const Fitted<Family>& fitted = found.explained.model;

@@ -21,6 +21,7 @@ struct Explanation {
 struct ExplainOptions {
   unsigned threads = 1;
   int most_effects = 4;
+  std::vector<Exclusion> exclusions;
   Watch watch;
 };
 

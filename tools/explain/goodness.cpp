@@ -55,21 +55,6 @@ struct Sums {
   }
 };
 
-/// The rows from `first` on that are in none of the blocks.
-std::vector<Block> complement(const std::vector<Block>& blocks, std::size_t first, std::size_t rows) {
-  std::vector<Block> rest;
-  for (const Block& block : blocks) {
-    if (block.first > first) {
-      rest.push_back({first, block.first});
-    }
-    first = block.last;
-  }
-  if (rows > first) {
-    rest.push_back({first, rows});
-  }
-  return rest;
-}
-
 }  // namespace
 
 double Goodness::combined(const std::vector<ChannelFit>& part) {
@@ -92,7 +77,7 @@ Goodness goodness(const Dataset& data, const Prediction& prediction) {
       if (experiment.measured[c].empty()) {
         continue;
       }
-      for (const Block& block : complement(experiment.held_out, experiment.first_scored, experiment.rows())) {
+      for (const Block& block : experiment.fitted) {
         fitted.add(prediction[e][c], experiment.measured[c], block);
       }
       for (const Block& block : experiment.held_out) {
@@ -122,8 +107,13 @@ std::vector<double> scored_residual(const Experiment& experiment, const std::vec
                                     std::size_t channel) {
   const auto& measured = experiment.measured[channel];
   std::vector<double> residual;
-  for (std::size_t row = experiment.first_scored; row < measured.size(); ++row) {
-    residual.push_back(measured[row] - predicted[channel][row]);
+  if (measured.empty()) {
+    return residual;
+  }
+  for (const Block& block : experiment.scored()) {
+    for (std::size_t row = block.first; row < block.last; ++row) {
+      residual.push_back(measured[row] - predicted[channel][row]);
+    }
   }
   return residual;
 }
@@ -144,6 +134,14 @@ double excess_over_noise(const Dataset& data, const Prediction& prediction, std:
     rows += count;
   }
   return rows > 0.0 && floor > 0.0 ? std::sqrt(std::max(0.0, square / floor - 1.0)) : 0.0;
+}
+
+double excess_over_noise(const Dataset& data, const Prediction& prediction) {
+  double largest = 0.0;
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    largest = data.used[c] ? std::max(largest, excess_over_noise(data, prediction, c)) : largest;
+  }
+  return largest;
 }
 
 }  // namespace hotfire::explain

@@ -42,4 +42,7 @@ std::vector<double> scored_residual(const Experiment& experiment, const std::vec
 /// own third differences. Zero where the model reaches the noise, whatever was declared of it.
 double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel);
 
+/// The largest of it over all channels.
+double excess_over_noise(const Dataset& data, const Prediction& prediction);
+
 }  // namespace hotfire::explain

@@ -262,6 +262,12 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
                                      experiment.name, static_cast<double>(experiment.first_scored) * experiment.period));
     }
   }
+  for (const Experiment& experiment : data.experiments) {
+    for (const Block& block : experiment.excluded) {
+      warnings.push_back(fmt::format("{}: {:.4g} to {:.4g} s are excluded as the user asked: simulated, not compared.",
+                                     experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
+    }
+  }
   for (const std::string& key : model.left_out) {
     warnings.push_back(key + " is not in the model file: its reference value was taken, and held exact.");
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tools/explain/channel_check.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
@@ -26,6 +27,9 @@ constexpr std::size_t kFinalists = 3;
 /// has to stay below to take their place: it has more freedom than any of them.
 constexpr std::size_t kUnlistedFinalists = 4;
 constexpr double kUnlistedAdvantage = 0.7;
+/// A law with more parameters than one of the same effect that is already this close to the noise is not fitted jointly: the
+/// noise itself is told to one or two percent, which is as much.
+constexpr double kNothingLeft = 0.2;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
 constexpr double kCloseVariant = 0.9;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by.
@@ -41,12 +45,7 @@ std::string label(const Candidate& candidate) {
 }
 
 bool reaches_noise(const Dataset& data, const Prediction& prediction) {
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (data.used[c] && excess_over_noise(data, prediction, c) > kImmaterialExcess) {
-      return false;
-    }
-  }
-  return true;
+  return excess_over_noise(data, prediction) <= kImmaterialExcess;
 }
 
 namespace {
@@ -75,6 +74,9 @@ class Search {
     }
     start.temper.assign(data_.channels.size(), 1.0);
     result_.declared = assess(fine_, options_.threads, start);
+    if constexpr (std::is_same_v<Family, SimplexFamily>) {
+      refuse_impossible_channels(data_, result_.declared.prediction);
+    }
     options_.watch.progress("calibrating the declared parameters within their tolerances");
     result_.calibrated = refined(fine_, options_.threads, start, kFinal);
     result_.explained = result_.calibrated;
@@ -96,7 +98,9 @@ class Search {
   bool add_effect(int round) {
     const Fitted<Family>& current = result_.explained.model;
     std::vector<Candidate> candidates = all_candidates<Family>(data_);
-    std::erase_if(candidates, [&](const Candidate& c) { return current.base.effects.active[c.effect]; });
+    std::erase_if(candidates, [&](const Candidate& c) {
+      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c);
+    });
     const Screening<Family> screening(coarse_, current, scales_, options_.threads);
     const auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     return !options_.watch.interrupted() && keep_best(round, screened);
@@ -120,6 +124,24 @@ class Search {
     return finalists;
   }
 
+  static std::vector<std::size_t> simplest_laws_first(std::vector<std::size_t> order,
+                                                      const std::vector<Screened<Family>>& screened) {
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return screened[a].fitted.free.size() < screened[b].fitted.free.size();
+    });
+    return order;
+  }
+
+  bool simpler_law_leaves_nothing(std::size_t wanted, const std::vector<std::size_t>& order,
+                                  const std::vector<Screened<Family>>& screened,
+                                  const std::vector<Assessed<Family>>& finalists) const {
+    return std::any_of(order.begin(), order.end(), [&](std::size_t i) {
+      return screened[i].candidate.name == screened[wanted].candidate.name && finalists[i].good() &&
+             screened[i].fitted.free.size() < screened[wanted].fitted.free.size() &&
+             excess_over_noise(data_, finalists[i].prediction) < kNothingLeft;
+    });
+  }
+
   /// Fits the finalists jointly and keeps the best if it is supported.
   bool keep_best(int round, const std::vector<Screened<Family>>& screened) {
     std::vector<Trial> trials;
@@ -129,9 +151,12 @@ class Search {
     }
     const std::vector<std::size_t> order = finalists_of(screened);
     std::vector<Assessed<Family>> finalists(screened.size());
-    for (const std::size_t i : order) {
+    for (const std::size_t i : simplest_laws_first(order, screened)) {
       if (options_.watch.interrupted()) {
         return false;
+      }
+      if (simpler_law_leaves_nothing(i, order, screened, finalists)) {
+        continue;
       }
       options_.watch.progress(fmt::format("round {}: fitting {} with everything else", round, label(screened[i].candidate)));
       const double began = seconds_now();

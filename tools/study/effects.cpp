@@ -23,19 +23,20 @@ double damping_dies_at(double level, double damping) {
 void plan_gimbal_friction(Plan& plan, Random& random, std::uint64_t seed) {
   const double level = random.uniform(5e3, 12e3);
   plan.values["coulomb_torque"] = level;
-  if (seed % 3 == 0) {
+  if (seed % 4 == 0) {
     plan.law = "coulomb";
     plan.axis.coulomb.level = level;
     return;
   }
   const double stiffness = random.log_uniform(5e6, 2e7);
   plan.values["stiffness"] = stiffness;
-  if (seed % 3 == 2) {
+  if (seed % 4 == 2) {
     plan.law = "dahl";
     plan.axis.bristle = {level, stiffness, 1.0, 1.0, 0.0, 1.0};
     return;
   }
-  plan.law = "lugre";
+  const bool vibrates = seed % 4 == 3;
+  plan.law = vibrates ? "vibrated_lugre" : "lugre";
   const double ratio = random.uniform(1.1, 1.4);
   const double stribeck = random.log_uniform(3e-3, 2e-2);
   const double damping = random.uniform(300.0, 1500.0);
@@ -43,6 +44,13 @@ void plan_gimbal_friction(Plan& plan, Random& random, std::uint64_t seed) {
   plan.values["stribeck_velocity"] = stribeck;
   plan.values["damping"] = damping;
   plan.axis.bristle = {level, stiffness, ratio, stribeck, damping, damping_dies_at(level, damping)};
+  if (vibrates) {
+    const double left = random.uniform(0.3, 0.7);
+    const double velocity = random.log_uniform(5e-3, 3e-2);
+    plan.values["vibration_ratio"] = plan.axis.bristle.vibration_ratio = left;
+    plan.values["vibration_velocity"] = plan.axis.bristle.vibration_velocity = velocity;
+    plan.axis.bristle.damping_dies_at = damping_dies_at(left * level, damping);
+  }
 }
 
 /// The declared model has the friction of a rigid gimbal; the true one sits on a spring.

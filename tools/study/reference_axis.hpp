@@ -66,7 +66,9 @@ struct ReferenceAxis {
     double static_ratio = 1.0;
     double stribeck = 1.0;
     double damping = 0.0;
-    double damping_dies_at = 1.0;  ///< v_d [rad/s]
+    double damping_dies_at = 1.0;     ///< v_d [rad/s]
+    double vibration_ratio = 1.0;     ///< gamma2
+    double vibration_velocity = 1.0;  ///< v_s2 [rad/s]
   };
   Bristle bristle;                ///< of the gimbal
   Bristle seal_bristle;           ///< of the piston

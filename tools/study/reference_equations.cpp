@@ -27,7 +27,8 @@ Friction lugre(const ReferenceAxis::Bristle& law, double growth, double velocity
   if (law.level == 0.0) {
     return {};
   }
-  const double level = growth * stribeck(law.level, law.static_ratio, law.stribeck, velocity);
+  const double vibrated = 1.0 + (law.vibration_ratio - 1.0) * std::exp(-std::abs(velocity) / law.vibration_velocity);
+  const double level = growth * vibrated * stribeck(law.level, law.static_ratio, law.stribeck, velocity);
   const double rate = velocity - law.stiffness * std::abs(velocity) * z / level;
   const double fading = std::exp(-(velocity / law.damping_dies_at) * (velocity / law.damping_dies_at));
   return {law.stiffness * z + law.damping * fading * rate, rate};

@@ -63,6 +63,12 @@ constexpr bool is_unlisted() {
   return requires { E::is_unlisted; };
 }
 
+/// True for an effect that adds nothing of its own and changes what another one sees.
+template <class E>
+constexpr bool carries_another() {
+  return requires { E::carries; };
+}
+
 /// True for a term that time itself moves: it has no steady state.
 template <class E>
 bool depends_on_time(int option) {

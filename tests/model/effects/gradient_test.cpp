@@ -28,15 +28,17 @@ struct DirectIn {
 template <class Family, class E, class S>
 auto planted(int option) {
   using Plant = typename Family::template Plant<S>;
-  auto parameters = reference_parameters<Plant>();
-  if constexpr (!std::is_void_v<E>) {
+  if constexpr (std::is_void_v<E>) {
+    return reference_parameters<Plant>();
+  } else {
+    auto parameters = parameters_around<Plant, E>();
     auto values = typical<E, S>(option);
     for (const auto& field : ParamsOf<E, S>::fields()) {
       values.*field.member *= S(1.03);
     }
     activate<E, Plant>(parameters, values);
+    return parameters;
   }
-  return parameters;
 }
 
 /// Calls `f(name, value)` for each parameter that can be fitted: of the effect's law, or of every declared part if `E` is

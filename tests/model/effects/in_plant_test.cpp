@@ -59,22 +59,24 @@ std::uint64_t allocations_of_stepping() {
 
 TEST_GROUP(EffectInPlant){};
 
-// Rounding: a run of 1,000 samples, 2,000 steps of 1e-16 each, with the same factor of 1e4 as above.
+// Rounding: a run of 1,000 samples, 2,000 steps of 1e-16 each, with the same factor of 1e4 as above. An effect that carries
+// another one finds the speed of that one's slip by iterating, where it takes the last pass's otherwise: both are within the
+// error of the step, 1e-5 by agreement with CVODE.
 TEST(EffectInPlant, LeavesThePlantAsItWasWhenNeutral) {
   for_each_planted_law([]<class Plant, class E>(int option) {
-    typename Plant::Parameters parameters = reference_parameters<Plant>();
+    typename Plant::Parameters parameters = parameters_around<Plant, E>();
     const auto without = record<Plant>(parameters, 1.0, kSample, 2);
     activate<E, Plant>(parameters, neutral<E, double>(option));
     const auto with = record<Plant>(parameters, 1.0, kSample, 2);
     for (std::size_t channel = 0; channel < Plant::channels.size(); ++channel) {
-      CHECK_TRUE_TEXT(relative_rms(with, without, channel) < 1e-9, label<E>(option).c_str());
+      CHECK_TRUE_TEXT(relative_rms(with, without, channel) < (carries_another<E>() ? 2e-5 : 1e-9), label<E>(option).c_str());
     }
   });
 }
 
 TEST(EffectInPlant, ShowsInThePlantAtItsTypicalValues) {
   for_each_planted_law([]<class Plant, class E>(int option) {
-    typename Plant::Parameters parameters = reference_parameters<Plant>();
+    typename Plant::Parameters parameters = parameters_around<Plant, E>();
     const auto without = record<Plant>(parameters, 1.0, kSample, 2);
     activate<E, Plant>(parameters, typical<E, double>(option));
     const auto with = record<Plant>(parameters, 1.0, kSample, 2);
@@ -92,7 +94,7 @@ TEST(EffectInPlant, ShowsInThePlantAtItsTypicalValues) {
 // a thousandth of what is allowed, that scatter is all there is.
 TEST(EffectInPlant, ConvergesWhenTheStepIsHalved) {
   for_each_planted_law([]<class Plant, class E>(int option) {
-    typename Plant::Parameters parameters = reference_parameters<Plant>();
+    typename Plant::Parameters parameters = parameters_around<Plant, E>();
     activate<E, Plant>(parameters, typical<E, double>(option));
     const auto reference = record<Plant>(parameters, 1.0, kSample, 32);
     const double coarse = relative_rms(record<Plant>(parameters, 1.0, kSample, 2), reference, 0);

@@ -204,7 +204,7 @@ TEST(EveryEffect, AgreesInFloatAndDouble) {
       largest = std::max(largest, std::abs(output[0]));
       difference = std::max({difference, std::abs(output[0] - small[0]), std::abs(output[1] - small[1])});
     }
-    CHECK_TRUE_TEXT(largest > 0.0, label<E>(option).c_str());
+    CHECK_TRUE_TEXT(largest > 0.0 || carries_another<E>(), label<E>(option).c_str());
     if (difference > 1e-4 * largest) {
       FAIL((label<E>(option) + ": relative difference " + std::to_string(difference / largest)).c_str());
     }

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "model/scalar.hpp"
+
+namespace hotfire::model {
+
+/// Transport delay of a value, x(t) -> x(t - delay), by the newest `Capacity` values in a ring. A delay of k + f steps
+/// (0 <= f < 1) gives (1 - f) x[n-k] + f x[n-k-1]: the mean over a step of a value that is held between steps, and the value
+/// itself of one that moves linearly. Differentiable in the delay. Beyond `Capacity` - 2 steps it would extrapolate.
+/// Source: transport lag e^{-sT}, any text on control.
+template <class S, std::size_t Capacity>
+class DelayLine {
+ public:
+  void fill(const S& value) noexcept { values_.fill(value); }
+
+  /// Takes in the newest value; returns the one `delay` [s] ago at steps of `h` [s].
+  S pass(const S& value, const S& delay, double h) noexcept {
+    newest_ = (newest_ + 1) % Capacity;
+    values_[newest_] = value;
+    const S steps = delay / h;
+    const double plain = value_of(steps);
+    constexpr auto kLongest = static_cast<double>(Capacity - 2);
+    const auto whole = static_cast<std::size_t>(plain < kLongest ? plain : kLongest);
+    const S& later = values_[(newest_ + Capacity - whole) % Capacity];
+    const S& earlier = values_[(newest_ + Capacity - whole - 1) % Capacity];
+    return later + (earlier - later) * (steps - static_cast<double>(whole));
+  }
+
+ private:
+  std::array<S, Capacity> values_{};
+  std::size_t newest_ = 0;
+};
+
+}  // namespace hotfire::model
