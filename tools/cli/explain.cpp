@@ -80,6 +80,9 @@ std::string summary(const nlohmann::json& report, const std::filesystem::path& o
                                          : fmt::format("95 % {} .. {}", number(interval[0]), number(interval[1])));
     }
   }
+  if (report["residual"].contains("next_experiment")) {
+    text += "\nnext experiment: " + report["residual"]["next_experiment"].get<std::string>() + "\n";
+  }
   for (const auto& warning : report["warnings"]) {
     text += "\nwarning: " + warning.get<std::string>();
   }
@@ -116,6 +119,12 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   explanation.report["seconds"] = progress.seconds();
 
   write_whole_file(out / "explained.toml", model_text(explanation.model));
+  if (explanation.next_experiment) {
+    write_record(*explanation.next_experiment, out / explanation.next_experiment->name);
+  } else {
+    // One of an earlier run would be taken for this one's.
+    std::filesystem::remove(out / "next_experiment.csv");
+  }
   write_whole_file(out / "report.json", explanation.report.dump(1) + "\n");
   write_whole_file(out / "report.html", report_page(explanation.report, explanation.series));
   std::cout << (arguments.json ? explanation.report.dump(1) + "\n" : summary(explanation.report, out));

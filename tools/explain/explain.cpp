@@ -1,5 +1,7 @@
 #include "tools/explain/explain.hpp"
 
+#include <fmt/format.h>
+
 #include "tools/explain/report_json.hpp"
 #include "tools/explain/search.hpp"
 
@@ -34,11 +36,39 @@ ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, 
   return series;
 }
 
+/// Says which test would tell two effects apart, and leaves its command in the explanation.
+template <class Family>
+void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const Fitted<Family>& explained, unsigned threads,
+                         Explanation& explanation) {
+  std::string text = fmt::format("{} and {} explain these records equally well", label(rival.kept), label(rival.other));
+  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    NextExperiment next = best_separation(data, explained, rival.model, threads);
+    // Over some thousand rows a mean square of a hundredth of the noise's is beyond chance.
+    constexpr double kTells = 0.1;
+    if (next.separation > kTells) {
+      text += fmt::format(
+          ": under {} they differ by {:.2g} times the sensor noise (rms), more than under any other profile "
+          "tried within these records' largest command",
+          next.words, next.separation);
+      explanation.next_experiment = std::move(next.command);
+    } else {
+      text += fmt::format(
+          ", and no profile within their largest command tells them apart: the best, {}, shows {:.2g} of the "
+          "sensor noise",
+          next.words, next.separation);
+    }
+  }
+  explanation.report["residual"]["next_experiment"] = text + ".";
+}
+
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
   const SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
-  Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model};
+  Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
+  if (found.rival) {
+    add_next_experiment(data, *found.rival, found.explained.model, options.threads, explanation);
+  }
   const Fitted<Family>& fitted = found.explained.model;
   explanation.model.parameters = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);
   return explanation;

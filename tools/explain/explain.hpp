@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct Explanation {
   nlohmann::json report;  ///< report.json, docs/report.md
   ReportSeries series;    ///< what the page draws
   ModelFile model;        ///< the explained model: what the rig runs next
+  /// The command that would tell the effect kept last from its rival best, if they explain these records equally well.
+  std::optional<Record> next_experiment;
 };
 
 struct ExplainOptions {

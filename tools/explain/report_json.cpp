@@ -19,8 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Alternatives closer than this in BIC can't be told from what was found.
-constexpr double kTied = 10.0;
 /// Lags of the residual's autocorrelation, in rows.
 constexpr std::size_t kLags = 100;
 
@@ -268,6 +266,15 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
                                      experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
     }
   }
+  for (const Kept& kept : found.kept) {
+    const std::string& name = kept.trial.candidate.name;
+    if (name == model::SensorScale::name || name == model::SensorDelay::name) {
+      warnings.push_back(fmt::format(
+          "{} is a fault of the record, not of the plant: mend channel {}, explain again, and do not run explained.toml "
+          "with it.",
+          name, kept.trial.candidate.option_name));
+    }
+  }
   for (const std::string& key : model.left_out) {
     warnings.push_back(key + " is not in the model file: its reference value was taken, and held exact.");
   }
@@ -305,20 +312,6 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
   return warnings;
 }
 
-std::string next_experiment(const std::vector<Kept>& kept) {
-  for (const Kept& one : kept) {
-    for (const Trial& other : one.alternatives) {
-      if (other.refined && other.candidate.name != one.trial.candidate.name &&
-          other.delta_criterion - one.trial.delta_criterion < kTied) {
-        return fmt::format(
-            "{} and {} explain these records equally well: record more amplitudes of the same profile to tell them apart.",
-            label(one.trial.candidate), label(other.candidate));
-      }
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 template <class Family>
@@ -347,9 +340,6 @@ json report_json(const ModelFile& model, const std::vector<Record>& records, con
   // What the calibrated model lacks: against the declared one a wrong value would show as well.
   if (const json trace = trace_json(reconstruct(data, calibrated), found.kept); !trace.is_null()) {
     report["trace"] = trace;
-  }
-  if (const std::string next = next_experiment(found.kept); !next.empty()) {
-    report["residual"]["next_experiment"] = next;
   }
   return report;
 }

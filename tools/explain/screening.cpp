@@ -16,6 +16,12 @@ namespace {
 
 /// Names that go on to the full fit, starts of an effect with several parameters, and the lengths of the fits.
 constexpr std::size_t kSemifinalists = 6;
+/// Behind the first names, one goes on only with this share of the leader's gain: what is missing beside the leader is
+/// looked for again when that is in the model.
+constexpr std::size_t kFirstNames = 3;
+constexpr double kHopeful = 0.1;
+/// A law with more parameters of its own is not scanned: it starts from where the laws that it contains end.
+constexpr std::size_t kMostScanned = 6;
 constexpr std::size_t kStarts = 3;
 constexpr int kShortFit = 3;
 constexpr int kFullFit = 6;
@@ -91,22 +97,24 @@ std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate
   std::vector<std::size_t> semifinalists;
   for (std::size_t i = 0; i < screened.size(); ++i) {
     const std::string& name = screened[i].candidate.name;
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
+    const bool hopeful = names.size() < kFirstNames || screened[i].criterion < kHopeful * screened.front().criterion;
+    if (std::find(names.begin(), names.end(), name) == names.end() && names.size() < kSemifinalists && hopeful) {
       names.push_back(name);
     }
-    if (names.size() <= kSemifinalists) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
       semifinalists.push_back(i);
     }
   }
   done = 0;
   parallel_for(semifinalists.size(), threads_, [&](std::size_t i) {
-    for (int pass = 0; pass < 2 && !watch.interrupted(); ++pass) {
-      improve(screened[semifinalists[i]], kFullFit);
+    Screened<Family>& semifinalist = screened[semifinalists[i]];
+    for (int pass = 0; pass < 2 && semifinalist.scanned && !watch.interrupted(); ++pass) {
+      improve(semifinalist, kFullFit);
     }
     watch.progress(fmt::format("{}: {} of {} best candidates fitted", stage, ++done, semifinalists.size()));
   });
   sort_best_first(screened);
-  start_from_siblings(screened, watch);
+  start_from_siblings(screened, names, watch);
   return screened;
 }
 
@@ -176,6 +184,15 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
   const Fitted<Family> fitted = with_candidate(candidate);
   const std::vector<FreeParameter> own(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
                                        fitted.free.end());
+  const auto fields = static_cast<std::size_t>(
+      std::count_if(own.begin(), own.end(), [](const FreeParameter& p) { return !p.is_ordinate && !p.is_initial_state(); }));
+  if (fields > kMostScanned) {
+    best.fitted = fitted;
+    best.fitted.u.resize(fitted.free.size(), 0.0);
+    best.good = true;
+    best.scanned = false;
+    return best;
+  }
   // One or two parameters, or a table, have one valley; more have several.
   const bool one_valley =
       own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
@@ -237,13 +254,15 @@ Screened<Family> Screening<Family>::restart(const Candidate& candidate, const st
 
 /// Laws of one effect share parameters and some contain others: each is fitted once more from where the best one ended.
 template <class Family>
-void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& screened, const Watch& watch) const {
+void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
+                                            const Watch& watch) const {
   const std::size_t first = current_.free.size();
   const std::vector<Screened<Family>> ended = screened;
   parallel_for(screened.size(), threads_, [&](std::size_t i) {
     const auto best = std::find_if(ended.begin(), ended.end(),
                                    [&](const Screened<Family>& s) { return s.candidate.name == ended[i].candidate.name; });
-    if (best == ended.begin() + static_cast<std::ptrdiff_t>(i) || watch.interrupted()) {
+    const bool wanted = std::find(names.begin(), names.end(), ended[i].candidate.name) != names.end();
+    if (!wanted || best == ended.begin() + static_cast<std::ptrdiff_t>(i) || watch.interrupted()) {
       return;
     }
     Screened<Family> again{ended[i].candidate, ended[i].fitted, 0.0, ended[i].seconds, true};
@@ -258,7 +277,7 @@ void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& scree
     }
     std::copy(best->fitted.u.begin(), best->fitted.u.begin() + static_cast<std::ptrdiff_t>(first), again.fitted.u.begin());
     improve(again, kFullFit);
-    if (again.good && again.criterion < screened[i].criterion) {
+    if (again.good && (!screened[i].scanned || again.criterion < screened[i].criterion)) {
       screened[i] = std::move(again);
     } else {
       screened[i].seconds = again.seconds;

@@ -18,7 +18,8 @@ struct Screened {
   Fitted<Family> fitted;
   double criterion = 0.0;  ///< BIC against the current model; negative is better
   double seconds = 0.0;
-  bool good = false;  ///< false: no start could be simulated
+  bool good = false;    ///< false: no start could be simulated
+  bool scanned = true;  ///< false: still waits for a law that it contains, to start from there
 };
 
 /// How a search tells what it is doing, and is told to stop.
@@ -31,7 +32,8 @@ struct Watch {
 /// (declared parameters, effects already kept) moves along its derivatives at the current model and within its priors. That
 /// costs a tenth of a joint fit and leaves the ranking to the candidates' shapes, not to a wrong declared value.
 ///
-/// Three stages: a scan of starts, short fits of all from their best starts, a full fit of the best names.
+/// Three stages: a scan of starts, short fits of all from their best starts, a full fit of the best names; the hopeless ones
+/// stop there.
 template <class Family>
 class Screening {
  public:
@@ -55,7 +57,8 @@ class Screening {
   Fitted<Family> with_candidate(const Candidate& candidate) const;
   std::vector<Start> scan(Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const;
   Screened<Family> start(const Candidate& candidate) const;
-  void start_from_siblings(std::vector<Screened<Family>>& screened, const Watch& watch) const;
+  void start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
+                           const Watch& watch) const;
   void improve(Screened<Family>& screened, int iterations) const;
   Eigen::VectorXd residuals_at_frozen(const Fitted<Family>& fitted) const;
   double eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const;

@@ -27,8 +27,8 @@ constexpr std::size_t kFinalists = 3;
 /// has to stay below to take their place: it has more freedom than any of them.
 constexpr std::size_t kUnlistedFinalists = 4;
 constexpr double kUnlistedAdvantage = 0.7;
-/// A law with more parameters than one of the same effect that is already this close to the noise is not fitted jointly: the
-/// noise itself is told to one or two percent, which is as much.
+/// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise
+/// itself is told to one or two percent, which is as much.
 constexpr double kNothingLeft = 0.2;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
 constexpr double kCloseVariant = 0.9;
@@ -124,21 +124,31 @@ class Search {
     return finalists;
   }
 
-  static std::vector<std::size_t> simplest_laws_first(std::vector<std::size_t> order,
+  /// Names in the order of their best law, the laws of one name from the simplest on.
+  static std::vector<std::size_t> simplest_laws_first(const std::vector<std::size_t>& order,
                                                       const std::vector<Screened<Family>>& screened) {
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return screened[a].fitted.free.size() < screened[b].fitted.free.size();
+    const auto rank_of = [&](std::size_t i) {
+      return std::find_if(order.begin(), order.end(),
+                          [&](std::size_t k) { return screened[k].candidate.name == screened[i].candidate.name; });
+    };
+    std::vector<std::size_t> sorted = order;
+    std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
+      return std::pair(rank_of(a), screened[a].fitted.free.size()) < std::pair(rank_of(b), screened[b].fitted.free.size());
     });
-    return order;
+    return sorted;
   }
 
-  bool simpler_law_leaves_nothing(std::size_t wanted, const std::vector<std::size_t>& order,
-                                  const std::vector<Screened<Family>>& screened,
-                                  const std::vector<Assessed<Family>>& finalists) const {
+  /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
+  /// another effect that promised more than twice as much.
+  bool is_settled(std::size_t wanted, const std::vector<std::size_t>& order, const std::vector<Screened<Family>>& screened,
+                  const std::vector<Assessed<Family>>& finalists) const {
     return std::any_of(order.begin(), order.end(), [&](std::size_t i) {
-      return screened[i].candidate.name == screened[wanted].candidate.name && finalists[i].good() &&
-             screened[i].fitted.free.size() < screened[wanted].fitted.free.size() &&
-             excess_over_noise(data_, finalists[i].prediction) < kNothingLeft;
+      if (!finalists[i].good() || excess_over_noise(data_, finalists[i].prediction) >= kNothingLeft) {
+        return false;
+      }
+      return screened[i].candidate.name == screened[wanted].candidate.name
+                 ? screened[i].fitted.free.size() < screened[wanted].fitted.free.size()
+                 : screened[wanted].criterion > 0.5 * screened[i].criterion;
     });
   }
 
@@ -155,7 +165,7 @@ class Search {
       if (options_.watch.interrupted()) {
         return false;
       }
-      if (simpler_law_leaves_nothing(i, order, screened, finalists)) {
+      if (is_settled(i, order, screened, finalists)) {
         continue;
       }
       options_.watch.progress(fmt::format("round {}: fitting {} with everything else", round, label(screened[i].candidate)));
@@ -194,8 +204,27 @@ class Search {
     kept.alternatives = std::move(trials);
     result_.kept.push_back(std::move(kept));
     result_.explained = std::move(winner);
+    result_.rival = rival_of(result_.kept.back(), screened, finalists);
     polish_earlier(round);
     return true;
+  }
+
+  /// The closest of the other finalists, fitted as well as the winner was, if the data do not tell the two apart.
+  std::optional<Rival<Family>> rival_of(const Kept& kept, const std::vector<Screened<Family>>& screened,
+                                        const std::vector<Assessed<Family>>& finalists) const {
+    for (const Trial& other : kept.alternatives) {
+      if (!other.refined || other.delta_criterion - kept.trial.delta_criterion >= kTied) {
+        continue;
+      }
+      for (std::size_t i = 0; i < screened.size(); ++i) {
+        if (label(screened[i].candidate) == label(other.candidate) && finalists[i].good()) {
+          const Assessed<Family> again = refined(fine_, options_.threads, finalists[i].model, kFinal);
+          return again.good() ? std::optional(Rival<Family>{kept.trial.candidate, other.candidate, again.model})
+                              : std::nullopt;
+        }
+      }
+    }
+    return std::nullopt;
   }
 
   /// The listed effects leave more than noise: a term of unknown law, at one site, instead of them. It takes their place
@@ -244,6 +273,7 @@ class Search {
         }
       }
       result_.kept = {std::move(kept)};
+      result_.rival.reset();
       result_.explained = std::move(finalists[*best]);
     }
     result_.trials.insert(result_.trials.end(), trials.begin(), trials.end());

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/explain/assessed.hpp"
+#include "tools/explain/next_experiment.hpp"
 #include "tools/explain/screening.hpp"
 
 namespace hotfire::explain {
+
+/// Two candidates whose BIC differs by less than this are not told apart by the data.
+inline constexpr double kTied = 10.0;
 
 /// One candidate in one round, and what became of it.
 struct Trial {
@@ -33,6 +38,7 @@ struct SearchResult {
   Assessed<Family> explained;
   std::vector<Kept> kept;
   std::vector<Trial> trials;
+  std::optional<Rival<Family>> rival;  ///< of the effect kept last
   bool interrupted = false;
 };
 
