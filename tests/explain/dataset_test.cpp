@@ -49,6 +49,40 @@ TEST(Dataset, AQuarterOfEveryRecordIsHeldOutAndNeverItsStart) {
   CHECK(data.experiments[0].held_out.front().first != data.experiments[1].held_out.front().first);
 }
 
+TEST(Dataset, RowsThatTheUserExcludesAreNeitherFittedNorHeldOut) {
+  const std::vector<double> values(20000, 0.001);
+  const auto data = hotfire::explain::make_dataset(
+      axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)},
+      {hotfire::explain::exclusion_from("record.csv@3.0-11.5"), hotfire::explain::exclusion_from("record.csv@20-21")});
+  std::size_t rows = 0;
+  for (const auto& block : data.experiments[0].scored()) {
+    rows += block.last - block.first;
+    for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{1500, 5750}, {10000, 10500}}) {
+      CHECK(block.last <= from || block.first >= to);
+    }
+  }
+  LONGS_EQUAL(20000 - 4250 - 500, rows);
+}
+
+TEST(Dataset, AnExclusionThatNamesNoRecordOrNoTimeIsRefusedWithItsForm) {
+  for (const char* text : {"record.csv", "record.csv@3", "record.csv@3-2", "record.csv@a-b", "@", "record.csv@1-2x"}) {
+    try {
+      hotfire::explain::exclusion_from(text);
+      FAIL(text);
+    } catch (const hotfire::UsageError& error) {
+      STRCMP_CONTAINS("RECORD@FROM-TO", error.what());
+    }
+  }
+  const std::vector<double> values(5000, 0.001);
+  try {
+    hotfire::explain::make_dataset(axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)},
+                                   {{"other.csv", 0.0, 1.0}});
+    FAIL("a record that is not there was excluded");
+  } catch (const hotfire::UsageError& error) {
+    STRCMP_CONTAINS("record.csv", error.what());
+  }
+}
+
 TEST(Dataset, ADeclaredNoiseIsTakenAndAnUndeclaredOneIsEstimated) {
   std::vector<double> wave(5000);
   for (std::size_t i = 0; i < wave.size(); ++i) {

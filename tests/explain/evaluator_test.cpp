@@ -26,6 +26,7 @@ Dataset smooth_dataset() {
       experiment.input.push_back(0.01 * std::sin((e + 2.0) * 3.0 * i * 0.002));
     }
     experiment.measured = {std::vector<double>(500, 0.0), std::vector<double>(500, 0.0), {}};
+    experiment.fitted = {{0, 100}, {200, 500}};
     experiment.held_out = {{100, 200}};
     data.experiments.push_back(experiment);
   }

@@ -18,8 +18,10 @@ constexpr double kRunsAgainst = -0.5;
 constexpr double kLargestRatio = 5.0;
 /// How near a ratio has to be to that of two units to be told as such.
 constexpr double kUnitMatch = 0.15;
-/// Times the noise that both have to move by, measured and predicted: below that a correlation says nothing.
+/// Times the noise that the larger of measured and predicted motion has to be, and the smaller: below that a correlation
+/// says nothing.
 constexpr double kLeastMotion = 10.0;
+constexpr double kLeastTrace = 1.5;
 
 /// Sums over the compared rows of one channel in one record.
 struct Moments {
@@ -73,7 +75,7 @@ std::string unit_hint(double ratio) {
 void check(const Experiment& experiment, const std::string& channel, const Moments& m, double noise) {
   const double measured = std::sqrt(std::max(0.0, m.measured_square / m.rows - std::pow(m.measured / m.rows, 2)));
   const double model = std::sqrt(std::max(0.0, m.model_square / m.rows - std::pow(m.model / m.rows, 2)));
-  if (std::min(measured, model) < kLeastMotion * noise) {
+  if (std::max(measured, model) < kLeastMotion * noise || std::min(measured, model) < kLeastTrace * noise) {
     return;
   }
   const double correlation = (m.product / m.rows - m.measured * m.model / (m.rows * m.rows)) / (measured * model);
