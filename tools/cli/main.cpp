@@ -63,6 +63,7 @@ int run(int argc, char** argv) {
   add_explain(program);
   add_check(program);
   add_convert(program);
+  add_import(program);
   add_simulate(program);
   add_reduce(program);
   add_plant(program);

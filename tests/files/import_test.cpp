@@ -1,0 +1,131 @@
+#include "tools/files/import.hpp"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "tests/files/expect.hpp"
+#include "tests/files/scratch.hpp"
+#include "tests/files/write_matlab.hpp"
+
+using namespace hotfire;
+using namespace hotfire::test;
+
+namespace {
+
+constexpr const char* kMap = R"(schema = 1
+[time]
+column = "t"
+unit = "ms"
+[channels.command]
+column = "BETA CMD"
+unit = "deg"
+[channels.piston]
+column = "XP"
+unit = "inch"
+factor = -1
+[csv]
+delimiter = ";"
+skip_lines = 2
+)";
+
+std::string table(const std::string& header) {
+  std::string text = "Test stand 3\nrun 17\n" + header + "\n";
+  for (int i = 0; i < 20; ++i) {
+    text += std::to_string(2 * i) + " ; 9.5; " + std::to_string(0.5 * i) + ";" + std::to_string(-i) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_GROUP(Import) {
+  Scratch scratch;
+
+  Record imported(const std::string& map, const std::string& source) {
+    return import_record(scratch.write("run.txt", source), load_import_map(scratch.write("map.toml", map)),
+                         scratch.path("run.csv"));
+  }
+  std::string refused(const std::string& map, const std::string& source) {
+    return refusal([&] { imported(map, source); });
+  }
+};
+
+TEST(Import, TakesTheColumnsOfTheMapWithTheirUnitsAndSigns) {
+  const Record record = imported(kMap, table("t;spare;\"BETA CMD\";XP"));
+  LONGS_EQUAL(20, record.rows);
+  DOUBLES_EQUAL(2e-3, record.period, 1e-12);
+  LONGS_EQUAL(2, record.channels.size());
+  DOUBLES_EQUAL(3.5 * std::numbers::pi / 180.0, record.find("command")->values[7], 1e-12);
+  DOUBLES_EQUAL(7 * 0.0254, record.find("piston")->values[7], 1e-12);
+}
+
+TEST(Import, APeriodStandsForATimeColumn) {
+  const Record record = imported("schema = 1\nperiod = \"4 ms\"\n[channels.engine]\ncolumn = \"b\"\nunit = \"rad\"\n",
+                                 "a,b\n1,0.25\n2,0.5\n3,0.75\n");
+  DOUBLES_EQUAL(4e-3, record.period, 1e-12);
+  DOUBLES_EQUAL(0.75, record.find("engine")->values[2], 0.0);
+}
+
+TEST(Import, AColumnThatIsNotThereIsRefusedWithThoseThatAre) {
+  expect_message(refused(kMap, table("t;spare;BETA;XP")), {"run.txt:3", "BETA CMD", "t | spare | BETA | XP"});
+}
+
+TEST(Import, ARaggedRowAndAWordAreRefusedWithTheirLine) {
+  expect_message(refused(kMap, table("t;spare;BETA CMD;XP") + "40;1;2\n"), {"run.txt:24", "3 columns", "4"});
+  expect_message(refused(kMap, table("t;spare;BETA CMD;XP") + "40;1;n/a;2\n"), {"run.txt:24", "BETA CMD", "n/a"});
+}
+
+TEST(Import, WhatMakesNoRecordIsRefusedAndLeavesNoFile) {
+  const std::string message = refused(kMap, table("t;spare;BETA CMD;XP") + "38;1;2;3\n");
+  expect_message(message, {"run.txt", "does not make a record"});
+  CHECK(!std::filesystem::exists(scratch.path("run.csv")));
+}
+
+TEST(Import, AMapIsRefusedWithLineKeyAndMend) {
+  expect_message(refused("schema = 1\nperiod = \"2 ms\"\n", ""), {"map.toml", "channels", "missing"});
+  expect_message(refused("schema = 1\n[channels.piston]\ncolumn = \"x\"\nunit = \"m\"\n", ""), {"time", "period"});
+  expect_message(refused("schema = 1\nperiod = \"2 ms\"\n[channels.piston]\ncolum = \"x\"\n", ""),
+                 {"map.toml:4", "channels.piston.colum", "column, unit, factor"});
+  expect_message(refused("schema = 1\nperiod = \"2 s\"\n[channels.piston]\ncolumn = \"x\"\nunit = \"m\"\n", ""),
+                 {"map.toml:2", "period", "50 us to 20 ms"});
+}
+
+TEST(Import, AMatlabFileGivesVectorsMatrixColumnsAndFieldsOfStructs) {
+  std::vector<double> time;
+  std::vector<double> matrix;
+  for (int i = 0; i < 50; ++i) {
+    time.push_back(1e-3 * i);
+  }
+  for (int i = 0; i < 100; ++i) {
+    matrix.push_back(0.1 * i);
+  }
+  const auto path = scratch.path("run.mat");
+  write_matlab(path, {{"t", 50, 1, time}, {"X", 50, 2, matrix}}, {"data", "beta", time});
+  const auto map = load_import_map(scratch.write(
+      "map.toml",
+      "schema = 1\ntime = {column = \"t\", unit = \"s\"}\n[channels]\ncommand = {column = \"data.beta\", unit = "
+      "\"rad\"}\npiston = {column = \"X:2\", unit = \"mm\"}\n"));
+  const Record record = import_record(path, map, scratch.path("run.csv"));
+  LONGS_EQUAL(50, record.rows);
+  DOUBLES_EQUAL(7e-3, record.find("command")->values[7], 1e-15);
+  DOUBLES_EQUAL(5.7e-3, record.find("piston")->values[7], 1e-15);
+}
+
+TEST(Import, AMatlabVariableThatIsNotThereIsRefusedWithThoseThatAre) {
+  const auto path = scratch.path("run.mat");
+  write_matlab(path, {{"t", 3, 1, {0.0, 0.001, 0.002}}, {"X", 3, 2, {1, 2, 3, 4, 5, 6}}}, {"data", "beta", {1, 2, 3}});
+  const auto refused_column = [&](const std::string& column) {
+    const auto map = load_import_map(scratch.write(
+        "map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"" + column + "\"\n"));
+    return refusal([&] { import_record(path, map, scratch.path("run.csv")); });
+  };
+  expect_message(refused_column("xp"), {"run.mat", "no variable \"xp\"", "t, X, data"});
+  expect_message(refused_column("X"), {"3 x 2", "X:1"});
+  expect_message(refused_column("X:3"), {"has 2 columns"});
+  expect_message(refused_column("data.gamma"), {"no field \"gamma\""});
+  const auto text = scratch.write("text.mat", "time,piston\n");
+  const auto map = load_import_map(
+      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
+  expect_message(refusal([&] { import_record(text, map, scratch.path("run.csv")); }), {"text.mat", "no MATLAB file"});
+}
