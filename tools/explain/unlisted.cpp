@@ -17,7 +17,7 @@ namespace {
 constexpr int kPoints = 11;
 constexpr int kPhases = 6;
 
-/// Least and largest value of a quantity over all records.
+/// Least and largest value of a quantity over the rows that a fit sees: beyond them a table would be a guess.
 struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -32,9 +32,13 @@ struct Extent {
 struct Extents {
   Extent input, opening, pressure, position, rate, angle, angle_rate, deflection, time;
 
-  const Extent& of(model::Site site, std::string_view x_name) const {
+  Extent of(model::Site site, std::string_view x_name) const {
     using model::Site;
     const bool is_rate = x_name == "rate";
+    if (x_name.starts_with("distance")) {
+      const Extent whole = of(site, "position");
+      return {0.0, std::max(std::abs(whole.low), std::abs(whole.high))};
+    }
     if (x_name == "time") {
       return time;
     }
@@ -89,12 +93,17 @@ Extents extents_of(const Dataset& data, const PlainParameters<Family>& parameter
         return plant.steady(experiment.input.front());
       }
     }();
+    auto block = experiment.fitted.begin();
     run(plant, experiment.input, state, steps, [&](std::size_t row, const auto&) {
-      take_state(extents, plant, state);
-      extents.input.take(experiment.input[row]);
+      while (block != experiment.fitted.end() && row >= block->last) {
+        ++block;
+      }
+      if (block != experiment.fitted.end() && row >= block->first) {
+        take_state(extents, plant, state);
+        extents.input.take(experiment.input[row]);
+        extents.time.take(experiment.time_of(row));
+      }
     });
-    extents.time.take(experiment.start);
-    extents.time.take(experiment.start + static_cast<double>(experiment.rows()) * experiment.period);
   }
   return extents;
 }
