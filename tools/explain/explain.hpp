@@ -24,8 +24,8 @@ struct Explanation {
 struct ExplainOptions {
   unsigned threads = 1;
   int most_effects = 4;
-  std::vector<Exclusion> exclusions;
   Watch watch;
+  std::vector<Exclusion> exclusions{};
 };
 
 /// Closes the loop: calibrates the declared model within its tolerances, traces what is left, adds the effects that the data
