@@ -61,10 +61,29 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
   explanation.report["residual"]["next_experiment"] = text + ".";
 }
 
+/// The explained model fitted once more, to the rows that were held out as well: what the rig runs has seen all that there
+/// is. The errors of `found` stay those of the fit that had not seen them.
+template <class Family>
+void fit_to_all_rows(Dataset data, const ExplainOptions& options, SearchResult<Family>& found) {
+  options.watch.progress("fitting what was found to all rows");
+  for (Experiment& experiment : data.experiments) {
+    experiment.fitted = experiment.scored();
+    experiment.held_out.clear();
+  }
+  const Evaluator<Family> whole(data, Resolution::fine);
+  const Assessed<Family> again = refined(whole, options.threads, found.explained.model, kFinal);
+  if (again.good()) {
+    found.explained.model = again.model;
+  }
+}
+
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
-  const SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
+  SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
+  if (!found.interrupted) {
+    fit_to_all_rows(data, options, found);
+  }
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
   if (found.rival) {
     add_next_experiment(data, *found.rival, found.explained.model, options.threads, explanation);
