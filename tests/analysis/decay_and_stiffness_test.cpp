@@ -1,7 +1,9 @@
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
+#include "tools/analysis/angle_calibration.hpp"
 #include "tools/analysis/equivalent_stiffness.hpp"
 #include "tools/analysis/free_decay.hpp"
 
@@ -55,6 +57,30 @@ TEST(EquivalentStiffness, OfASofterSpringGivesALoadResonanceThatRisesToTheLinear
     before = now;
   }
   DOUBLES_EQUAL(linear, before, 1e-3 * linear);
+}
+
+TEST_GROUP(AngleCalibration){};
+
+TEST(AngleCalibration, RecoversAnAffineTransformAndWhatItDoesNotExplain) {
+  std::vector<SettledAngles> settled;
+  for (const double pitch : {-0.03, 0.0, 0.03}) {
+    for (const double yaw : {-0.02, 0.01, 0.02}) {
+      settled.push_back({{0.7 * pitch + 1.0, -0.7 * pitch, 0.6 * yaw + 0.1 * pitch, 0.2 - 0.6 * yaw}, pitch, yaw});
+    }
+  }
+  const AngleCalibration calibration(settled);
+  DOUBLES_EQUAL(0.0, calibration.residual(), 1e-12);
+  const auto [pitch, yaw] =
+      calibration.angles({0.7 * 0.015 + 1.0, -0.7 * 0.015, 0.6 * 0.007 + 0.1 * 0.015, 0.2 - 0.6 * 0.007});
+  DOUBLES_EQUAL(0.015, pitch, 1e-12);
+  DOUBLES_EQUAL(0.007, yaw, 1e-12);
+  settled.front().pitch += 1e-3;
+  CHECK_TRUE(AngleCalibration(settled).residual() > 1e-5);
+}
+
+TEST(AngleCalibration, NeedsPosesThatTurnAboutBothAngles) {
+  const std::vector<SettledAngles> still(9);
+  CHECK_THROWS(std::invalid_argument, AngleCalibration{still});
 }
 
 }  // namespace hotfire::analysis
