@@ -81,7 +81,7 @@ TEST(Command, without_what_it_needs_is_wrong_use) {
 }
 
 TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
-  for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "hammer ", "quiescent "}) {
+  for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "hammer ", "quiescent ", "findings "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));

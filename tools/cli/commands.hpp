@@ -10,6 +10,7 @@ void add_check(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_doctor(CLI::App& program);
 void add_explain(CLI::App& program);
+void add_findings(CLI::App& program);
 void add_hammer(CLI::App& program);
 void add_quiescent(CLI::App& program);
 void add_reduce(CLI::App& program);

@@ -68,6 +68,7 @@ int run(int argc, char** argv) {
   add_step(program);
   add_hammer(program);
   add_quiescent(program);
+  add_findings(program);
   add_reduce(program);
   add_plant(program);
   add_timing(program);
