@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -55,7 +56,7 @@ void run_quiescent(const QuiescentOptions& options) {
   const Record record =
       record_of_trial(options.trial, [&] { return trials::quiescent(load_model(options.trial.model), options.ambient); });
   const Channel& piston = trials::required_channel(record, "piston", options.trial.axis);
-  const auto rows = static_cast<std::size_t>(options.segment / record.period + 0.5);
+  const auto rows = static_cast<std::size_t>(std::lround(options.segment / record.period));
   if (rows < 8 || rows > record.rows) {
     throw FileError(fmt::format("{}: shorter than a segment of {:g} s", record.path.string(), options.segment));
   }

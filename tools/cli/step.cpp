@@ -37,6 +37,7 @@ void print(const std::string& channel, const std::vector<analysis::StepResponse>
 void run_steps(const StepOptions& options) {
   const Record record = record_of_trial(options.trial, [&] {
     std::vector<double> amplitudes;
+    amplitudes.reserve(options.amplitudes.size());
     for (const double amplitude : options.amplitudes) {
       amplitudes.push_back(trials::radians(amplitude));
     }

@@ -37,6 +37,7 @@ std::vector<double> command_of(const SweepOptions& options) {
                              1);
   }
   std::vector<trials::SineBand> bands;
+  bands.reserve(options.amplitudes.size());
   for (const double amplitude : options.amplitudes) {
     bands.push_back({trials::radians(amplitude), trials::spaced(options.from, options.to, options.count)});
   }

@@ -19,6 +19,7 @@ constexpr std::string_view kCommand = "command.";
 /// The command channel of every axis; null where the record has none.
 std::vector<const Channel*> command_channels(const Record& inputs, const std::vector<std::string>& axes) {
   std::vector<const Channel*> channels;
+  channels.reserve(axes.size());
   for (const std::string& axis : axes) {
     channels.push_back(inputs.find(std::string(kCommand) + axis));
   }

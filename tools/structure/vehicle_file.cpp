@@ -227,6 +227,7 @@ bool is_vehicle(const std::filesystem::path& path) {
 
 std::vector<std::string> axis_names(int engines) {
   std::vector<std::string> names;
+  names.reserve(2 * static_cast<std::size_t>(engines));
   for (int axis = 0; axis < 2 * engines; ++axis) {
     names.push_back(tables_of_axis(axis, engines).back());
   }

@@ -11,12 +11,13 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-std::size_t rows_of(double seconds) { return static_cast<std::size_t>(seconds / kPeriod + 0.5); }
+std::size_t rows_of(double seconds) { return static_cast<std::size_t>(std::lround(seconds / kPeriod)); }
 
 }  // namespace
 
 std::vector<double> spaced(double lowest, double highest, int count) {
   std::vector<double> frequencies;
+  frequencies.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
     frequencies.push_back(lowest * std::pow(highest / lowest, k / std::max(1.0, count - 1.0)));
   }

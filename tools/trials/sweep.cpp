@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "tools/analysis/welch.hpp"
@@ -23,7 +24,7 @@ ChannelSweep with_features(std::string channel, double amplitude, analysis::Freq
 
 analysis::FrequencyResponse broadband(const Record& record, const std::vector<double>& command,
                                       const std::vector<double>& output, const SweepGoal& goal) {
-  const auto rows = static_cast<std::size_t>(goal.segment / record.period + 0.5);
+  const auto rows = static_cast<std::size_t>(std::lround(goal.segment / record.period));
   if (rows < 8 || 2 * rows > record.rows) {
     throw FileError(fmt::format("{}: {:.6g} s long; allowed: at least two segments of {:g} s, or a command of stepped sines",
                                 record.path.string(), static_cast<double>(record.rows) * record.period, goal.segment));
