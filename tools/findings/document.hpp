@@ -9,8 +9,8 @@ namespace hotfire::findings {
 
 /// A finding and what it came to.
 struct Row {
-  const Finding* finding;
-  Outcome outcome;
+  const Finding* finding = nullptr;
+  Outcome outcome = {};
 };
 
 /// The page docs/findings.md.
