@@ -81,7 +81,7 @@ TEST(Command, without_what_it_needs_is_wrong_use) {
 }
 
 TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
-  for (const std::string command : {"", "check ", "simulate "}) {
+  for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "hammer ", "quiescent ", "findings "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));
@@ -96,6 +96,43 @@ TEST(Command, simulate_writes_a_record_on_the_grid_of_its_input_and_one_line) {
   LONGS_EQUAL(1, std::count(out.begin(), out.end(), '\n'));
   LONGS_EQUAL(0, status_of("check " + output));
   expect_message(out, {"3 rows, period 0.002 s", "command[rad], piston[m], engine[rad], load_pressure[Pa]"});
+}
+
+TEST(Command, a_test_on_a_model_is_analysed_again_from_its_record) {
+  const std::string kept = scratch.path("test.csv").string();
+  const std::string bench = model();
+  LONGS_EQUAL(0, status_of("step --model " + bench + " --amplitudes 0.4 --hold 0.5 --json --output " + kept));
+  const std::string simulated = out;
+  expect_message(simulated, {"\"engine\"", "\"overshoot\"", "\"hesitation\""});
+  LONGS_EQUAL(0, status_of("step --record " + kept + " --hold 0.5 --json"));
+  STRCMP_EQUAL(simulated.c_str(), out.c_str());
+  LONGS_EQUAL(0, status_of("sweep --model " + bench + " --profile sines --from 6 --to 10 --count 9 --picture " +
+                           scratch.path("bode.svg").string()));
+  expect_message(out, {"piston at 0.4 deg", "notch 7."});
+  CHECK_TRUE(std::filesystem::exists(scratch.path("bode.svg")));
+  LONGS_EQUAL(0, status_of("hammer --model " + bench));
+  expect_message(out, {"engine: ", " Hz, damping ratio"});
+  LONGS_EQUAL(2, status_of("step --model " + bench + " --record " + kept));
+  expect_message(err, {"either --model", "or --record"});
+  LONGS_EQUAL(6, status_of("hammer --record " + record()));
+  expect_message(err, {"no column engine"});
+}
+
+TEST(Command, a_model_of_two_axes_is_checked_and_run_on_the_axis_that_is_named) {
+  const std::string taos = scratch.write("taos.toml", "schema = 1\nname = \"two\"\ntopology = \"taos\"\n").string();
+  LONGS_EQUAL(0, status_of("check " + taos));
+  expect_message(out, {"model \"two\", topology taos, 2 axes, 0 modes, rigid gimbal"});
+  LONGS_EQUAL(2, status_of("step --model " + taos));
+  expect_message(err, {"--axis"});
+  LONGS_EQUAL(0, status_of("step --model " + taos + " --axis yaw --amplitudes 0.2 --hold 0.5"));
+  expect_message(out, {"engine at 0.500 s, +0.00 to +0.20 deg"});
+  const std::string both =
+      scratch.write("both.csv", "time[s],command.pitch[deg],command.yaw[deg]\n0,0,0\n0.002,1,1\n0.004,1,1\n").string();
+  LONGS_EQUAL(0, status_of("simulate --model " + taos + " --input " + both + " --output " + scratch.path("o.csv").string()));
+  expect_message(out, {"o.csv: 3 rows"});
+  LONGS_EQUAL(
+      6, status_of("simulate --model " + taos + " --input " + record() + " --output " + scratch.path("o.csv").string()));
+  expect_message(err, {"no column command.pitch"});
 }
 
 TEST(Command, check_says_how_much_of_a_bus_a_schedule_takes_and_refuses_one_that_does_not_fit) {

@@ -115,8 +115,9 @@ TEST(Record, with_an_unknown_channel_is_refused_with_the_nearest_known_one) {
   expect_message(refused("hello world\n"), {"r.csv:1:", "column 1", "hello world", "unknown channel"});
 }
 
-TEST(Record, of_two_axes_is_refused_as_not_of_this_build) {
-  expect_message(refused("time[s],command.pitch[deg]\n0,0\n"), {"r.csv:1:", "column 2", "command.pitch", "two-axis model"});
+TEST(Record, of_an_axis_that_there_is_not_is_refused) {
+  expect_message(refused("time[s],command.roll[deg]\n0,0\n"), {"r.csv:1:", "column 2", "command.roll", "no axis", ".pitch"});
+  expect_message(refused("time.pitch[s],command[deg]\n0,0\n"), {"r.csv:1:", "column 1", "time.pitch"});
 }
 
 TEST(Record, with_a_wrong_unit_is_refused_with_the_units_allowed) {

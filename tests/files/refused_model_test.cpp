@@ -79,7 +79,7 @@ TEST(RefusedModel, schema_and_topology_must_be_there_and_of_this_build) {
   expect_message(refused_file("schema = 1\n"), {"m.toml:1:", "topology", "missing", "\"simplex\", \"direct\""});
   for (const std::string later : {"taos", "masv", "complex"}) {
     expect_message(refused_file("schema = 1\ntopology = \"" + later + "\"\n"),
-                   {"m.toml:2:12:", ("topology = \"" + later + "\"").c_str(), "not a topology of this build",
+                   {"m.toml:2:12:", ("topology = \"" + later + "\"").c_str(), "not a topology that this takes",
                     "\"simplex\", \"direct\""});
   }
 }

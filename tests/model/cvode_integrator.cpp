@@ -18,20 +18,20 @@ void require(int flag, const char* what) {
 
 }  // namespace
 
-CvodeIntegrator::CvodeIntegrator(Derivative derivative, void* user, const std::vector<double>& scale) {
+CvodeIntegrator::CvodeIntegrator(Derivative derivative, void* user, const std::vector<double>& scale, double tolerance) {
   const auto count = static_cast<sunindextype>(scale.size());
   SUNContext_Create(nullptr, &context_);
   state_ = N_VNew_Serial(count, context_);
   tolerance_ = N_VNew_Serial(count, context_);
   N_VConst(0.0, state_);
   for (std::size_t i = 0; i < scale.size(); ++i) {
-    N_VGetArrayPointer(tolerance_)[i] = 1e-11 * scale[i];
+    N_VGetArrayPointer(tolerance_)[i] = 0.1 * tolerance * scale[i];
   }
   matrix_ = SUNDenseMatrix(count, count, context_);
   solver_ = SUNLinSol_Dense(state_, matrix_, context_);
   memory_ = CVodeCreate(CV_BDF, context_);
   require(CVodeInit(memory_, derivative, 0.0, state_), "CVodeInit");
-  require(CVodeSVtolerances(memory_, 1e-10, tolerance_), "CVodeSVtolerances");
+  require(CVodeSVtolerances(memory_, tolerance, tolerance_), "CVodeSVtolerances");
   require(CVodeSetUserData(memory_, user), "CVodeSetUserData");
   require(CVodeSetLinearSolver(memory_, solver_, matrix_), "CVodeSetLinearSolver");
   require(CVodeSetMaxNumSteps(memory_, 1'000'000), "CVodeSetMaxNumSteps");

@@ -8,14 +8,14 @@
 
 namespace hotfire::test {
 
-/// SUNDIALS CVODE (BDF, dense) with a relative tolerance of 1e-10 and an absolute one of 1e-11 of each state's scale.
+/// SUNDIALS CVODE (BDF, dense) with a relative tolerance and an absolute one of a tenth of it of each state's scale.
 class CvodeIntegrator {
  public:
   using Derivative = int (*)(double, N_Vector, N_Vector, void*);
 
   /// Starts at time zero with every state zero. `user` is handed to `derivative`. Throws std::runtime_error if CVODE
   /// refuses.
-  CvodeIntegrator(Derivative derivative, void* user, const std::vector<double>& scale);
+  CvodeIntegrator(Derivative derivative, void* user, const std::vector<double>& scale, double tolerance = 1e-10);
   CvodeIntegrator(const CvodeIntegrator&) = delete;
   CvodeIntegrator& operator=(const CvodeIntegrator&) = delete;
   ~CvodeIntegrator();

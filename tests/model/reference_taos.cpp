@@ -164,9 +164,10 @@ std::vector<double> scales(const ReferenceTaos& taos) {
 }  // namespace
 
 std::vector<std::array<double, 4>> integrate_reference(const ReferenceTaos& taos, const ReferenceTaos::Start& start,
-                                                       const std::vector<std::array<double, 2>>& commands, double sample) {
+                                                       const std::vector<std::array<double, 2>>& commands, double sample,
+                                                       double tolerance) {
   Problem problem{&taos};
-  CvodeIntegrator integrator(derivative, &problem, scales(taos));
+  CvodeIntegrator integrator(derivative, &problem, scales(taos), tolerance);
   double* y = integrator.state();
   for (int axis = 0; axis < 2; ++axis) {
     std::copy(start.axes[static_cast<std::size_t>(axis)].begin(), start.axes[static_cast<std::size_t>(axis)].end(),

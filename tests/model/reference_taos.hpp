@@ -42,6 +42,7 @@ struct ReferenceTaos {
 /// Piston and engine of pitch, then of yaw, at the end of each sample of `sample` seconds, the commands [rad] held between
 /// samples. As `integrate_reference`.
 std::vector<std::array<double, 4>> integrate_reference(const ReferenceTaos& taos, const ReferenceTaos::Start& start,
-                                                       const std::vector<std::array<double, 2>>& commands, double sample);
+                                                       const std::vector<std::array<double, 2>>& commands, double sample,
+                                                       double tolerance = 1e-10);
 
 }  // namespace hotfire::test

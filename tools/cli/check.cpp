@@ -16,6 +16,7 @@
 #include "tools/files/model_layout.hpp"
 #include "tools/files/record.hpp"
 #include "tools/files/recording.hpp"
+#include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {
 
@@ -38,6 +39,20 @@ Json describe_model(const std::filesystem::path& path) {
   }
   return {{"kind", "model"},    {"name", model.name},       {"topology", layout.topology},
           {"effects", effects}, {"tolerances", toleranced}, {"reference_values", model.left_out}};
+}
+
+Json describe_vehicle(const std::filesystem::path& path) {
+  const VehicleFile vehicle = load_vehicle(path);
+  return std::visit(
+      [&vehicle]<class Parameters>(const Parameters& parameters) -> Json {
+        return {{"kind", "vehicle"},
+                {"name", vehicle.name},
+                {"topology", std::is_same_v<Parameters, TaosParameters> ? "taos" : "masv"},
+                {"axes", parameters.axes.size()},
+                {"modes", parameters.modes.modes},
+                {"compliant_gimbal", parameters.gimbals.front().compliant}};
+      },
+      vehicle.parameters);
 }
 
 Json describe_record(const std::filesystem::path& path) {
@@ -66,7 +81,9 @@ Json describe_schedule(const std::filesystem::path& path) {
 
 Json describe(const std::filesystem::path& path) {
   if (path.extension() == ".toml") {
-    return is_can_schedule(path) ? describe_schedule(path) : describe_model(path);
+    return is_can_schedule(path) ? describe_schedule(path)
+           : is_vehicle(path)    ? describe_vehicle(path)
+                                 : describe_model(path);
   }
   if (path.extension() == ".csv" || path.extension() == ".log" || is_recording(path)) {
     return describe_record(path);
@@ -91,6 +108,11 @@ std::string line_of(const Json& result) {
                        result["name"].get<std::string>(), result["topology"].get<std::string>(),
                        joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].size(),
                        reference.empty() ? "" : ", left to their reference values: " + joined(reference));
+  }
+  if (result["kind"] == "vehicle") {
+    return fmt::format("model \"{}\", topology {}, {} axes, {} modes, {} gimbal", result["name"].get<std::string>(),
+                       result["topology"].get<std::string>(), result["axes"].get<int>(), result["modes"].get<int>(),
+                       result["compliant_gimbal"].get<bool>() ? "compliant" : "rigid");
   }
   if (result["kind"] == "schedule") {
     return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",

@@ -10,11 +10,16 @@ void add_check(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_doctor(CLI::App& program);
 void add_explain(CLI::App& program);
+void add_findings(CLI::App& program);
+void add_hammer(CLI::App& program);
 void add_import(CLI::App& program);
+void add_quiescent(CLI::App& program);
 void add_reduce(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);
 void add_replay(CLI::App& program);
+void add_step(CLI::App& program);
+void add_sweep(CLI::App& program);
 void add_timing(CLI::App& program);
 
 }  // namespace hotfire

@@ -65,6 +65,11 @@ int run(int argc, char** argv) {
   add_convert(program);
   add_import(program);
   add_simulate(program);
+  add_sweep(program);
+  add_step(program);
+  add_hammer(program);
+  add_quiescent(program);
+  add_findings(program);
   add_reduce(program);
   add_plant(program);
   add_timing(program);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,8 @@
 
 #include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
+#include "tools/files/error.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
 
 namespace hotfire {
 
@@ -24,12 +27,26 @@ struct SimulateOptions {
   CandumpOptions candump;
 };
 
+/// Reads the model, of one axis or several, and says how it is run.
+std::function<Record(const Record&)> simulation_of(const SimulateOptions& options) {
+  if (!is_vehicle(options.model)) {
+    return [model = load_model(options.model), rows = options.fit_start](const Record& inputs) {
+      return simulate(model, inputs, rows);
+    };
+  }
+  if (options.fit_start > 0) {
+    throw UsageError(
+        "--fit-start is for a direct model; hydraulic axes start in the steady state under their first commands");
+  }
+  return [model = load_vehicle(options.model)](const Record& inputs) { return simulate(model, inputs); };
+}
+
 void run_simulation(const SimulateOptions& options) {
-  const ModelFile model = load_model(options.model);
+  const std::function<Record(const Record&)> run = simulation_of(options);
   const Record inputs = load_record_or_log(options.input, options.candump);
 
   const auto before = std::chrono::steady_clock::now();
-  const Record outputs = simulate(model, inputs, options.fit_start);
+  const Record outputs = run(inputs);
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   write_record(outputs, options.output);
 

@@ -111,8 +111,8 @@ void read_tolerances(const TomlSource& source, const ModelLayout& layout, ModelF
 }
 
 void choose_topology(const TomlSource& source, ModelFile& model) {
-  const std::string allowed =
-      fmt::format("allowed: \"{}\", \"{}\"", model::Simplex<double>::topology, model::Direct<double>::topology);
+  const std::string allowed = fmt::format("allowed where one axis is asked for: \"{}\", \"{}\"",
+                                          model::Simplex<double>::topology, model::Direct<double>::topology);
   const toml::node* node = source.root().get("topology");
   if (node == nullptr) {
     source.refuse_missing(source.root(), "topology", "missing; " + allowed);
@@ -123,7 +123,7 @@ void choose_topology(const TomlSource& source, ModelFile& model) {
   } else if (topology == model::Direct<double>::topology) {
     model.parameters = DirectParameters{};
   } else {
-    source.refuse(*node, "topology", "not a topology of this build; " + allowed);
+    source.refuse(*node, "topology", "not a topology that this takes; " + allowed);
   }
 }
 

@@ -126,8 +126,10 @@ void refuse_unknown_keys(const TomlSource& source, const toml::table& table, std
 }
 
 std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::table& table, const KeyGroup& group,
-                                         const std::string& prefix) {
-  refuse_unknown_keys(source, table, prefix, keys_of(group));
+                                         const std::string& prefix, const Words& others) {
+  Words known = keys_of(group);
+  known.insert(known.end(), others.begin(), others.end());
+  refuse_unknown_keys(source, table, prefix, known);
   read_option(source, table, group, prefix);
   std::vector<const NumberKey*> left_out;
   for (const NumberKey& number : group.numbers) {

@@ -27,8 +27,8 @@ void require_schema(const TomlSource& source);
 void refuse_unknown_keys(const TomlSource& source, const toml::table& table, std::string_view prefix, const Words& known);
 
 /// Reads one table of a model file into the parameters its group leads to, and checks it. Returns the numbers it does not
-/// give. Throws FileError.
+/// give. Keys in `others` may stand there too and are left to who knows them. Throws FileError.
 std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::table& table, const KeyGroup& group,
-                                         const std::string& prefix);
+                                         const std::string& prefix, const Words& others = {});
 
 }  // namespace hotfire

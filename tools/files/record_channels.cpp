@@ -50,20 +50,33 @@ std::string shown(std::string_view text) {
   return text.size() <= kMost ? std::string{text} : std::string{text.substr(0, kMost)} + "...";
 }
 
+/// What follows the point in `piston.pitch`, `piston.yaw3`: an axis, of an engine where there are several.
+bool is_axis(std::string_view text) {
+  for (const std::string_view axis : {"pitch", "yaw"}) {
+    if (text.starts_with(axis)) {
+      const std::string_view engine = text.substr(axis.size());
+      return engine.empty() || (engine.size() == 1 && engine[0] >= '1' && engine[0] <= '9');
+    }
+  }
+  return false;
+}
+
 const KnownChannel& known_channel(const CsvLines& lines, std::size_t column, std::string_view name) {
+  const std::size_t point = name.find('.');
+  const std::string_view own = name.substr(0, point);
   const auto* found =
-      std::find_if(kKnownChannels.begin(), kKnownChannels.end(), [name](const auto& c) { return c.name == name; });
+      std::find_if(kKnownChannels.begin(), kKnownChannels.end(), [own](const auto& c) { return c.name == own; });
+  if (found != kKnownChannels.end() && point != std::string_view::npos &&
+      (own == "time" || !is_axis(name.substr(point + 1)))) {
+    lines.refuse(
+        fmt::format("column {} \"{}\": no axis; allowed after {}: .pitch, .yaw, or .pitch1, .yaw1, .pitch2 ... of several "
+                    "engines",
+                    column, shown(name), own));
+  }
   if (found != kKnownChannels.end()) {
     return *found;
   }
-  const std::string_view axis_free = name.substr(0, name.find('.'));
   const std::vector<std::string_view> names = known_names();
-  if (axis_free != name && std::find(names.begin(), names.end(), axis_free) != names.end()) {
-    lines.refuse(
-        fmt::format("column {} \"{}\": a record of two axes needs a two-axis model, which this build does not have; name "
-                    "the channel of one axis {}",
-                    column, shown(name), axis_free));
-  }
   lines.refuse(fmt::format("column {} \"{}\": unknown channel; {}", column, shown(name), suggestion(shown(name), names)));
 }
 

@@ -126,4 +126,9 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
   return run_open_loop(plant, state, inputs, steps);
 }
 
+double moment_arm_of(const ModelFile& model) {
+  const auto* simplex = std::get_if<SimplexParameters>(&model.parameters);
+  return simplex != nullptr ? simplex->actuator.moment_arm : 1.0;
+}
+
 }  // namespace hotfire

@@ -15,4 +15,7 @@ namespace hotfire {
 /// instead. Returns time, input and every model channel on the inputs' grid.
 Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_start_rows = 0);
 
+/// The moment arm of a hydraulic axis [m]; 1 for a `direct` mass, whose channels are in one unit.
+double moment_arm_of(const ModelFile& model);
+
 }  // namespace hotfire

@@ -1,0 +1,160 @@
+#include "tests/benchmark/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+namespace hotfire::test {
+
+namespace {
+
+using Results = std::map<std::string, Measured>;
+
+/// The results whose names begin with a word, by the number that follows it.
+std::vector<std::pair<double, Measured>> series(const Results& measured, const std::string& word) {
+  std::vector<std::pair<double, Measured>> found;
+  for (const auto& [name, own] : measured) {
+    if (name.starts_with(word + "/")) {
+      found.emplace_back(std::stod(name.substr(word.size() + 1)), own);
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return found;
+}
+
+/// Least squares of time over modes: what a step costs without modes, and what each adds [s], and the largest deviation from
+/// it over the cost.
+struct Line {
+  double constant = 0.0;
+  double slope = 0.0;
+  double deviation = 0.0;
+};
+
+Line fitted(const std::vector<std::pair<double, Measured>>& points) {
+  double n = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  for (const auto& [modes, own] : points) {
+    n += 1.0;
+    x += modes;
+    y += own.seconds;
+    xx += modes * modes;
+    xy += modes * own.seconds;
+  }
+  Line line;
+  line.slope = (n * xy - x * y) / (n * xx - x * x);
+  line.constant = (y - line.slope * x) / n;
+  for (const auto& [modes, own] : points) {
+    line.deviation = std::max(line.deviation, std::abs(line.constant + line.slope * modes - own.seconds) / own.seconds);
+  }
+  return line;
+}
+
+void append_steps(std::string& text, const Results& measured) {
+  const auto axis = measured.find("step_axis");
+  const auto taos = measured.find("step_taos");
+  const auto masv = series(measured, "step_masv");
+  if (axis == measured.end() || taos == measured.end() || masv.size() < 2) {
+    return;
+  }
+  const auto add = std::back_inserter(text);
+  fmt::format_to(
+      add, "\n## One step\n\n| plant | time | over one axis | wanted | state and constants |\n|---|---|---|---|---|\n");
+  const double one = axis->second.seconds;
+  const auto row = [&](const std::string& name, const Measured& own, const char* wanted) {
+    fmt::format_to(add, "| {} | {:.0f} ns | {:.2f} | {} | {:.1f} KiB |\n", name, 1e9 * own.seconds, own.seconds / one,
+                   wanted, own.counters.at("bytes") / 1024.0);
+  };
+  row("one axis, friction, soft spring, dead band", axis->second, "");
+  row("TAOS, hot fire", taos->second, "under 3");
+  for (const auto& [modes, own] : masv) {
+    row(fmt::format("MASV, hot fire, {:.0f} modes", modes), own, modes == 64.0 ? "under 14, under 64 KiB" : "");
+  }
+  const Line line = fitted(masv);
+  fmt::format_to(add,
+                 "\nMASV is linear in its modes: {:.0f} ns + {:.2f} ns a mode, no point further than {:.1f} % from the "
+                 "line. Counts of\n"
+                 "instructions, which no other load disturbs, are checked by `ctest -R vehicle_cost`.\n",
+                 1e9 * line.constant, 1e9 * line.slope, 100.0 * line.deviation);
+}
+
+void append_work_precision(std::string& text, const Results& measured) {
+  const auto own = series(measured, "work_hotfire");
+  const auto cvode = series(measured, "work_cvode");
+  if (own.empty() || cvode.empty()) {
+    return;
+  }
+  const auto add = std::back_inserter(text);
+  text.append(
+      "\n## Work and precision\n\nHot-fire TAOS with every effect and four modes, 1.2 s of sines and steps about both "
+      "angles, commands\n"
+      "held for 1 ms, from a start that is given. Error: the largest of both pistons and engines, rms over the signal's "
+      "rms, against\n"
+      "CVODE at a relative tolerance of 1e-10 on independently written equations. Wanted: a ratio of at least 20.\n\n"
+      "| ours, step | error | time | CVODE of no larger error: tolerance, time | ratio |\n|---|---|---|---|---|\n");
+  for (const auto& [parts, ours] : own) {
+    const double error = ours.counters.at("error");
+    const std::pair<double, Measured>* best = nullptr;
+    for (const auto& candidate : cvode) {
+      if (candidate.second.counters.at("error") <= error &&
+          (best == nullptr || candidate.second.seconds < best->second.seconds)) {
+        best = &candidate;
+      }
+    }
+    if (best != nullptr) {
+      fmt::format_to(add, "| {:.3g} ms | {:.2g} % | {:.2f} ms | 1e-{:.0f}, {:.0f} ms | {:.0f} |\n", 1.0 / parts,
+                     100.0 * error, 1e3 * ours.seconds, best->first, 1e3 * best->second.seconds,
+                     best->second.seconds / ours.seconds);
+    } else {
+      fmt::format_to(add, "| {:.3g} ms | {:.2g} % | {:.2f} ms | none that was tried | |\n", 1.0 / parts, 100.0 * error,
+                     1e3 * ours.seconds);
+    }
+  }
+  fmt::format_to(add, "\n| CVODE, relative tolerance | error | time |\n|---|---|---|\n");
+  for (const auto& [digits, other] : cvode) {
+    fmt::format_to(add, "| 1e-{:.0f} | {:.2g} % | {:.0f} ms |\n", digits, 100.0 * other.counters.at("error"),
+                   1e3 * other.seconds);
+  }
+  text.append(
+      "\nCVODE is BDF with a dense Jacobian by differences, and starts afresh at every command, which jumps. It is made for "
+      "equations\n"
+      "that it knows nothing of; the model's step is made for these. Compared is one engine with two axes: there is no "
+      "independent\n"
+      "reference of four.\n");
+}
+
+}  // namespace
+
+void Collector::ReportRuns(const std::vector<Run>& runs) {
+  for (const Run& run : runs) {
+    if (run.run_type != Run::RT_Iteration || run.error_occurred) {
+      continue;
+    }
+    std::string name = run.run_name.function_name;
+    if (!run.run_name.args.empty()) {
+      name.append("/").append(run.run_name.args);
+    }
+    Measured& own = measured_[name];
+    own.seconds = std::min(own.seconds, run.cpu_accumulated_time / static_cast<double>(run.iterations));
+    for (const auto& [counter, value] : run.counters) {
+      own.counters[counter] = value;
+    }
+  }
+}
+
+std::string performance_page(const Results& measured) {
+  std::string text =
+      "# Performance\n\nPrinted by `hotfire-benchmark --benchmark_repetitions=3` (Google Benchmark; processor time, best of "
+      "the\n"
+      "repetitions). Times are those of one machine and change with it; ratios, taken in one run, hardly do.\n";
+  append_steps(text, measured);
+  append_work_precision(text, measured);
+  return text;
+}
+
+}  // namespace hotfire::test

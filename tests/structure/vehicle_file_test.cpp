@@ -1,0 +1,134 @@
+#include "tools/structure/vehicle_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "tests/files/expect.hpp"
+#include "tests/files/scratch.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
+#include "tools/structure/mode_table.hpp"
+#include "tools/structure/synthetic.hpp"
+
+namespace hotfire::test {
+namespace {
+
+const std::string kTaos = "schema = 1\ntopology = \"taos\"\n";
+const std::string kMasv = "schema = 1\ntopology = \"masv\"\n";
+
+std::string matrix(double diagonal, double corner, double other_corner) {
+  std::string text = "stiffness = [";
+  for (int row = 0; row < 6; ++row) {
+    text.append("[");
+    for (int column = 0; column < 6; ++column) {
+      const double cell = row == column             ? diagonal
+                          : row == 1 && column == 5 ? corner
+                          : row == 5 && column == 1 ? other_corner
+                                                    : 0.0;
+      text.append(fmt::format("{}{:.1f}", column == 0 ? "" : ", ", cell));
+    }
+    text.append("],\n");
+  }
+  return text + "]\n";
+}
+
+/// A record with command channels.
+Record commands(const std::vector<std::string>& names, double value) {
+  Record record;
+  record.path = record.name = "commands";
+  record.period = 1e-3;
+  record.rows = 200;
+  for (const std::string& name : names) {
+    record.channels.push_back({name, "rad", std::vector<double>(record.rows, value)});
+  }
+  return record;
+}
+
+}  // namespace
+
+TEST_GROUP(VehicleFile) {
+  Scratch scratch;
+
+  VehicleFile load(const std::string& text) const { return load_vehicle(scratch.write("v.toml", text)); }
+  std::string refused(const std::string& text) const {
+    return refusal([&] { load(text); });
+  }
+};
+
+TEST(VehicleFile, GivesEveryAxisWhatIsSaidOfAllAndThenWhatIsSaidOfIt) {
+  const auto masv = std::get<MasvParameters>(
+      load(kMasv +
+           "[actuator]\nstiffness = 9e7\nleakage = 1e-12\n[actuator.pitch]\nleakage = 3e-12\n[actuator.yaw2]\nleakage = "
+           "5e-12\n[effects.soft_stiffness]\nlaw = \"compliance\"\nlow_stiffness = 5e7\n")
+          .parameters);
+  for (std::size_t i = 0; i < 8; ++i) {
+    DOUBLES_EQUAL(9e7, masv.axes[i].actuator.stiffness, 0.0);
+    DOUBLES_EQUAL(i % 2 == 0 ? 3e-12 : i == 3 ? 5e-12 : 1e-12, masv.axes[i].actuator.leakage, 0.0);
+  }
+}
+
+TEST(VehicleFile, ReadsTheBearingAndItsAttachPoints) {
+  const auto taos = std::get<TaosParameters>(
+      load(kTaos + "[attach.pitch]\nengine_z = -0.8\nvehicle_z = -0.8\n[gimbal]\nthrust = 1.86e6\n" + matrix(2e7, 1e6, 1e6) +
+           "[gimbal.friction]\nlaw = \"lugre\"\ncoulomb_torque = 2e4\n")
+          .parameters);
+  CHECK_TRUE(taos.gimbals[0].compliant);
+  DOUBLES_EQUAL(1e6, taos.gimbals[0].stiffness(5, 1), 0.0);
+  DOUBLES_EQUAL(1.86e6, taos.gimbals[0].bearing.thrust, 0.0);
+  DOUBLES_EQUAL(2e4, taos.gimbals[0].friction.coulomb_torque, 0.0);
+  DOUBLES_EQUAL(-0.8, taos.attach[0].engine_z, 0.0);
+  CHECK_FALSE(std::get<TaosParameters>(load(kTaos).parameters).gimbals[0].compliant);
+}
+
+TEST(VehicleFile, ReadsItsModesFromTheTableBesideIt) {
+  scratch.write("modes.csv", mode_table_text(synthetic_vehicle(3, 20), {}));
+  const auto masv = std::get<MasvParameters>(load(kMasv + "[modes]\ntable = \"modes.csv\"\n").parameters);
+  LONGS_EQUAL(20, masv.modes.modes);
+  CHECK_TRUE(masv.modes.frequency[0] > 0.0 && masv.modes.frequency[20] == 0.0);
+}
+
+TEST(VehicleFile, IsRefusedWithWhatAndWhere) {
+  expect_message(refused(kTaos + "[gimbal]\n" + matrix(2e7, 1e6, 2e6)),
+                 {"v.toml:4:13:", "gimbal.stiffness", "not symmetric"});
+  expect_message(refused(kTaos + "[gimbal]\n" + matrix(2e7, 3e7, 3e7)),
+                 {"v.toml:4:", "gimbal.stiffness", "positive definite"});
+  expect_message(refused(kTaos + "[gimbal]\nstiffness = [[1, 2], [2, 1]]\n"), {"v.toml:4:", "gimbal.stiffness", "six rows"});
+  expect_message(refused(kTaos + "[attach.pitch]\nengine_x = 0.9\n"), {"v.toml:", "attach", "coincide"});
+  expect_message(refused(kTaos + "[attach.yaw]\nengine_y = \"-0.7544 m\"\nvehicle_y = \"-0.7544 m\"\n"),
+                 {"v.toml:", "attach", "no arm"});
+  expect_message(refused(kTaos + "[actuator.roll]\nleakage = 1\n"), {"v.toml:3:", "actuator.roll", "pitch"});
+  expect_message(refused(kTaos + "[actuator.pitch2]\nleakage = 1\n"), {"v.toml:3:", "actuator.pitch2", "unknown key"});
+  expect_message(refused(kTaos + "[actuator.pitch]\nleakage = -1\n"),
+                 {"v.toml:4:", "actuator.pitch.leakage", "allowed: 0 to"});
+  expect_message(refused(kTaos + "[gimbal.friction]\nlaw = \"lugra\"\n"), {"v.toml:4:", "gimbal.friction.law", "lugre"});
+  expect_message(refused(kTaos + "[gimbal.vibration]\npitch_velocity = 0.1\n[gimbal.friction]\nlaw = \"vibrated_lugre\"\n"
+                                 "coulomb_torque = 1e4\n"),
+                 {"v.toml:", "gimbal", "two ways to the same physics"});
+  expect_message(refused(kTaos + "[engines]\n"), {"v.toml:3:", "engines", "unknown key"});
+}
+
+TEST(VehicleFile, RefusesModesThatItHasNoRoomFor) {
+  scratch.write("many.csv", mode_table_text(synthetic_vehicle(3, 65), {}));
+  expect_message(refused(kMasv + "[modes]\ntable = \"many.csv\"\n"), {"v.toml:4:", "65 modes", "at most 64", "reduce"});
+  expect_message(refused(kTaos + "[modes]\ntable = \"many.csv\"\n"), {"v.toml:4:", "4 engines", "allowed: 1"});
+  expect_message(refused(kMasv + "[modes]\ntable = \"none.csv\"\n"), {"none.csv"});
+  scratch.write("short.csv",
+                "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1\n1,-4,0.01,1,1,0,0\n");
+  expect_message(refused(kTaos + "[modes]\ntable = \"short.csv\"\n"), {"short.csv:2:", "-4"});
+  expect_message(refused(kTaos + "[modes]\n"), {"v.toml:3:", "modes.table", "missing"});
+}
+
+TEST(VehicleFile, RunsOnTheCommandsOfItsAxes) {
+  const VehicleFile taos = load(kTaos);
+  const Record run = simulate(taos, commands({"command.pitch"}, 0.01));
+  LONGS_EQUAL(8, run.channels.size());
+  // In the steady state under the first row: pitch stands where it is commanded, but for the ducts' load, and yaw at zero.
+  DOUBLES_EQUAL(0.01, run.find("engine.pitch")->values.back(), 3e-4);
+  DOUBLES_EQUAL(0.0, run.find("engine.yaw")->values.back(), 1e-4);
+  CHECK_TRUE(run.find("command.yaw")->values == std::vector<double>(200, 0.0));
+  DOUBLES_EQUAL(0.7544, moment_arm_of(taos, "pitch"), 1e-9);
+  expect_message(refusal([&] { simulate(taos, commands({"command.pitch3"}, 0.0)); }), {"command.pitch3", "pitch, yaw"});
+  expect_message(refusal([&] { simulate(taos, commands({"vibration"}, 0.0)); }), {"no column command.pitch"});
+}
+
+}  // namespace hotfire::test

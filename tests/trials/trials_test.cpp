@@ -1,0 +1,121 @@
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "tools/analysis/free_decay.hpp"
+#include "tools/files/error.hpp"
+#include "tools/simulate/simulate.hpp"
+#include "tools/trials/disturbed.hpp"
+#include "tools/trials/profiles.hpp"
+#include "tools/trials/sweep.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace hotfire::trials {
+namespace {
+
+/// The linear axis with its reference values.
+ModelFile linear() {
+  ModelFile model;
+  model.parameters = SimplexParameters{};
+  return model;
+}
+
+/// Frequency of the engine's pendulum on a locked actuator [SD eq. 10], and of the piston's zeros.
+double pendulum(const SimplexParameters& p) {
+  const double total = 1.0 / (1.0 / p.actuator.stiffness + 1.0 / p.structure.stiffness);
+  return std::sqrt((p.engine.duct_stiffness + total * p.actuator.moment_arm * p.actuator.moment_arm) / p.engine.inertia) /
+         (2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+TEST_GROUP(Trials){};
+
+TEST(Trials, SinesAndMultisineGiveTheSameResponseOfALinearAxis) {
+  const ModelFile model = linear();
+  const SweepGoal goal{.moment_arm = moment_arm_of(model)};
+  // Small enough for the root of the flow law, whose share falls with the load pressure.
+  const auto by_sines =
+      analyse_sweep(simulate(model, command_record(stepped_sines({{1e-5, {1.0, 2.0, 4.0, 6.0, 9.0}}}))), goal);
+  const auto broadband = analyse_sweep(simulate(model, command_record(multisine(1e-4, 0.5, 14.0, 8.0, 6, 2))), goal);
+  LONGS_EQUAL(2, by_sines.size());
+  LONGS_EQUAL(2, broadband.size());
+  for (std::size_t channel = 0; channel < 2; ++channel) {
+    for (const auto& sine : by_sines[channel].response) {
+      for (const auto& point : broadband[channel].response) {
+        if (std::abs(point.frequency - sine.frequency) < 0.01) {
+          // Hann's window reaches two bins of 1/8 Hz to either side, over which the response bends.
+          CHECK_TRUE(std::abs(point.gain - sine.gain) < 0.03 * std::abs(sine.gain));
+          CHECK_TRUE(point.coherence > 0.99);
+        }
+      }
+    }
+  }
+}
+
+TEST(Trials, ARecordedTestIsAnalysedAsASimulatedOne) {
+  const ModelFile model = linear();
+  Record record = simulate(model, command_record(stepped_sines({{1e-3, spaced(6.0, 10.0, 25)}})));
+  const SweepGoal goal{.moment_arm = moment_arm_of(model)};
+  const auto simulated = analyse_sweep(record, goal);
+  for (Channel& channel : record.channels) {
+    channel.name += ".pitch";
+  }
+  SweepGoal pitch = goal;
+  pitch.axis = "pitch";
+  const auto recorded = analyse_sweep(record, pitch);
+  DOUBLES_EQUAL(simulated[0].notch->frequency, recorded[0].notch->frequency, 0.0);
+  CHECK_THROWS(FileError, analyse_sweep(record, goal));
+}
+
+TEST(Trials, TheHammerFindsThePendulumOfALockedActuator) {
+  const ModelFile model = linear();
+  const Record record = hammer(model, {});
+  const auto decay = analysis::free_decay(record.find("engine")->values, record.period, 4.0);
+  DOUBLES_EQUAL(pendulum(std::get<SimplexParameters>(model.parameters)), decay->frequency, 2e-3 * decay->frequency);
+  double piston = 0.0;
+  double engine = 0.0;
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    piston = std::max(piston, std::abs(record.find("piston")->values[row]));
+    engine = std::max(engine, std::abs(record.find("engine")->values[row]));
+  }
+  // Locked: the spring's deflection is the engine's motion at its arm.
+  CHECK_TRUE(piston < 2e-3 * 0.7544 * engine);
+}
+
+TEST(Trials, AMassIsHitAsItIs) {
+  ModelFile model;
+  DirectParameters direct;
+  direct.mass = {2.0, 0.4, 200.0};
+  model.parameters = direct;
+  const Record record = hammer(model, {1.0, 8.0});
+  const auto decay = analysis::free_decay(record.find("position")->values, record.period, 8.0);
+  DOUBLES_EQUAL(10.0 / (2.0 * std::numbers::pi), decay->frequency, 1e-3);
+  DOUBLES_EQUAL(0.01, decay->damping_ratio, 5e-4);
+}
+
+TEST(Trials, AQuiescentAxisIsTheSameForTheSameSeedAndStillWithoutTorque) {
+  Quiescence ambient{100.0, 2.0, 7};
+  const Record one = quiescent(linear(), ambient);
+  CHECK_TRUE(one.find("piston")->values == quiescent(linear(), ambient).find("piston")->values);
+  ambient.seed = 8;
+  CHECK_FALSE(one.find("piston")->values == quiescent(linear(), ambient).find("piston")->values);
+  ambient.torque_density = 0.0;
+  for (const double value : quiescent(linear(), ambient).find("engine")->values) {
+    DOUBLES_EQUAL(0.0, value, 1e-12);
+  }
+}
+
+TEST(Trials, TheGreenRunProfileIsThatOfThePaperInEitherOrder) {
+  const std::vector<SineBand> pitch = green_run_sines();
+  const std::vector<SineBand> yaw = green_run_sines(true);
+  DOUBLES_EQUAL(radians(0.8), pitch[0].amplitude, 1e-12);
+  DOUBLES_EQUAL(7.0, pitch[0].frequencies.front(), 1e-9);
+  DOUBLES_EQUAL(14.0, pitch[0].frequencies.back(), 1e-9);
+  DOUBLES_EQUAL(radians(0.4), yaw[0].amplitude, 1e-12);
+  DOUBLES_EQUAL(0.4, yaw[0].frequencies.front(), 1e-9);
+  DOUBLES_EQUAL(6.25, yaw[0].frequencies.back(), 1e-9);
+}
+
+}  // namespace hotfire::trials

@@ -1,0 +1,57 @@
+#include "tools/analysis/equivalent_stiffness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hotfire::analysis {
+
+namespace {
+
+/// The deflection at which an odd, rising curve reaches a force.
+double deflection_at(const SpringCurve& curve, double force, double stiffest) {
+  double low = force / stiffest;
+  double high = 2.0 * low;
+  while (curve(high) < force && high < 1e6 * low) {
+    low = high;
+    high *= 2.0;
+  }
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (curve(middle) < force ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+double peak_sine_force(double inertia, double moment_arm, double amplitude, double angular_frequency) {
+  return inertia * amplitude * angular_frequency * angular_frequency / moment_arm;
+}
+
+double equivalent_stiffness(const SpringCurve& curve, double force, double stiffest) {
+  constexpr int kIntervals = 200;
+  const double most = deflection_at(curve, force, 1.001 * stiffest);
+  const double width = most / kIntervals;
+  double sum = curve(most);
+  for (int i = 1; i < kIntervals; ++i) {
+    sum += (i % 2 == 1 ? 4.0 : 2.0) * curve(i * width);
+  }
+  return 2.0 / (most * most) * sum * width / 3.0;
+}
+
+double load_resonance(const LoadResonance& load, const SpringCurve& curve, double amplitude) {
+  constexpr double kLeastForce = 1e-3;  // N: the slope at rest
+  double frequency = 0.0;
+  double own = load.actuator_stiffness;
+  // The force follows the frequency, which follows the stiffness; each round shrinks the error by the stiffness's share.
+  for (int round = 0; round < 50; ++round) {
+    const double total = 1.0 / (1.0 / own + 1.0 / load.load_stiffness);
+    frequency = std::sqrt((load.duct_stiffness + total * load.moment_arm * load.moment_arm) / load.inertia);
+    const double force = peak_sine_force(load.inertia, load.moment_arm, amplitude, frequency);
+    own = equivalent_stiffness(curve, std::max(force, kLeastForce), load.actuator_stiffness);
+  }
+  return frequency / (2.0 * std::numbers::pi);
+}
+
+}  // namespace hotfire::analysis

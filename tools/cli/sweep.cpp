@@ -1,0 +1,120 @@
+#include "tools/trials/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/commands.hpp"
+#include "tools/cli/trial_options.hpp"
+#include "tools/trials/pictures.hpp"
+#include "tools/trials/profiles.hpp"
+#include "tools/trials/results_json.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct SweepOptions {
+  TrialOptions trial;
+  std::string profile = "green-run";
+  std::vector<double> amplitudes{0.4};  ///< [deg]
+  double from = 0.4;                    ///< [Hz]
+  double to = 14.0;                     ///< [Hz]
+  int count = 40;
+  double moment_arm = 0.0;
+  trials::SweepGoal goal;
+};
+
+std::vector<double> command_of(const SweepOptions& options) {
+  if (options.profile == "green-run") {
+    return trials::stepped_sines(trials::green_run_sines(options.trial.axis.starts_with("yaw")));
+  }
+  if (options.profile == "multisine") {
+    return trials::multisine(trials::radians(options.amplitudes.front()), options.from, options.to, options.goal.segment, 8,
+                             1);
+  }
+  std::vector<trials::SineBand> bands;
+  bands.reserve(options.amplitudes.size());
+  for (const double amplitude : options.amplitudes) {
+    bands.push_back({trials::radians(amplitude), trials::spaced(options.from, options.to, options.count)});
+  }
+  return trials::stepped_sines(bands);
+}
+
+void print(const std::vector<trials::ChannelSweep>& sweeps) {
+  for (const trials::ChannelSweep& sweep : sweeps) {
+    const std::string amplitude =
+        sweep.amplitude > 0.0 ? fmt::format("{:.3g} deg", trials::degrees(sweep.amplitude)) : std::string("broadband");
+    std::cout << fmt::format("{} at {}: {} frequencies from {:.3g} to {:.3g} Hz", sweep.channel, amplitude,
+                             sweep.response.size(), sweep.response.front().frequency, sweep.response.back().frequency);
+    if (sweep.notch) {
+      std::cout << fmt::format(", notch {:.2f} Hz, {:.1f} dB under its upper shoulder", sweep.notch->frequency,
+                               sweep.notch->depth);
+    }
+    if (sweep.peak) {
+      std::cout << fmt::format(", peak {:.2f} Hz, {:+.1f} dB", sweep.peak->frequency, sweep.peak->gain);
+    }
+    std::cout << '\n';
+  }
+}
+
+void run_sweep(SweepOptions& options) {
+  options.goal.axis = options.trial.axis;
+  options.goal.moment_arm = options.moment_arm > 0.0 ? options.moment_arm : 1.0;
+  const Record record = record_of_trial(options.trial, [&] {
+    Record run = simulate_command(options.trial, command_of(options));
+    if (options.moment_arm == 0.0) {
+      options.goal.moment_arm = moment_arm_of_trial(options.trial);
+    }
+    return run;
+  });
+  const std::vector<trials::ChannelSweep> sweeps = trials::analyse_sweep(record, options.goal);
+  draw_if_wanted(options.trial, [&] { return trials::bode_chart(fmt::format("Sweep of {}", record.name), sweeps); });
+  if (options.trial.json) {
+    std::cout << trials::to_json(sweeps).dump(2) << '\n';
+  } else {
+    print(sweeps);
+  }
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& program) {
+  const auto options = std::make_shared<SweepOptions>();
+  CLI::App* command = program.add_subcommand("sweep", "Frequency response of piston and engine to the command");
+  add_trial_options(*command, options->trial);
+  command
+      ->add_option("--profile", options->profile,
+                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), sines, or multisine")
+      ->check(CLI::IsMember({"green-run", "sines", "multisine"}))
+      ->capture_default_str();
+  command->add_option("--amplitudes", options->amplitudes, "of sines, one sweep each; of a multisine, its peak [deg]")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--from", options->from, "lowest frequency of sines and multisine [Hz]")
+      ->check(CLI::Range(0.01, 200.0))
+      ->capture_default_str();
+  command->add_option("--to", options->to, "highest frequency of sines and multisine [Hz]")
+      ->check(CLI::Range(0.01, 200.0))
+      ->capture_default_str();
+  command->add_option("--count", options->count, "frequencies of a sweep by sines")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  command->add_option("--lowest", options->goal.lowest, "look for notch and peak from here [Hz]")->capture_default_str();
+  command->add_option("--highest", options->goal.highest, "look for notch and peak up to here [Hz]")->capture_default_str();
+  command->add_option("--segment", options->goal.segment, "of a broadband record's analysis [s]")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_option("--moment-arm", options->moment_arm,
+                      "gain of the piston is over command times this [m]; left out: the model's, or 1 for a record");
+  command->footer(
+      "Example: hotfire sweep --model lab.toml --profile sines --amplitudes 0.05,0.1,0.2,0.4 --from 4 --to 13 --picture "
+      "bode.svg\n"
+      "A record is analysed sine by sine where its command is a stepped sine, by Welch's method otherwise.");
+  command->callback([options] { run_sweep(*options); });
+}
+
+}  // namespace hotfire

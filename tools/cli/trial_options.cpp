@@ -1,0 +1,53 @@
+#include "tools/cli/trial_options.hpp"
+
+#include "tools/files/error.hpp"
+#include "tools/simulate/simulate.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
+#include "tools/trials/pictures.hpp"
+#include "tools/trials/profiles.hpp"
+#include "tools/trials/sweep.hpp"
+
+namespace hotfire {
+
+void add_trial_options(CLI::App& command, TrialOptions& options) {
+  command.add_option("--model", options.model, "run the test on this model (.toml)");
+  command.add_option("--record", options.record, "analyse this record (.csv) instead of running a model");
+  command.add_option("--axis", options.axis, "axis of a record or model of several: pitch, yaw2 ...; its channels end so");
+  command.add_option("--output", options.output, "write the record of the test (.csv)");
+  command.add_option("--picture", options.picture, "draw the result (.svg)");
+  command.add_flag("--json", options.json, "print the result as JSON");
+}
+
+Record record_of_trial(const TrialOptions& options, const std::function<Record()>& run) {
+  if (options.model.empty() == options.record.empty()) {
+    throw UsageError("give either --model, to run the test on it, or --record, to analyse a test that was recorded");
+  }
+  Record record = options.model.empty() ? load_record(options.record) : run();
+  if (!options.output.empty()) {
+    write_record(record, options.output);
+  }
+  return record;
+}
+
+Record simulate_command(const TrialOptions& options, std::vector<double> command) {
+  const bool several = is_vehicle(options.model);
+  if (several && options.axis.empty()) {
+    throw UsageError(
+        "the model has several axes; --axis says which one is commanded, pitch or yaw, pitch1 of several engines");
+  }
+  const Record inputs = trials::command_record(std::move(command), trials::channel_of("command", options.axis));
+  return several ? simulate(load_vehicle(options.model), inputs) : simulate(load_model(options.model), inputs);
+}
+
+double moment_arm_of_trial(const TrialOptions& options) {
+  return is_vehicle(options.model) ? moment_arm_of(load_vehicle(options.model), options.axis)
+                                   : moment_arm_of(load_model(options.model));
+}
+
+void draw_if_wanted(const TrialOptions& options, const std::function<analysis::Chart()>& draw) {
+  if (!options.picture.empty()) {
+    trials::write_picture(draw(), options.picture);
+  }
+}
+
+}  // namespace hotfire

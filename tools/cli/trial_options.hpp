@@ -1,0 +1,39 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tools/analysis/chart.hpp"
+#include "tools/files/record.hpp"
+
+namespace hotfire {
+
+/// What every test on a model, or the analysis of a recorded one, can be told.
+struct TrialOptions {
+  std::string model;
+  std::string record;
+  std::string axis;
+  std::string output;
+  std::string picture;
+  bool json = false;
+};
+
+void add_trial_options(CLI::App& command, TrialOptions& options);
+
+/// The record to analyse: the one that is given, or what `run` makes of the model that is given. It is written where it is
+/// wanted. Throws UsageError unless exactly one of the two is given.
+Record record_of_trial(const TrialOptions& options, const std::function<Record()>& run);
+
+/// Runs the model of the options, of one axis or several, on a command to its axis. Throws UsageError for a model of several
+/// axes and none that is named.
+Record simulate_command(const TrialOptions& options, std::vector<double> command);
+
+/// The moment arm of the model's axis [m].
+double moment_arm_of_trial(const TrialOptions& options);
+
+/// Writes the picture if one is wanted; `draw` is called only then.
+void draw_if_wanted(const TrialOptions& options, const std::function<analysis::Chart()>& draw);
+
+}  // namespace hotfire

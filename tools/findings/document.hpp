@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/findings/finding.hpp"
+
+namespace hotfire::findings {
+
+/// A finding and what it came to.
+struct Row {
+  const Finding* finding = nullptr;
+  Outcome outcome = {};
+};
+
+/// The page docs/findings.md.
+std::string markdown(const std::vector<Row>& rows);
+
+/// File name of a finding's picture: "F1.svg".
+std::string picture_name(const Finding& finding);
+
+/// "9.51 Hz", four digits.
+std::string figure_text(double value, const std::string& unit);
+
+}  // namespace hotfire::findings

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <type_traits>
+#include <vector>
+
+#include "model/keys.hpp"
+#include "tools/files/model_file.hpp"
+#include "tools/trials/sweep.hpp"
+
+namespace hotfire::findings {
+
+/// The parameters of a set of one hydraulic axis. Throws FileError for any other topology.
+SimplexParameters& axis_of(ModelFile& model);
+
+/// Switches effect E of an axis on or off, and returns nothing if the axis does not know it.
+template <class E, class Parameters>
+void set_active(Parameters& parameters, bool active) {
+  model::visit_effects(parameters, [&]<class Own>(std::size_t index, auto&) {
+    if constexpr (std::is_same_v<Own, E>) {
+      parameters.effects.active[index] = active;
+    }
+  });
+}
+
+/// The parameters of effect E.
+template <class E, class Parameters>
+typename E::template Params<double>& effect_of(Parameters& parameters) {
+  typename E::template Params<double>* found = nullptr;
+  model::visit_effects(parameters, [&]<class Own>(std::size_t, auto& values) {
+    if constexpr (std::is_same_v<Own, E>) {
+      found = &values;
+    }
+  });
+  return *found;
+}
+
+/// The model without any effect: the declared linear parts, saturation and the root of the flow law.
+ModelFile without_effects(ModelFile model);
+
+/// Frequency of the piston's zeros and of the engine on a locked actuator, sqrt((K_n + K_T R^2) / J) / 2 pi [SD eq. 2, 10].
+double load_frequency(const SimplexParameters& axis);
+
+/// Runs stepped sines on a model and analyses them.
+std::vector<trials::ChannelSweep> swept(const ModelFile& model, const std::vector<double>& command, double lowest,
+                                        double highest);
+
+/// The Green Run profile on a model: the responses of piston and engine, both amplitudes joined.
+struct GreenRun {
+  trials::ChannelSweep piston;
+  trials::ChannelSweep engine;
+};
+GreenRun green_run(const ModelFile& model);
+
+/// The point of a response that is nearest to a frequency.
+const analysis::ResponsePoint& nearest(const trials::ChannelSweep& sweep, double frequency);
+
+}  // namespace hotfire::findings

@@ -1,0 +1,256 @@
+#include "tools/structure/vehicle_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "tools/files/key_groups.hpp"
+#include "tools/files/model_group.hpp"
+#include "tools/files/suggestion.hpp"
+#include "tools/structure/mode_table.hpp"
+
+namespace hotfire {
+
+namespace {
+
+constexpr std::string_view kTaos = model::Taos<double>::topology;
+constexpr std::string_view kMasv = model::Masv<double>::topology;
+
+/// One axis of a vehicle as the layout of keys wants it.
+using VehicleAxis = model::Simplex<double, model::VehicleEffects>;
+
+/// The tables that may stand for an axis, from general to particular: pitch, then pitch2.
+std::vector<std::string> tables_of_axis(int axis, int engines) {
+  std::vector<std::string> names{axis % 2 == 0 ? "pitch" : "yaw"};
+  if (engines > 1) {
+    names.push_back(fmt::format("{}{}", names.front(), axis / 2 + 1));
+  }
+  return names;
+}
+
+std::vector<std::string> tables_of_all_axes(int engines) {
+  std::vector<std::string> names;
+  for (int axis = 0; axis < 2 * engines; ++axis) {
+    for (const std::string& name : tables_of_axis(axis, engines)) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) {
+        names.push_back(name);
+      }
+    }
+  }
+  return names;
+}
+
+/// Reads the tables of one vehicle file, step by step.
+template <class Plant>
+class Reader {
+ public:
+  Reader(const TomlSource& source, std::filesystem::path folder)
+      : source_(source), folder_(std::move(folder)), axis_tables_(tables_of_all_axes(Plant::kEngines)) {}
+
+  typename Plant::Parameters read() {
+    refuse_unknown_keys(source_, source_.root(), "",
+                        {"schema", "name", "topology", "servovalve", "actuator", "structure", "engine", "effects", "attach",
+                         "gimbal", "modes"});
+    for (int axis = 0; axis < Plant::kAxes; ++axis) {
+      read_axis(axis);
+    }
+    read_attach_points();
+    read_gimbals();
+    read_modes();
+    return parameters_;
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  const toml::table* table_at(const toml::table& parent, std::string_view name, const std::string& key) const {
+    const toml::node* node = parent.get(name);
+    return node != nullptr ? &source_.table(*node, key) : nullptr;
+  }
+
+  Words axis_words() const { return {axis_tables_.begin(), axis_tables_.end()}; }
+
+  /// Reads a part's own table, then those of its axis within it.
+  void read_part(const KeyGroup& part, int axis) {
+    const toml::table* own = table_at(source_.root(), part.name, std::string{part.name});
+    if (own == nullptr) {
+      return;
+    }
+    const std::string prefix = fmt::format("{}.", part.name);
+    read_group(source_, *own, part, prefix, axis_words());
+    for (const std::string& name : tables_of_axis(axis, Plant::kEngines)) {
+      if (const toml::table* particular = table_at(*own, name, prefix + name)) {
+        read_group(source_, *particular, part, prefix + name + ".");
+      }
+    }
+  }
+
+  void read_axis(int axis) {
+    const ModelLayout layout = layout_of_plant<VehicleAxis>(parameters_.axes[at(axis)]);
+    for (const KeyGroup& part : layout.parts) {
+      read_part(part, axis);
+    }
+    const toml::table* effects = table_at(source_.root(), "effects", "effects");
+    if (effects == nullptr) {
+      return;
+    }
+    refuse_unknown_keys(source_, *effects, "effects.", names_of(layout.effects));
+    for (const KeyGroup& effect : layout.effects) {
+      const std::string key = fmt::format("effects.{}", effect.name);
+      if (const toml::table* own = table_at(*effects, effect.name, key)) {
+        read_group(source_, *own, effect, key + ".");
+        *effect.active = true;
+      }
+    }
+  }
+
+  void read_attach_points() {
+    const toml::table* attach = table_at(source_.root(), "attach", "attach");
+    if (attach != nullptr) {
+      refuse_unknown_keys(source_, *attach, "attach.", axis_words());
+      for (int axis = 0; axis < Plant::kAxes; ++axis) {
+        const KeyGroup group = part_group(parameters_.attach[at(axis)]);
+        for (const std::string& name : tables_of_axis(axis, Plant::kEngines)) {
+          if (const toml::table* own = table_at(*attach, name, "attach." + name)) {
+            read_group(source_, *own, group, fmt::format("attach.{}.", name));
+          }
+        }
+      }
+    }
+    for (int engine = 0; engine < Plant::kEngines; ++engine) {
+      const std::string_view broken =
+          model::broken_relation(parameters_.attach[at(2 * engine)], parameters_.attach[at(2 * engine + 1)]);
+      if (!broken.empty()) {
+        const std::string key =
+            Plant::kEngines == 1 ? std::string("attach") : fmt::format("attach of engine {}", engine + 1);
+        source_.refuse_missing(attach != nullptr ? *attach : source_.root(), key, broken);
+      }
+    }
+  }
+
+  void read_gimbals() {
+    const toml::table* table = table_at(source_.root(), "gimbal", "gimbal");
+    if (table == nullptr) {
+      return;
+    }
+    model::GimbalParameters<double> gimbal;
+    read_group(source_, *table, part_group(gimbal.bearing), "gimbal.", {"friction", "vibration", "stiffness"});
+    if (const toml::table* friction = table_at(*table, "friction", "gimbal.friction")) {
+      read_group(source_, *friction, part_group(gimbal.friction), "gimbal.friction.");
+    }
+    if (const toml::table* vibration = table_at(*table, "vibration", "gimbal.vibration")) {
+      read_group(source_, *vibration, part_group(gimbal.vibration), "gimbal.vibration.");
+    }
+    const toml::node* stiffness = table->get("stiffness");
+    if (stiffness != nullptr) {
+      gimbal.compliant = true;
+      read_stiffness(*stiffness, gimbal.stiffness);
+    }
+    if (const std::string_view broken = model::broken_relation(gimbal); !broken.empty()) {
+      if (broken.find("matrix") != std::string_view::npos) {
+        source_.refuse(*stiffness, "gimbal.stiffness", broken);
+      }
+      source_.refuse_missing(*table, "gimbal", broken);
+    }
+    parameters_.gimbals.fill(gimbal);
+  }
+
+  void read_stiffness(const toml::node& node, Eigen::Matrix<double, 6, 6>& matrix) const {
+    constexpr std::size_t kSize = 6;
+    const toml::array* rows = node.as_array();
+    if (rows == nullptr || rows->size() != kSize) {
+      source_.refuse(node, "gimbal.stiffness", "must be an array of six rows: forces x, y, z [N], then moments [N.m]");
+    }
+    for (std::size_t row = 0; row < kSize; ++row) {
+      const toml::array* cells = (*rows)[row].as_array();
+      const std::string key = fmt::format("gimbal.stiffness[{}]", row);
+      if (cells == nullptr || cells->size() != kSize) {
+        source_.refuse((*rows)[row], key, "must have six numbers: per translation x, y, z [m], then per rotation [rad]");
+      }
+      for (std::size_t column = 0; column < kSize; ++column) {
+        // Units differ over the matrix: bare numbers, in SI.
+        matrix(static_cast<int>(row), static_cast<int>(column)) =
+            source_.number((*cells)[column], fmt::format("{}[{}]", key, column), "1");
+      }
+    }
+  }
+
+  void read_modes() {
+    const toml::table* table = table_at(source_.root(), "modes", "modes");
+    if (table == nullptr) {
+      return;
+    }
+    refuse_unknown_keys(source_, *table, "modes.", {"table"});
+    const toml::node* node = table->get("table");
+    if (node == nullptr) {
+      source_.refuse_missing(*table, "modes.table", "missing; the file name of a mode table, beside this file");
+    }
+    const ModeSet modes = load_modes(folder_ / source_.text(*node, "modes.table"));
+    if (modes.engines != Plant::kEngines) {
+      source_.refuse(*node, "modes.table",
+                     fmt::format("is for {} engines; allowed: {}, as topology \"{}\" has", modes.engines, Plant::kEngines,
+                                 Plant::topology));
+    }
+    constexpr int kRoom = Plant::Modes::kCapacity;
+    if (modes.modes() > kRoom) {
+      source_.refuse(
+          *node, "modes.table",
+          fmt::format("has {} modes; allowed: at most {}: 'hotfire reduce' keeps those that matter", modes.modes(), kRoom));
+    }
+    parameters_.modes.modes = modes.modes();
+    for (int k = 0; k < modes.modes(); ++k) {
+      parameters_.modes.frequency[at(k)] = modes.frequency(k);
+      parameters_.modes.damping_ratio[at(k)] = modes.damping_ratio(k);
+      parameters_.modes.shape.col(k) = modes.shape.col(k);
+    }
+    parameters_.modes.residual = modes.residual;
+  }
+
+  const TomlSource& source_;
+  std::filesystem::path folder_;
+  std::vector<std::string> axis_tables_;
+  typename Plant::Parameters parameters_{};
+};
+
+std::string topology_of(const TomlSource& source) {
+  const toml::node* node = source.root().get("topology");
+  return node != nullptr ? source.text(*node, "topology") : std::string{};
+}
+
+}  // namespace
+
+bool is_vehicle(const std::filesystem::path& path) {
+  const std::string topology = topology_of(TomlSource(path));
+  return topology == kTaos || topology == kMasv;
+}
+
+std::vector<std::string> axis_names(int engines) {
+  std::vector<std::string> names;
+  names.reserve(2 * static_cast<std::size_t>(engines));
+  for (int axis = 0; axis < 2 * engines; ++axis) {
+    names.push_back(tables_of_axis(axis, engines).back());
+  }
+  return names;
+}
+
+VehicleFile load_vehicle(const std::filesystem::path& path) {
+  const TomlSource source(path);
+  source.require_schema();
+  const std::string topology = topology_of(source);
+  VehicleFile vehicle{path, path.stem().string(), {}};
+  if (const toml::node* name = source.root().get("name")) {
+    vehicle.name = source.text(*name, "name");
+  }
+  if (topology == kTaos) {
+    vehicle.parameters = Reader<model::Taos<double>>(source, path.parent_path()).read();
+  } else if (topology == kMasv) {
+    vehicle.parameters = Reader<model::Masv<double>>(source, path.parent_path()).read();
+  } else {
+    source.refuse_missing(source.root(), "topology",
+                          fmt::format("\"{}\" is not one of several axes; allowed: \"{}\", \"{}\"", topology, kTaos, kMasv));
+  }
+  return vehicle;
+}
+
+}  // namespace hotfire
