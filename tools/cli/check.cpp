@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/schedule/frame_time.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/files/can_schedule.hpp"
 #include "tools/files/candump.hpp"
@@ -60,7 +61,7 @@ Json describe_schedule(const std::filesystem::path& path) {
   return {{"kind", "schedule"},
           {"bit_rate", schedule.bit_rate},
           {"load", schedule.load()},
-          {"largest_load", kLargestBusLoad},
+          {"largest_load", hal::kLargestBusLoad},
           {"frames", frames}};
 }
 
@@ -95,7 +96,7 @@ std::string line_of(const Json& result) {
   if (result["kind"] == "schedule") {
     return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",
                        result["frames"].size(), 100.0 * result["load"].get<double>(),
-                       1e-6 * result["bit_rate"].get<double>(), 100.0 * kLargestBusLoad);
+                       1e-6 * result["bit_rate"].get<double>(), 100.0 * hal::kLargestBusLoad);
   }
   std::vector<std::string> channels;
   for (const Json& channel : result["channels"]) {
