@@ -133,6 +133,9 @@ void add_own(Json& json, const Session& session) {
   json.add("lost_readings", result.lost_readings);
   json.add("missed_syncs", result.missed_syncs);
   json.add("actuators", static_cast<std::uint64_t>(session.options.actuators));
+  if (session.bus) {
+    add_to(json, *session.bus);
+  }
   add_recording(json, session);
   add_durations(json, "wake_up_us", result.account.latency());
   add_durations(json, "step_us", result.account.step_time());
@@ -157,7 +160,7 @@ std::string json_report(const Session& session) {
   json.add("rt_test_version:", "hotfire " HOTFIRE_VERSION);
   json.add("start_time", rfc_2822(session.started));
   json.add("end_time", rfc_2822(session.ended));
-  json.add("return_code", judge(session).good ? 0 : 4);
+  json.add("return_code", static_cast<int>(judge(session).status));
   add_system(json);
   json.add("num_threads", 1);
   json.add("resolution_in_ns", 0);

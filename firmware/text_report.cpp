@@ -105,17 +105,19 @@ std::string text_report(const Session& session) {
   const Verdict verdict = judge(session);
   const double period_us = us(session.options.loop.period_ns);
   const std::size_t actuators = session.options.actuators;
-  std::string report = text("%s%s on bus sim, period %.0f us, %d %s a cycle, after an overrun: %s\n",
-                            actuators == 1 ? "" : text("%zu times ", actuators).c_str(), session.topology.data(), period_us,
-                            session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
-                            kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
+  std::string report =
+      text("%s%s on bus %s, period %.0f us, %d %s a cycle, after an overrun: %s\n",
+           actuators == 1 ? "" : text("%zu times ", actuators).c_str(), session.topology.data(), session.options.bus.c_str(),
+           period_us, session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
+           kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
   report += scheduling(session);
   report += text("  cycles        %llu at %.4f Hz, %s; before them %llu of warm-up, %llu of these overran\n",
                  whole(account.cycles()), account.rate(), kEndings[static_cast<std::size_t>(result.ending)].data(),
                  whole(result.warm_up_cycles), whole(result.warm_up_overruns));
   report += overruns(account);
-  report += text("  left out      %llu cycles skipped, %llu commands held, %llu readings lost\n", whole(result.skipped),
-                 whole(result.held_commands), whole(result.lost_readings));
+  report += text("  left out      %llu cycles skipped, %llu %s held, %llu %s lost\n", whole(result.skipped),
+                 whole(result.held_commands), session.input.data(), whole(result.lost_readings), session.output.data());
+  report += session.bus ? text_of(*session.bus) : "";
   if (account.cycles() > 0) {
     report += quantiles("wake-up", account.latency()) + quantiles("step", account.step_time()) + worst_cycle(account);
   }
