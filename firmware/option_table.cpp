@@ -82,6 +82,8 @@ constexpr OptionLine kLines[] = {
      "`timing` runs the reference axis with every effect active",
      [](const std::string& value, Options& o) { return o.image = value, std::string(); }},
     {"--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface, can0 say; default sim", read_bus},
+    {"--gpio", "CHIP", "lab: the chip with its lines, by path, name or label",
+     [](const std::string& value, Options& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }},
     {"--layout", "L",
      "frames on a CAN bus: classic (two actuators at most) or fd; default classic if there is\n"
      "room in it",

@@ -16,6 +16,7 @@ std::string help() {
       "  hotfire timing --cycles 60000 --max-latency-us 100 --json\n"
       "  hotfire plant --model simplex.toml --record run.hfr\n"
       "  hotfire plant --model simplex.toml --bus can0 --sync can --actuators 8\n"
+      "  hotfire lab --profile sweep.toml --bus can0 --gpio rig --record run.hfr\n"
       "  hotfire-rt controller --bus can0 --actuators 8 --cycles 10000\n"
       "  hotfire-rt plant --image plant.image --period-us 500\n"
       "  hotfire-rt replay run.hfr\n\n";
@@ -28,12 +29,14 @@ std::string help() {
   }
   return result +
          "  --model FILE           with `hotfire` only: the model file, checked there and handed over as an image\n"
+         "  --profile FILE         with `hotfire lab` only: the profile (docs/lab.md)\n"
          "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
          "  --help, --version\n\n"
          "Ends on SIGINT and SIGTERM with its result. Exit status: 0 good, 2 wrong use, 3 the bus cannot be used or was "
          "lost,\n"
-         "4 a limit is not met, stopped by an overrun, or no real time where it is required, 6 the image is refused or the\n"
-         "plant's values are not finite.\n";
+         "4 a limit is not met, stopped by an overrun, or no real time where it is required, 5 a lab's interlock, 6 the "
+         "image\n"
+         "is refused or the plant's values are not finite.\n";
 }
 
 ParsedOptions wrong_use(const std::string& message) {
@@ -95,6 +98,10 @@ bool read_mode(const std::string& word, Options& options) {
     options.max_overruns = 0;
   } else if (word == "controller") {
     options.mode = Mode::controller;
+  } else if (word == "lab") {
+    options.mode = Mode::lab;
+    // Commands that were not sent in time are not sent at all.
+    options.loop.policy = OverrunPolicy::skip;
   }
   return word == "plant" || options.mode != Mode::plant;
 }
@@ -107,6 +114,12 @@ std::string conflict_in(const Options& options) {
   }
   if (options.mode == Mode::timing && options.on_can()) {
     return "timing needs no bus: leave --bus out";
+  }
+  if (options.mode == Mode::lab && (options.image.empty() || !options.on_can() || options.gpio.empty())) {
+    return "lab needs a profile, a bus and lines: hotfire lab --profile P.toml --bus can0 --gpio CHIP";
+  }
+  if (options.mode == Mode::lab && (options.pace != PaceKind::clock || options.loop.policy != OverrunPolicy::skip)) {
+    return "lab keeps its own time and leaves out what is overdue: leave --sync and --policy out";
   }
   if (options.mode == Mode::controller && !options.on_can()) {
     return "controller needs a bus with a plant on it: --bus can0";
@@ -146,7 +159,7 @@ ParsedOptions parse_options(const std::vector<std::string>& arguments) {
   }
   Options options;
   if (arguments.size() < 2 || !read_mode(arguments[1], options)) {
-    return wrong_use("the first argument is plant, timing, controller or replay");
+    return wrong_use("the first argument is plant, timing, controller, lab or replay");
   }
   for (std::size_t i = 2; i < arguments.size(); ++i) {
     const std::string error = apply(arguments, i, options);

@@ -11,8 +11,9 @@
 namespace hotfire::firmware {
 
 /// `plant` answers a bus until asked to stop. `timing` runs a number of cycles to judge the machine. `controller` commands a
-/// plant on a CAN bus. `replay` feeds the commands of a recording to its model, offline.
-enum class Mode : std::uint8_t { plant, timing, controller, replay };
+/// plant on a CAN bus. `lab` drives real actuators through a profile. `replay` feeds the commands of a recording to its
+/// model, offline.
+enum class Mode : std::uint8_t { plant, timing, controller, lab, replay };
 
 /// What gives a plant its cycles: the machine's clock, syncs on the clock that stand in for those of a rig, or SYNC frames.
 enum class PaceKind : std::uint8_t { clock, sim, can };
@@ -21,6 +22,7 @@ inline constexpr std::array<std::string_view, 3> kPaceKinds{"clock", "sim", "can
 struct Options {
   Mode mode = Mode::plant;
   std::string image;        ///< path of a plant image; empty: the reference plant with every effect (timing only)
+  std::string gpio;         ///< chip of a lab: path, name or label
   std::string bus = "sim";  ///< or a CAN interface
   std::optional<can::Layout> layout;
   double command_per_current = 10.0;  ///< [rad/A]

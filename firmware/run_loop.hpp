@@ -37,9 +37,10 @@ struct Usage {
 int finish(const Session& session);
 
 /// Runs a loop that is set up but for real time, and reports. `complete` is called when it has ended, for what only the
-/// caller knows.
+/// caller knows. `ended`: becomes true when the loop is to end, else when a signal has asked for it.
 template <class Loop>
-int run_loop(Loop& loop, Session& session, RecordingSession* recording, const std::function<void(Session&)>& complete) {
+int run_loop(Loop& loop, Session& session, RecordingSession* recording, const std::function<void(Session&)>& complete,
+             const std::atomic<bool>& ended = stop_asked) {
   const Options& options = session.options;
   Watchdog watchdog(hal::ServiceManager::from_environment(), loop.heartbeat());
   granted(watchdog.start(), session.failures);
@@ -53,7 +54,7 @@ int run_loop(Loop& loop, Session& session, RecordingSession* recording, const st
   announce(options);
   session.started = std::time(nullptr);
   Usage warm = Usage::now();
-  loop.run(stop_asked, [&]() noexcept { warm = Usage::now(); });
+  loop.run(ended, [&]() noexcept { warm = Usage::now(); });
   const Usage end = Usage::now();
   watchdog.stop();
   session.ended = std::time(nullptr);

@@ -11,6 +11,16 @@ Verdict judge(const Session& session) {
     return {false, std::string(kEndings[static_cast<std::size_t>(result.ending)]),
             result.ending == Ending::not_finite ? kBadData : kTiming};
   }
+  if (session.lab && !session.lab->completed) {
+    if (session.lab->first == Fault{}) {
+      return {false, "asked to stop before the profile had ended", kBadVerdict};
+    }
+    const FaultText& fault = text_of(session.lab->first);
+    return {false,
+            text("interlock: fault %d, %s: %s; see docs/faults.md", static_cast<int>(fault.fault), fault.name.data(),
+                 fault.meaning.data()),
+            kInterlock};
+  }
   if (session.bus && session.bus->state >= hal::CanState::bus_off) {
     const char* const state = hal::kCanStates[static_cast<std::size_t>(session.bus->state)];
     return {false, session.bus->interface + " is " + state + ": mend the bus and start anew", kHardware};
@@ -52,6 +62,9 @@ Verdict judge(const Session& session) {
 }
 
 int run_session(const Options& options) {
+  if (options.mode == Mode::lab) {
+    return run_lab(options);
+  }
   return options.mode == Mode::controller ? run_controller(options) : run_plant(options);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/bus_account.hpp"
+#include "firmware/interlock.hpp"
 #include "firmware/loop.hpp"
 #include "firmware/options.hpp"
 #include "firmware/recorder.hpp"
@@ -15,6 +16,15 @@
 #include "hal/realtime.hpp"
 
 namespace hotfire::firmware {
+
+/// What became of a lab's profile.
+struct LabAccount {
+  RigState state = RigState::safe;  ///< when the loop ended
+  bool completed = false;           ///< the profile was run to its end
+  std::uint64_t armings = 0;
+  std::array<std::uint64_t, kFaults.size()> times_first{};  ///< how often a fault was the first that ended driving
+  Fault first = Fault{};                                    ///< of those since the last arming; 0: none
+};
 
 /// All that is known when a loop has ended.
 struct Session {
@@ -30,7 +40,8 @@ struct Session {
   std::optional<std::uint64_t> allocations{};  ///< of the loop after warm-up, if a guard is linked
   const RecorderAccount* recording = nullptr;  ///< null: nothing was recorded
   std::optional<BusAccount> bus{};             ///< none: there is no wire
-  std::string_view input = "commands";         ///< what the loop takes in every cycle, and what it sends
+  std::optional<LabAccount> lab{};
+  std::string_view input = "commands";  ///< what the loop takes in every cycle, and what it sends
   std::string_view output = "readings";
   hal::CpuPlace place{};
   std::time_t started = 0;
@@ -50,9 +61,10 @@ std::string text_report(const Session& session);
 std::string json_report(const Session& session);
 
 /// Each sets up, runs its loop, prints the report to standard output and what the machine refused to standard error, and
-/// returns the exit status: the plant, a controller of one on a CAN bus, or what the options say.
+/// returns the exit status: the plant, a controller of one on a CAN bus, a lab, or what the options say.
 int run_plant(const Options& options);
 int run_controller(const Options& options);
+int run_lab(const Options& options);
 int run_session(const Options& options);
 
 }  // namespace hotfire::firmware

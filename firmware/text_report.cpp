@@ -97,6 +97,23 @@ std::string recording(const Session& session) {
               account.failure.empty() ? "" : "; ended early: ", account.failure.c_str());
 }
 
+std::string lab(const Session& session) {
+  if (!session.lab) {
+    return {};
+  }
+  const LabAccount& account = *session.lab;
+  std::string result =
+      text("  interlock     %s, armed %llu times, profile %s\n", kRigStates[static_cast<std::size_t>(account.state)].data(),
+           whole(account.armings), account.completed ? "run to its end" : "NOT run to its end");
+  for (const FaultText& fault : kFaults) {
+    const std::uint64_t times = account.times_first[static_cast<std::size_t>(fault.fault) - 1];
+    result += times == 0 ? ""
+                         : text("  fault %-8d%s: ended driving %llu times\n", static_cast<int>(fault.fault),
+                                fault.name.data(), whole(times));
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string text_report(const Session& session) {
@@ -117,6 +134,7 @@ std::string text_report(const Session& session) {
   report += overruns(account);
   report += text("  left out      %llu cycles skipped, %llu %s held, %llu %s lost\n", whole(result.skipped),
                  whole(result.held_commands), session.input.data(), whole(result.lost_readings), session.output.data());
+  report += lab(session);
   report += session.bus ? text_of(*session.bus) : "";
   if (account.cycles() > 0) {
     report += quantiles("wake-up", account.latency()) + quantiles("step", account.step_time()) + worst_cycle(account);

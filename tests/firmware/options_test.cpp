@@ -68,8 +68,8 @@ TEST(Options, WhatABusCannotDoIsRefused) {
 }
 
 TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
-  refused({}, "plant, timing, controller or replay");
-  refused({"fly"}, "plant, timing, controller or replay");
+  refused({}, "plant, timing, controller, lab or replay");
+  refused({"fly"}, "plant, timing, controller, lab or replay");
   refused({"plant"}, "hotfire plant --model");
   refused({"timing", "--perod-us", "500"}, "unknown argument --perod-us");
   refused({"timing", "--cycles"}, "--cycles needs a value");

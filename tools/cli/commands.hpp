@@ -11,6 +11,7 @@ void add_controller(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_doctor(CLI::App& program);
 void add_explain(CLI::App& program);
+void add_lab(CLI::App& program);
 void add_reduce(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);

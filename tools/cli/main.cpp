@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
   add_reduce(program);
   add_plant(program);
   add_controller(program);
+  add_lab(program);
   add_timing(program);
   add_replay(program);
   add_doctor(program);
