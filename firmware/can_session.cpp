@@ -6,6 +6,7 @@
 #include "firmware/status.hpp"
 #include "firmware/text.hpp"
 #include "hal/linux/can_bit_rates.hpp"
+#include "hal/linux/posix_clock.hpp"
 
 namespace hotfire::firmware {
 
@@ -43,6 +44,20 @@ std::optional<hal::Failure> CanSession::refuse_load() {
   return hal::Failure{text("%s at %.0f bit/s would be loaded by %.1f %% in the worst case; allowed: %.0f %%",
                            options_.bus.c_str(), rates.nominal, 100.0 * *load_, 100.0 * hal::kLargestBusLoad),
                       "a longer --period-us, a faster bus, or --layout fd; 'hotfire check' computes a schedule"};
+}
+
+void CanSession::leave() {
+  constexpr std::int64_t kFrameNs = 1'000'000;
+  constexpr int kMostFrames = 20;
+  const hal::PosixClock clock;
+  for (int i = 0; i < kMostFrames && socket_.anything_pending(); ++i) {
+    clock.sleep_until_ns(clock.now_ns() + kFrameNs);
+    socket_.receive(clock.now_ns());
+  }
+  if (!socket_.stop()) {
+    complain({"a frame is still before " + options_.bus + " and cannot be taken back",
+              "'ip link set " + options_.bus + " down'; the program may do that itself with CAP_NET_ADMIN"});
+  }
 }
 
 BusAccount CanSession::account() const {

@@ -20,6 +20,11 @@ class CanSession {
   /// Nothing has been sent then.
   int open();
 
+  /// Sees to it that nothing that was handed to the bus leaves after the program: a command that nobody has acknowledged
+  /// must not move anything when somebody does. A frame that is on its way is given the time it takes; what is left is taken
+  /// back with the interface.
+  void leave();
+
   hal::SocketCan& socket() noexcept { return socket_; }
 
   /// Its account so far, without messages.

@@ -29,8 +29,7 @@ int run_controller(const Options& options) {
     account.unsayable = bus.unsayable();
     account.lost_syncs = bus.lost_syncs();
     result.bus = account;
-    // A command that nobody has acknowledged must not move anything when somebody does.
-    can_session.socket().stop();
+    can_session.leave();
   };
   const auto run = [&]<class Pace>(Pace pace) {
     const auto loop =

@@ -37,20 +37,6 @@ RecordedPlant recorded(const Lab& lab, const std::string& image) {
   return plant;
 }
 
-/// Nothing that was handed to the bus leaves after the program. A frame that is on its way is given the time it takes.
-void leave_bus(hal::SocketCan& socket, const Clock& clock) {
-  constexpr std::int64_t kFrameNs = 1'000'000;
-  constexpr int kMostFrames = 20;
-  for (int i = 0; i < kMostFrames && socket.anything_pending(); ++i) {
-    clock.sleep_until_ns(clock.now_ns() + kFrameNs);
-    socket.receive(clock.now_ns());
-  }
-  if (!socket.stop()) {
-    std::fputs("hotfire-rt: a frame is still before the bus and cannot be taken back: take the interface down by hand\n",
-               stderr);
-  }
-}
-
 LabAccount account_of(const Lab& lab) {
   LabAccount account{lab.outputs().interlock.state, lab.completed(), lab.armings(), {}, lab.outputs().interlock.first};
   for (const FaultText& text : kFaults) {
@@ -111,7 +97,7 @@ int run_lab(const Options& given) {
   session.input = "readings";
   session.output = "commands";
   const auto complete = [&](Session& result) {
-    leave_bus(can_session.socket(), clock);
+    can_session.leave();
     result.lab = account_of(lab);
     result.bus = account_of(can_session, rig, layout, can::reading_messages(layout, options.actuators));
   };
