@@ -17,7 +17,7 @@ TEST_GROUP(ProfileFile) {
       "command_rate = 40\nposition_error = 0.02\nposition_error_time = 0.3\n[lines]\nemergency_stop = \"estop\"\n"
       "hydraulic_enable = \"hydraulic\"\narm = \"arm\"\nsupply = \"supply\"\nheartbeat = \"heartbeat\"\nfault = \"fault\"\n";
 
-  std::string lines(const std::string& profile) const { return load_profile(scratch.write("p.toml", head + profile)); }
+  std::string lines(const std::string& profile) const { return load_profile(scratch.write("p.toml", head + profile)).image; }
 
   void refused(const std::string& profile, std::initializer_list<const char*> parts) const {
     test::expect_message(refusal([&] { lines(profile); }), parts);
@@ -68,8 +68,11 @@ TEST(ProfileFile, PositionBeyondTheLimitsIsRefusedBeforeAnythingIsDriven) {
 }
 
 TEST(ProfileFile, TheProfileOfTheDocumentationIsGood) {
-  const std::string text = load_profile(HOTFIRE_LAB_PROFILE);
-  test::expect_message(text, {"topology lab\n", "segment.0.amplitude", "line.arm arm\n"});
+  CHECK(is_profile(HOTFIRE_LAB_PROFILE));
+  const LabProfile profile = load_profile(HOTFIRE_LAB_PROFILE);
+  // A sweep, five steps, nine sines and a table.
+  DOUBLES_EQUAL(60.0 + 10.0 + 3 * (20.0 + 10.0 + 5.0) + 3.0, profile.duration, 1e-9);
+  test::expect_message(profile.image, {"topology lab\n", "segment.0.amplitude", "line.arm arm\n"});
 }
 
 }  // namespace hotfire

@@ -15,6 +15,7 @@
 #include "tools/files/error.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/model_layout.hpp"
+#include "tools/files/profile_file.hpp"
 #include "tools/files/record.hpp"
 #include "tools/files/recording.hpp"
 
@@ -65,17 +66,26 @@ Json describe_schedule(const std::filesystem::path& path) {
           {"frames", frames}};
 }
 
+Json describe_profile(const std::filesystem::path& path) {
+  const LabProfile profile = load_profile(path);
+  return {{"kind", "profile"}, {"actuators", profile.actuators}, {"duration", profile.duration}};
+}
+
 Json describe(const std::filesystem::path& path) {
+  if (path.extension() == ".toml" && is_profile(path)) {
+    return describe_profile(path);
+  }
   if (path.extension() == ".toml") {
     return is_can_schedule(path) ? describe_schedule(path) : describe_model(path);
   }
   if (path.extension() == ".csv" || path.extension() == ".log" || is_recording(path)) {
     return describe_record(path);
   }
-  throw FileError(fmt::format(
-      "{}: what it is cannot be told from \"{}\"; allowed: .toml (a model or a CAN schedule), .csv (a record), .log "
-      "(a candump log), a recording of 'hotfire plant --record'",
-      path.string(), path.extension().string()));
+  throw FileError(
+      fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model, a profile or a CAN schedule), .csv "
+                  "(a record), .log "
+                  "(a candump log), a recording of 'hotfire plant --record'",
+                  path.string(), path.extension().string()));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -92,6 +102,10 @@ std::string line_of(const Json& result) {
                        result["name"].get<std::string>(), result["topology"].get<std::string>(),
                        joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].size(),
                        reference.empty() ? "" : ", left to their reference values: " + joined(reference));
+  }
+  if (result["kind"] == "profile") {
+    return fmt::format("profile of {} actuators, {:g} s long", result["actuators"].get<unsigned>(),
+                       result["duration"].get<double>());
   }
   if (result["kind"] == "schedule") {
     return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",
@@ -141,11 +155,11 @@ void add_check(CLI::App& program) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "check",
-      "Check model files and CAN schedules (.toml), records (.csv, candump .log) and recordings: what each is, or what is "
-      "wrong, where, and the mend");
-  command->add_option("FILE", options->files, "model files, CAN schedules and records")->required();
+  CLI::App* command = program.add_subcommand("check",
+                                             "Check model files, profiles and CAN schedules (.toml), records (.csv, candump "
+                                             ".log) and recordings: what each is, or what is "
+                                             "wrong, where, and the mend");
+  command->add_option("FILE", options->files, "model files, profiles, CAN schedules and records")->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");
   command->footer(
       "Example: hotfire check declared.toml steps.csv schedule.toml\nExit status: 0 all good, 6 any refused; all are "

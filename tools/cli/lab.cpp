@@ -22,7 +22,7 @@ void add_lab(CLI::App& program) {
       if (profile->empty()) {
         throw UsageError("--profile FILE is needed");
       }
-      arguments.insert(arguments.end(), {"--image", share_image(load_profile(*profile))});
+      arguments.insert(arguments.end(), {"--image", share_image(load_profile(*profile).image)});
     }
     become_realtime_program(arguments);
   });

@@ -68,7 +68,7 @@ class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : source_(path) {}
 
-  std::string image() {
+  LabProfile profile() {
     refuse_unknown_keys(source_, source_.root(), "", {"schema", "lab", "limits", "lines", "profile"});
     require_schema(source_);
     text_ = "schema 1\ntopology lab\n";
@@ -76,7 +76,7 @@ class Reader {
     read_limits();
     read_lines();
     read_profile();
-    return text_;
+    return {actuators_, duration_, text_};
   }
 
  private:
@@ -116,7 +116,8 @@ class Reader {
     known.push_back("actuators");
     refuse_unknown_keys(source_, lab, "lab.", known);
     const toml::node& actuators = needed(lab, "lab.", "actuators", "1 to 8");
-    line("actuators", std::to_string(count(actuators, "lab.actuators", 1, 8)));
+    actuators_ = static_cast<unsigned>(count(actuators, "lab.actuators", 1, 8));
+    line("actuators", std::to_string(actuators_));
     for (const Number& wanted : kLabNumbers) {
       const double value = number(lab, "lab.", wanted);
       line(wanted.key, exact(value));
@@ -173,6 +174,7 @@ class Reader {
                           stretch.lowest(), stretch.highest(), lowest_, highest_));
         }
         write(stretch, segments++);
+        duration_ += stretch.duration;
       }
     }
     if (segments > kMostSegments) {
@@ -295,6 +297,8 @@ class Reader {
   void line(std::string_view key, const std::string& value) { text_ += fmt::format("{} {}\n", key, value); }
 
   TomlSource source_;
+  unsigned actuators_ = 1;
+  double duration_ = 0.0;
   double piston_per_command_ = 0.0;
   double lowest_ = 0.0;
   double highest_ = 0.0;
@@ -303,6 +307,8 @@ class Reader {
 
 }  // namespace
 
-std::string load_profile(const std::filesystem::path& path) { return Reader(path).image(); }
+bool is_profile(const std::filesystem::path& path) { return TomlSource(path).root().contains("lab"); }
+
+LabProfile load_profile(const std::filesystem::path& path) { return Reader(path).profile(); }
 
 }  // namespace hotfire
