@@ -185,6 +185,12 @@ class PlayedBus {
 
   bool try_send_reading(const hal::Reading& reading) noexcept { return !is_off_ && bus_.try_send_reading(reading); }
 
+  void note_overrun() noexcept {
+    if constexpr (requires { bus_.note_overrun(); }) {
+      bus_.note_overrun();
+    }
+  }
+
  private:
   Bus& bus_;
   std::vector<CycleSpan> off_;

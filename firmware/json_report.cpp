@@ -113,6 +113,23 @@ void add_recording(Json& json, const Session& session) {
   json.close();
 }
 
+void add_lab(Json& json, const LabAccount& lab) {
+  json.open("interlock");
+  json.add("state", kRigStates[static_cast<std::size_t>(lab.state)]);
+  json.add("armings", lab.armings);
+  json.add("completed", lab.completed);
+  json.add("first_fault", static_cast<int>(lab.first));
+  json.open("ended_driving");
+  for (const FaultText& fault : kFaults) {
+    const std::uint64_t times = lab.times_first[static_cast<std::size_t>(fault.fault) - 1];
+    if (times > 0) {
+      json.add(fault.name, times);
+    }
+  }
+  json.close();
+  json.close();
+}
+
 void add_own(Json& json, const Session& session) {
   const LoopResult& result = session.result;
   const Verdict verdict = judge(session);
@@ -133,6 +150,12 @@ void add_own(Json& json, const Session& session) {
   json.add("lost_readings", result.lost_readings);
   json.add("missed_syncs", result.missed_syncs);
   json.add("actuators", static_cast<std::uint64_t>(session.options.actuators));
+  if (session.lab) {
+    add_lab(json, *session.lab);
+  }
+  if (session.bus) {
+    add_to(json, *session.bus);
+  }
   add_recording(json, session);
   add_durations(json, "wake_up_us", result.account.latency());
   add_durations(json, "step_us", result.account.step_time());
@@ -157,7 +180,7 @@ std::string json_report(const Session& session) {
   json.add("rt_test_version:", "hotfire " HOTFIRE_VERSION);
   json.add("start_time", rfc_2822(session.started));
   json.add("end_time", rfc_2822(session.ended));
-  json.add("return_code", judge(session).good ? 0 : 4);
+  json.add("return_code", static_cast<int>(judge(session).status));
   add_system(json);
   json.add("num_threads", 1);
   json.add("resolution_in_ns", 0);

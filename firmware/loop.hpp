@@ -72,8 +72,8 @@ struct NoRecorder {
 
 /// The real-time loop of a plant: at every cycle of its pace read the newest command, step the plant, write its reading,
 /// account for it. Nothing in it allocates, locks, throws or logs, and its only system calls are those of the pace and the
-/// bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and
-/// `actuators()`.
+/// bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and `actuators()`. A bus that has
+/// `note_overrun()` is told of every overrun after the cycle.
 ///
 /// It counts up a heartbeat every turn, also while it waits for a first cycle, which whoever watches over the process may
 /// look at from another thread.
@@ -149,11 +149,17 @@ class Loop {
     plant_.add_to(result_.hash);
     record(cycle, times, held, lost);
     times.accounted = clock_.now_ns();
+    const bool overran = result_.account.overran(times);
+    if constexpr (requires { bus_.note_overrun(); }) {
+      if (overran) {
+        bus_.note_overrun();
+      }
+    }
     if (warm_) {
       result_.account.add(cycle, times);
     } else {
       ++result_.warm_up_cycles;
-      result_.warm_up_overruns += result_.account.overran(times) ? 1 : 0;
+      result_.warm_up_overruns += overran ? 1 : 0;
     }
     return times;
   }

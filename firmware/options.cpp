@@ -1,144 +1,13 @@
 #include "firmware/options.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
-#include <iterator>
 
+#include "firmware/option_table.hpp"
 #include "firmware/status.hpp"
 #include "firmware/text.hpp"
 
 namespace hotfire::firmware {
 namespace {
-
-/// Reads a value into the options; returns what is allowed if it is not.
-using Reader = std::string (*)(const std::string& value, Options& options);
-
-struct OptionLine {
-  std::string_view name;
-  std::string_view value;  ///< empty: a flag
-  std::string_view meaning;
-  Reader read;
-};
-
-template <class Integer>
-std::string read_integer(const std::string& value, Integer lowest, Integer highest, Integer& result) {
-  Integer read{};
-  const char* const end = value.data() + value.size();
-  const auto [stop, error] = std::from_chars(value.data(), end, read);
-  if (error != std::errc{} || stop != end || read < lowest || read > highest) {
-    return "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
-  }
-  result = read;
-  return {};
-}
-
-std::string read_number(const std::string& value, double lowest, double highest, double& result) {
-  char* end = nullptr;
-  const double read = std::strtod(value.c_str(), &end);
-  if (value.empty() || *end != '\0' || !(read >= lowest && read <= highest)) {
-    return text("a number from %g to %g", lowest, highest);
-  }
-  result = read;
-  return {};
-}
-
-template <class Names, class Enumeration>
-std::string read_name(const std::string& value, const Names& names, Enumeration& result) {
-  const auto found = std::find(names.begin(), names.end(), value);
-  if (found == names.end()) {
-    std::string allowed;
-    for (const std::string_view name : names) {
-      allowed.append(allowed.empty() ? "" : ", ").append(name);
-    }
-    return allowed;
-  }
-  result = static_cast<Enumeration>(found - names.begin());
-  return {};
-}
-
-std::string read_period(const std::string& value, Options& options) {
-  std::int64_t period_us = 0;
-  std::string allowed = read_integer(value, kShortestPeriodNs / 1000, kLongestPeriodNs / 1000, period_us);
-  options.loop.period_ns = period_us * 1000;
-  return allowed;
-}
-
-std::string read_bus(const std::string& value, Options&) {
-  return value == "sim" ? "" : "sim (no other bus is in this build)";
-}
-
-std::string read_cpu(const std::string& value, Options& options) {
-  return read_integer(value, 0, 1023, options.cpu.emplace());
-}
-
-std::string read_max_latency(const std::string& value, Options& options) {
-  return read_number(value, 0.0, 1e9, options.max_latency_us.emplace());
-}
-
-std::string read_max_step(const std::string& value, Options& options) {
-  return read_number(value, 0.0, 1e9, options.max_step_us.emplace());
-}
-
-constexpr std::uint64_t kManyCycles = 1'000'000'000'000;
-
-constexpr OptionLine kOptionLines[] = {
-    {"--image", "FILE",
-     "plant image; `hotfire plant --model M.toml` makes it from a model file. Without it\n"
-     "`timing` runs the reference axis with every effect active",
-     [](const std::string& value, Options& o) { return o.image = value, std::string(); }},
-    {"--bus", "NAME", "bus to the controller: sim (commands from --command, no wire)", read_bus},
-    {"--period-us", "N", "period, 250 to 10000; default 1000. Longer than 500 is split into equal steps", read_period},
-    {"--cycles", "N", "end after N cycles, 0: when interrupted; default 0 for plant, 10000 for timing",
-     [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.cycles); }},
-    {"--warm-up", "N", "cycles before those, counted apart; default 100",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.warm_up_cycles);
-     }},
-    {"--policy", "P", "after an overrun: catch-up (default), skip or stop",
-     [](const std::string& value, Options& o) { return read_name(value, kOverrunPolicies, o.loop.policy); }},
-    {"--priority", "P", "SCHED_FIFO priority, 1 to 99; 0: an ordinary process; default 80",
-     [](const std::string& value, Options& o) { return read_integer(value, 0, 99, o.priority); }},
-    {"--cpu", "C", "run on this CPU only", read_cpu},
-    {"--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running",
-     [](const std::string&, Options& o) { return o.require_realtime = true, std::string(); }},
-    {"--max-latency-us", "X", "verdict: no wake-up later than this", read_max_latency},
-    {"--max-step-us", "X", "verdict: no step of the model longer than this", read_max_step},
-    {"--max-overruns", "N", "verdict: no more overruns than this; default 0 for timing, no limit for plant",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
-     }},
-    {"--actuators", "N", "plants of that model, 1 to 8, each with a command of its own; default 1",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
-     }},
-    {"--sync", "S", "what gives the cycles: clock (default), or sim (locked to simulated syncs)",
-     [](const std::string& value, Options& o) { return read_name(value, kPaceKinds, o.pace); }},
-    {"--max-missed-syncs", "N", "end after more than N in a row; default 10",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
-     }},
-    {"--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`",
-     [](const std::string& value, Options& o) { return o.recording = value, std::string(); }},
-    {"--record-buffer-s", "X", "how long the disk may stall before cycles are dropped; default 8",
-     [](const std::string& value, Options& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }},
-    {"--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{1}, std::uint64_t{1} << 24, o.record_max_mib);
-     }},
-    {"--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0",
-     [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped); }},
-    {"--command", "SHAPE", "what bus sim commands: steps (default), sine or rest",
-     [](const std::string& value, Options& o) {
-       return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);
-     }},
-    {"--amplitude", "X", "of the command, in the plant's unit (rad, or the record's force); default 0.01",
-     [](const std::string& value, Options& o) { return read_number(value, -1e9, 1e9, o.source.amplitude); }},
-    {"--frequency", "HZ", "of the command; default 0.5",
-     [](const std::string& value, Options& o) { return read_number(value, 0.0, 1000.0, o.source.frequency); }},
-    {"--json", "", "print the result as JSON, shaped as cyclictest's",
-     [](const std::string&, Options& o) { return o.json = true, std::string(); }}};
 
 std::string help() {
   std::string result =
@@ -146,9 +15,12 @@ std::string help() {
       "  hotfire plant --model simplex.toml --bus sim --cycles 10000 --cpu 1 --max-latency-us 200\n"
       "  hotfire timing --cycles 60000 --max-latency-us 100 --json\n"
       "  hotfire plant --model simplex.toml --record run.hfr\n"
+      "  hotfire plant --model simplex.toml --bus can0 --sync can --actuators 8\n"
+      "  hotfire lab --profile sweep.toml --bus can0 --gpio rig --record run.hfr\n"
+      "  hotfire-rt controller --bus can0 --actuators 8 --cycles 10000\n"
       "  hotfire-rt plant --image plant.image --period-us 500\n"
       "  hotfire-rt replay run.hfr\n\n";
-  for (const OptionLine& line : kOptionLines) {
+  for (const OptionLine& line : option_lines()) {
     std::string meaning(line.meaning);
     if (const std::size_t at = meaning.find('\n'); at != std::string::npos) {
       meaning.insert(at + 1, 25, ' ');
@@ -157,11 +29,14 @@ std::string help() {
   }
   return result +
          "  --model FILE           with `hotfire` only: the model file, checked there and handed over as an image\n"
+         "  --profile FILE         with `hotfire lab` only: the profile (docs/lab.md)\n"
          "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
          "  --help, --version\n\n"
-         "Ends on SIGINT and SIGTERM with its result. Exit status: 0 good, 2 wrong use, 4 a limit is not met, stopped by "
-         "an\n"
-         "overrun, or no real time where it is required, 6 the image is refused or the plant's values are not finite.\n";
+         "Ends on SIGINT and SIGTERM with its result. Exit status: 0 good, 2 wrong use, 3 the bus cannot be used or was "
+         "lost,\n"
+         "4 a limit is not met, stopped by an overrun, or no real time where it is required, 5 a lab's interlock, 6 the "
+         "image\n"
+         "is refused or the plant's values are not finite.\n";
 }
 
 ParsedOptions wrong_use(const std::string& message) {
@@ -172,9 +47,9 @@ ParsedOptions wrong_use(const std::string& message) {
 std::string apply(const std::vector<std::string>& arguments, std::size_t& i, Options& options) {
   const std::size_t equals = std::min(arguments[i].find('='), arguments[i].size());
   const std::string name = arguments[i].substr(0, equals);
-  const auto* const line =
-      std::find_if(std::begin(kOptionLines), std::end(kOptionLines), [&](const OptionLine& l) { return l.name == name; });
-  if (line == std::end(kOptionLines)) {
+  const std::span<const OptionLine> lines = option_lines();
+  const auto line = std::find_if(lines.begin(), lines.end(), [&](const OptionLine& one) { return one.name == name; });
+  if (line == lines.end()) {
     return "unknown argument " + arguments[i];
   }
   const bool has_own_value = equals < arguments[i].size();
@@ -216,6 +91,57 @@ ParsedOptions parse_replay(const std::vector<std::string>& arguments) {
   return {options, 0, {}};
 }
 
+bool read_mode(const std::string& word, Options& options) {
+  if (word == "timing") {
+    options.mode = Mode::timing;
+    options.loop.cycles = 10'000;
+    options.max_overruns = 0;
+  } else if (word == "controller") {
+    options.mode = Mode::controller;
+  } else if (word == "lab") {
+    options.mode = Mode::lab;
+    // Commands that were not sent in time are not sent at all.
+    options.loop.policy = OverrunPolicy::skip;
+  }
+  return word == "plant" || options.mode != Mode::plant;
+}
+
+/// What options that are each allowed say together that cannot be.
+std::string conflict_in(const Options& options) {
+  const can::Layout layout = options.frame_layout();
+  if (options.mode == Mode::plant && options.image.empty()) {
+    return "plant needs --image FILE, or start it as: hotfire plant --model M.toml";
+  }
+  if (options.mode == Mode::timing && options.on_can()) {
+    return "timing needs no bus: leave --bus out";
+  }
+  if (options.mode == Mode::lab && (options.image.empty() || !options.on_can() || options.gpio.empty())) {
+    return "lab needs a profile, a bus and lines: hotfire lab --profile P.toml --bus can0 --gpio CHIP";
+  }
+  if (options.mode == Mode::lab && (options.pace != PaceKind::clock || options.loop.policy != OverrunPolicy::skip)) {
+    return "lab keeps its own time and leaves out what is overdue: leave --sync and --policy out";
+  }
+  if (options.mode == Mode::controller && !options.on_can()) {
+    return "controller needs a bus with a plant on it: --bus can0";
+  }
+  if (options.mode == Mode::controller && options.pace == PaceKind::can) {
+    return "the controller sends SYNC itself: leave --sync out";
+  }
+  if (options.pace == PaceKind::can && !options.on_can()) {
+    return "--sync can needs the CAN bus that SYNC is on: --bus can0";
+  }
+  if (options.on_can() && options.actuators > can::most_actuators(layout)) {
+    return "--layout classic has room for " + std::to_string(can::most_actuators(layout)) + " actuators: leave it out";
+  }
+  if (!options.recording.empty() && options.image.empty()) {
+    return "--record needs a model, which becomes part of the recording: --model FILE, or --image FILE";
+  }
+  if (options.require_realtime && options.priority == 0) {
+    return "--require-realtime and --priority 0 exclude each other";
+  }
+  return {};
+}
+
 }  // namespace
 
 ParsedOptions parse_options(const std::vector<std::string>& arguments) {
@@ -232,13 +158,8 @@ ParsedOptions parse_options(const std::vector<std::string>& arguments) {
     return parse_replay(arguments);
   }
   Options options;
-  if (arguments.size() < 2 || (arguments[1] != "plant" && arguments[1] != "timing")) {
-    return wrong_use("the first argument is plant, timing or replay");
-  }
-  if (arguments[1] == "timing") {
-    options.mode = Mode::timing;
-    options.loop.cycles = 10'000;
-    options.max_overruns = 0;
+  if (arguments.size() < 2 || !read_mode(arguments[1], options)) {
+    return wrong_use("the first argument is plant, timing, controller, lab or replay");
   }
   for (std::size_t i = 2; i < arguments.size(); ++i) {
     const std::string error = apply(arguments, i, options);
@@ -246,14 +167,9 @@ ParsedOptions parse_options(const std::vector<std::string>& arguments) {
       return wrong_use(error);
     }
   }
-  if (options.mode == Mode::plant && options.image.empty()) {
-    return wrong_use("plant needs --image FILE, or start it as: hotfire plant --model M.toml");
-  }
-  if (!options.recording.empty() && options.image.empty()) {
-    return wrong_use("--record needs a model, which becomes part of the recording: --model FILE, or --image FILE");
-  }
-  if (options.require_realtime && options.priority == 0) {
-    return wrong_use("--require-realtime and --priority 0 exclude each other");
+  const std::string conflict = conflict_in(options);
+  if (!conflict.empty()) {
+    return wrong_use(conflict);
   }
   options.command_line = joined(arguments);
   return {options, 0, {}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "hal/can.hpp"
 #include "hal/clock.hpp"
 #include "hal/sync_source.hpp"
 
@@ -63,17 +64,19 @@ class OwnPace {
 
 /// Cycles at the syncs of someone else, one a sync: the plant ticks as the rig does, and its time is counted in syncs.
 ///
-/// A cycle is released by the arrival of its sync. If none has come half a period after it should have, it is missed: the
-/// cycle is run without it, on the schedule of the last one, so that a lost frame does not take a period from the plant's
-/// time. One that comes later still is the next cycle's, come early. After more than `most_missed` in a row the pace is
-/// lost. Syncs that arrive while a cycle overruns are run one after the other, or left out by `drop_overdue`.
+/// A cycle is released by the arrival of its sync. If none has come by the patience after it should have, it is
+/// missed: the cycle is run without it, on the schedule of the last one, so that a lost frame does not take a period from
+/// the plant's time. Its sync may come yet, within half a period; later it is the next cycle's, come early. After more than
+/// `most_missed` in a row the pace is lost. Syncs that arrive while a cycle overruns are run one after the other, or left
+/// out by `drop_overdue`.
 template <hal::Clock Clock, hal::SyncSource Source>
 class SyncPace {
  public:
-  static constexpr std::int64_t kFirstWaitNs = 100'000'000;
+  static constexpr std::int64_t kLongestWaitNs = 100'000'000;
 
-  SyncPace(Clock& clock, Source& source, std::int64_t period_ns, std::uint64_t most_missed) noexcept
-      : clock_(clock), source_(source), period_ns_(period_ns), most_missed_(most_missed) {}
+  SyncPace(Clock& clock, Source& source, std::int64_t period_ns, std::uint64_t most_missed,
+           std::int64_t patience_ns) noexcept
+      : clock_(clock), source_(source), period_ns_(period_ns), most_missed_(most_missed), patience_ns_(patience_ns) {}
 
   bool wait(Wake& wake) noexcept {
     const std::int64_t now = clock_.now_ns();
@@ -87,13 +90,17 @@ class SyncPace {
     }
     hal::Sync sync;
     for (bool looking = true; looking;) {
-      if (!source_.wait_for_sync(due + period_ns_ / 2, sync)) {
+      const std::int64_t given_up = due + patience_ns_;
+      const std::int64_t slice_end = std::min(given_up, clock_.now_ns() + kLongestWaitNs);
+      if (!source_.wait_for_sync(slice_end, sync)) {
+        if (slice_end < given_up) {
+          return false;
+        }
         ++missed_;
         ++missed_in_a_row_;
         return begin(wake, due, clock_.now_ns(), false);
       }
-      // Less than half a period after a release it is that release's own, come while that was given up.
-      looking = sync.superseded == 0 && sync.arrival_ns - last_ns_ < period_ns_ / 2;
+      looking = missed_in_a_row_ > 0 && sync.superseded == 0 && sync.arrival_ns - last_ns_ < period_ns_ / 2;
     }
     missed_in_a_row_ = 0;
     behind_ = sync.superseded;
@@ -120,7 +127,7 @@ class SyncPace {
  private:
   bool first(Wake& wake, std::int64_t now) noexcept {
     hal::Sync sync;
-    return source_.wait_for_sync(now + kFirstWaitNs, sync) && begin(wake, sync.arrival_ns, clock_.now_ns(), true);
+    return source_.wait_for_sync(now + kLongestWaitNs, sync) && begin(wake, sync.arrival_ns, clock_.now_ns(), true);
   }
 
   bool begin(Wake& wake, std::int64_t release, std::int64_t woken, bool slept) noexcept {
@@ -133,10 +140,52 @@ class SyncPace {
   Source& source_;
   std::int64_t period_ns_;
   std::uint64_t most_missed_;
+  std::int64_t patience_ns_;
   std::int64_t last_ns_ = 0;  ///< release of the last cycle; 0: no sync yet
   std::uint64_t behind_ = 0;  ///< cycles whose sync has come and that have not been run
   std::uint64_t missed_ = 0;
   std::uint64_t missed_in_a_row_ = 0;
+};
+
+/// Cycles that wait for an answer: at the period of the loop's own clock, but none before the plant has answered the last
+/// one. The rig then runs as fast as its slowest part, no cycle is lost, and none overruns for another's sake. `Answers`
+/// has `wait_for_frame(deadline_ns, frame, arrival_ns)`.
+template <hal::Clock Clock, class Answers>
+class LockstepPace {
+ public:
+  static constexpr std::int64_t kLongestWaitNs = 100'000'000;
+
+  LockstepPace(Clock& clock, Answers& answers, std::int64_t period_ns) noexcept
+      : clock_(clock), answers_(answers), period_ns_(period_ns) {}
+
+  bool wait(Wake& wake) noexcept {
+    hal::CanFrame frame;
+    std::int64_t arrival = 0;
+    if (begun_ && !answers_.wait_for_frame(clock_.now_ns() + kLongestWaitNs, frame, arrival)) {
+      return false;
+    }
+    begun_ = true;
+    const std::int64_t now = clock_.now_ns();
+    wake.release_ns = std::max(now, next_ns_);
+    wake.slept = now < next_ns_;
+    if (wake.slept) {
+      clock_.sleep_until_ns(next_ns_);
+    }
+    wake.woken_ns = clock_.now_ns();
+    next_ns_ = wake.release_ns + period_ns_;
+    return true;
+  }
+
+  static constexpr std::uint64_t drop_overdue(std::int64_t) noexcept { return 0; }
+  static constexpr bool lost() noexcept { return false; }
+  static constexpr std::uint64_t missed_syncs() noexcept { return 0; }
+
+ private:
+  Clock& clock_;
+  Answers& answers_;
+  std::int64_t period_ns_;
+  std::int64_t next_ns_ = 0;
+  bool begun_ = false;
 };
 
 }  // namespace hotfire::firmware

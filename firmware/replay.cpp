@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "firmware/json.hpp"
+#include "firmware/lab_image.hpp"
 #include "firmware/plant.hpp"
 #include "firmware/plant_image.hpp"
 #include "firmware/status.hpp"
@@ -137,6 +138,11 @@ std::string as_json(const std::string& path, const hal::RecordingHeader& header,
 }  // namespace
 
 Replay replay(Reader& reader) {
+  if (reader.header().topology == kLabTopology) {
+    Replay refused;
+    refused.error = "the recording of a lab has no model: 'hotfire simulate' and 'hotfire explain' take it as a record";
+    return refused;
+  }
   const PlantImage image = parse_plant_image(reader.header().model, "the model in the header");
   if (!image.parameters) {
     Replay refused;

@@ -1,17 +1,30 @@
 #pragma once
 
 #include <ctime>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "firmware/bus_account.hpp"
+#include "firmware/interlock.hpp"
 #include "firmware/loop.hpp"
 #include "firmware/options.hpp"
 #include "firmware/recorder.hpp"
+#include "firmware/status.hpp"
 #include "hal/realtime.hpp"
 
 namespace hotfire::firmware {
+
+/// What became of a lab's profile.
+struct LabAccount {
+  RigState state = RigState::safe;  ///< when the loop ended
+  bool completed = false;           ///< the profile was run to its end
+  std::uint64_t armings = 0;
+  std::array<std::uint64_t, kFaults.size()> times_first{};  ///< how often a fault was the first that ended driving
+  Fault first = Fault{};                                    ///< of those since the last arming; 0: none
+};
 
 /// All that is known when a loop has ended.
 struct Session {
@@ -26,15 +39,20 @@ struct Session {
   hal::ResourceUsage usage{};                  ///< of the loop after warm-up
   std::optional<std::uint64_t> allocations{};  ///< of the loop after warm-up, if a guard is linked
   const RecorderAccount* recording = nullptr;  ///< null: nothing was recorded
+  std::optional<BusAccount> bus{};             ///< none: there is no wire
+  std::optional<LabAccount> lab{};
+  std::string_view input = "commands";  ///< what the loop takes in every cycle, and what it sends
+  std::string_view output = "readings";
   hal::CpuPlace place{};
   std::time_t started = 0;
   std::time_t ended = 0;
 };
 
-/// Whether the limits that were asked for are met, and the sentence that says so.
+/// Whether the limits that were asked for are met, the sentence that says so, and the exit status.
 struct Verdict {
   bool good = true;
-  std::string reason;
+  std::string reason{};
+  Status status = kGood;
 };
 Verdict judge(const Session& session);
 
@@ -42,8 +60,11 @@ Verdict judge(const Session& session);
 std::string text_report(const Session& session);
 std::string json_report(const Session& session);
 
-/// Sets up, runs the loop, prints the report to standard output and what the machine refused to standard error. Returns the
-/// exit status.
+/// Each sets up, runs its loop, prints the report to standard output and what the machine refused to standard error, and
+/// returns the exit status: the plant, a controller of one on a CAN bus, a lab, or what the options say.
+int run_plant(const Options& options);
+int run_controller(const Options& options);
+int run_lab(const Options& options);
 int run_session(const Options& options);
 
 }  // namespace hotfire::firmware

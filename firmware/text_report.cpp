@@ -97,6 +97,23 @@ std::string recording(const Session& session) {
               account.failure.empty() ? "" : "; ended early: ", account.failure.c_str());
 }
 
+std::string lab(const Session& session) {
+  if (!session.lab) {
+    return {};
+  }
+  const LabAccount& account = *session.lab;
+  std::string result =
+      text("  interlock     %s, armed %llu times, profile %s\n", kRigStates[static_cast<std::size_t>(account.state)].data(),
+           whole(account.armings), account.completed ? "run to its end" : "NOT run to its end");
+  for (const FaultText& fault : kFaults) {
+    const std::uint64_t times = account.times_first[static_cast<std::size_t>(fault.fault) - 1];
+    result += times == 0 ? ""
+                         : text("  fault %-8d%s: ended driving %llu times\n", static_cast<int>(fault.fault),
+                                fault.name.data(), whole(times));
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string text_report(const Session& session) {
@@ -105,17 +122,20 @@ std::string text_report(const Session& session) {
   const Verdict verdict = judge(session);
   const double period_us = us(session.options.loop.period_ns);
   const std::size_t actuators = session.options.actuators;
-  std::string report = text("%s%s on bus sim, period %.0f us, %d %s a cycle, after an overrun: %s\n",
-                            actuators == 1 ? "" : text("%zu times ", actuators).c_str(), session.topology.data(), period_us,
-                            session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
-                            kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
+  std::string report =
+      text("%s%s on bus %s, period %.0f us, %d %s a cycle, after an overrun: %s\n",
+           actuators == 1 ? "" : text("%zu times ", actuators).c_str(), session.topology.data(), session.options.bus.c_str(),
+           period_us, session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
+           kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
   report += scheduling(session);
   report += text("  cycles        %llu at %.4f Hz, %s; before them %llu of warm-up, %llu of these overran\n",
                  whole(account.cycles()), account.rate(), kEndings[static_cast<std::size_t>(result.ending)].data(),
                  whole(result.warm_up_cycles), whole(result.warm_up_overruns));
   report += overruns(account);
-  report += text("  left out      %llu cycles skipped, %llu commands held, %llu readings lost\n", whole(result.skipped),
-                 whole(result.held_commands), whole(result.lost_readings));
+  report += text("  left out      %llu cycles skipped, %llu %s held, %llu %s lost\n", whole(result.skipped),
+                 whole(result.held_commands), session.input.data(), whole(result.lost_readings), session.output.data());
+  report += lab(session);
+  report += session.bus ? text_of(*session.bus) : "";
   if (account.cycles() > 0) {
     report += quantiles("wake-up", account.latency()) + quantiles("step", account.step_time()) + worst_cycle(account);
   }

@@ -76,6 +76,7 @@ enum class CanSend : std::uint8_t { taken, pending, queue_full, unusable };
 /// - `try_send(frame)`: hands the frame over now, or drops it and says why. Never blocks, never queues behind an older frame
 ///   of the same id, never retries: the next cycle has a newer one. The id is one of those named at set-up.
 /// - `state()`, `counters()`: since set-up. Bus-off and down make `try_send` refuse.
+/// - `anything_pending()`: a frame was handed over that is not known to be out.
 /// - `stop()`: from its return on, nothing that was handed over leaves any more; false if that cannot be had. Outside the
 ///   cycle, as it may block. `try_send` then refuses.
 /// - `rearm()`: a person's decision to use the bus again after bus-off, down or `stop`; false if it is still down. Outside
@@ -96,6 +97,8 @@ concept CanBus = requires(B& bus, const B& seen, const CanFrame& frame, std::siz
   noexcept->std::same_as<CanState>;
   { seen.counters() }
   noexcept->std::same_as<const CanCounters&>;
+  { seen.anything_pending() }
+  noexcept->std::same_as<bool>;
   { bus.stop() }
   noexcept->std::same_as<bool>;
   { bus.rearm() }

@@ -43,6 +43,11 @@ struct ResourceUsage {
   std::int64_t minor_faults = 0;          ///< pages given without reading a disk
   std::int64_t major_faults = 0;          ///< pages read from a disk
   std::int64_t involuntary_switches = 0;  ///< times another thread took the CPU
+
+  friend ResourceUsage operator-(const ResourceUsage& after, const ResourceUsage& before) noexcept {
+    return {after.minor_faults - before.minor_faults, after.major_faults - before.major_faults,
+            after.involuntary_switches - before.involuntary_switches};
+  }
 };
 
 /// Does not block or allocate.

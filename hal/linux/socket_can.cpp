@@ -11,7 +11,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
+
+#include "hal/linux/can_socket.hpp"
 
 namespace hotfire::hal {
 namespace {
@@ -22,35 +23,15 @@ constexpr int kReceiveBuffer = 192 * 1024;
 constexpr std::size_t kMostWaiting = 256;
 static_assert(kReceiveBuffer / 768 <= kMostWaiting);
 
-constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr can_err_mask_t kErrorClasses = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
 
 Failure failure(const std::string& what, int error, const std::string& mend) {
   return {what + ": " + std::strerror(error), mend};
 }
 
-canid_t kernel_id(const CanId& id) {
-  return id.extended ? (id.value & CAN_EFF_MASK) | CAN_EFF_FLAG : id.value & CAN_SFF_MASK;
-}
-
 CanId our_id(canid_t id) {
   const bool extended = (id & CAN_EFF_FLAG) != 0;
   return {id & (extended ? CAN_EFF_MASK : CAN_SFF_MASK), extended};
-}
-
-can_filter exact_filter(const CanId& id) {
-  return {kernel_id(id), (id.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG};
-}
-
-template <class Value>
-bool set_option(int socket, int level, int name, const Value& value) {
-  return setsockopt(socket, level, name, &value, sizeof value) == 0;
-}
-
-std::int64_t read_clock(clockid_t clock) {
-  timespec time{};
-  clock_gettime(clock, &time);
-  return static_cast<std::int64_t>(time.tv_sec) * kSecond + time.tv_nsec;
 }
 
 bool is_interface_error(int error) { return error == ENETDOWN || error == ENODEV || error == ENXIO; }
@@ -92,7 +73,10 @@ std::optional<Failure> SocketCan::open() noexcept {
   }
   socket_ = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (socket_ < 0) {
-    return failure("no CAN in this kernel: socket", errno, "load it: 'modprobe can-raw'");
+    const bool forbidden = errno == EPERM || errno == EACCES;
+    return forbidden ? failure("no permission to open a CAN socket", errno,
+                               "let the sandbox or container have AF_CAN sockets, or start without it")
+                     : failure("no CAN in this kernel: socket", errno, "load it: 'modprobe can-raw'");
   }
   if (auto refused = configure()) {
     return refused;
@@ -183,7 +167,7 @@ void SocketCan::take_message(std::size_t i, std::int64_t now_ns) noexcept {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
       // A clock that was set back gives a stamp of the future: the frame cannot be younger than now.
-      arrived_ns = std::min(now_ns, stamp.tv_sec * kSecond + stamp.tv_nsec - realtime_offset_ns_);
+      arrived_ns = std::min(now_ns, nanoseconds(stamp) - realtime_offset_ns_);
     } else if (part->cmsg_level == SOL_SOCKET && part->cmsg_type == SO_RXQ_OVFL) {
       std::uint32_t dropped = 0;
       std::memcpy(&dropped, CMSG_DATA(part), sizeof dropped);

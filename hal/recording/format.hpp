@@ -26,6 +26,9 @@ struct CycleHead {
   static constexpr std::uint64_t kLost = 4;
   /// It is counted apart.
   static constexpr std::uint64_t kWarmUp = 8;
+  /// Of a lab: the state of its interlock, and the number of the first fault since it was armed, 8 bits each.
+  static constexpr unsigned kStateShift = 8;
+  static constexpr unsigned kFaultShift = 16;
 
   std::uint64_t cycle = 0;      ///< from 0, without gaps in the loop: a gap in a recording is what was dropped
   std::int64_t release_ns = 0;  ///< CLOCK_MONOTONIC, as the moments that follow

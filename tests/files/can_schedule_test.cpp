@@ -3,6 +3,7 @@
 #include <random>
 #include <string>
 
+#include "hal/schedule/frame_time.hpp"
 #include "tests/files/expect.hpp"
 #include "tests/files/scratch.hpp"
 
@@ -45,17 +46,17 @@ TEST_GROUP(CanSchedule) {
 
 TEST(CanSchedule, longest_classic_frame_is_the_published_one) {
   // Davis et al. 2007, equation (3): 135 bits for 8 bytes and 65 for 1, 55 for none.
-  DOUBLES_EQUAL(135e-6, longest_classic_frame(8, 1e6), 1e-12);
-  DOUBLES_EQUAL(270e-6, longest_classic_frame(8, 500e3), 1e-12);
-  DOUBLES_EQUAL(65e-6, longest_classic_frame(1, 1e6), 1e-12);
-  DOUBLES_EQUAL(55e-6, longest_classic_frame(0, 1e6), 1e-12);
+  DOUBLES_EQUAL(135e-6, hal::longest_classic_frame(8, 1e6), 1e-12);
+  DOUBLES_EQUAL(270e-6, hal::longest_classic_frame(8, 500e3), 1e-12);
+  DOUBLES_EQUAL(65e-6, hal::longest_classic_frame(1, 1e6), 1e-12);
+  DOUBLES_EQUAL(55e-6, hal::longest_classic_frame(0, 1e6), 1e-12);
 }
 
 TEST(CanSchedule, no_content_needs_more_stuff_bits_than_are_counted_and_the_worst_needs_as_many) {
   for (const unsigned bytes : {0U, 1U, 4U, 8U}) {
     // What is stuffed of a classic frame: 34 bits around the data, all else is fixed.
     const std::size_t stuffable = 34 + 8 * bytes;
-    const auto allowed = static_cast<unsigned>(std::lround(longest_classic_frame(bytes, 1.0))) - 47 - 8 * bytes;
+    const auto allowed = static_cast<unsigned>(std::lround(hal::longest_classic_frame(bytes, 1.0))) - 47 - 8 * bytes;
     std::mt19937 random(bytes);
     for (int i = 0; i < 2000; ++i) {
       std::vector<bool> bits(stuffable);
@@ -73,11 +74,11 @@ TEST(CanSchedule, no_content_needs_more_stuff_bits_than_are_counted_and_the_wors
 }
 
 TEST(CanSchedule, fd_frame_at_one_rate_is_longer_than_a_classic_one_of_as_many_bytes_and_faster_data_shorten_it) {
-  CHECK(longest_fd_frame(8, 1e6, 1e6) > longest_classic_frame(8, 1e6));
-  CHECK(longest_fd_frame(64, 1e6, 5e6) < longest_fd_frame(64, 1e6, 2e6));
+  CHECK(hal::longest_fd_frame(8, 1e6, 1e6) > hal::longest_classic_frame(8, 1e6));
+  CHECK(hal::longest_fd_frame(64, 1e6, 5e6) < hal::longest_fd_frame(64, 1e6, 2e6));
   // 34 bits at the arbitration rate; 5 + 512 + 129 stuff + 4 + 21 + 7 at the data rate.
-  DOUBLES_EQUAL(34e-6 + 678 / 5e6, longest_fd_frame(64, 1e6, 5e6), 1e-12);
-  DOUBLES_EQUAL(34e-6 + (5 + 128 + 33 + 4 + 17 + 6) / 5e6, longest_fd_frame(16, 1e6, 5e6), 1e-12);
+  DOUBLES_EQUAL(34e-6 + 678 / 5e6, hal::longest_fd_frame(64, 1e6, 5e6), 1e-12);
+  DOUBLES_EQUAL(34e-6 + (5 + 128 + 33 + 4 + 17 + 6) / 5e6, hal::longest_fd_frame(16, 1e6, 5e6), 1e-12);
 }
 
 TEST(CanSchedule, classic_layout_of_one_engine_at_1_khz_fits_1_Mbit_and_not_500_kbit) {
@@ -96,7 +97,7 @@ TEST(CanSchedule, fd_layout_of_eight_actuators_at_1_khz_fits_1_and_5_Mbit) {
       "schema = 1\n[bus]\nbit_rate = 1e6\ndata_bit_rate = 5e6\n[frames]\nSYNC = 0.001\nSERVOVALVE_COMMAND_FD = 0.001\n"
       "PISTONS_FD = 0.001\nSTRINGS_FD = \"4 ms\"\nSTATUS = \"0.1 s\"\nHEARTBEAT = \"10 ms\"\n");
   CHECK(schedule.load() > 0.35);
-  CHECK(schedule.load() < kLargestBusLoad);
+  CHECK(schedule.load() < hal::kLargestBusLoad);
 }
 
 TEST(CanSchedule, what_is_wrong_is_refused_with_line_key_and_mend) {

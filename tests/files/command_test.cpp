@@ -56,7 +56,7 @@ TEST(Command, check_looks_at_every_file_before_it_exits_with_6) {
   LONGS_EQUAL(6, status_of("check " + bad + " " + record() + " none.toml odd.xls"));
   expect_message(out, {"bad.csv: refused", "good.csv: record", "none.toml: refused", "odd.xls: refused"});
   expect_message(err, {"hotfire: ", "bad.csv:2: column piston: \"x\"", "none.toml: cannot be opened",
-                       ".toml (a model or a CAN schedule), .csv (a record)", ".log (a candump log)"});
+                       ".toml (a model, a profile or a CAN schedule), .csv (a record)", ".log (a candump log)"});
 }
 
 TEST(Command, check_prints_json_on_request) {

@@ -52,13 +52,24 @@ TEST(Options, PeriodOutsideItsRangeIsRefusedWithTheRange) {
   refused({"timing", "--period-us", "10001"}, "from 250 to 10000");
 }
 
-TEST(Options, BusThatThisBuildDoesNotHaveIsRefusedNamingWhatItHas) {
-  refused({"plant", "--image", "p", "--bus", "can0"}, "--bus can0: allowed is sim");
+TEST(Options, LayoutOfACanBusIsTheSmallestThatHasRoomUnlessSaid) {
+  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--actuators", "2"}).frame_layout() == can::Layout::classic);
+  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--actuators", "3"}).frame_layout() == can::Layout::fd);
+  CHECK(accepted({"controller", "--bus", "can0", "--layout", "fd"}).frame_layout() == can::Layout::fd);
+  refused({"plant", "--image", "p", "--bus", "can0", "--actuators", "3", "--layout", "classic"}, "room for 2 actuators");
+}
+
+TEST(Options, WhatABusCannotDoIsRefused) {
+  refused({"controller"}, "--bus can0");
+  refused({"controller", "--bus", "can0", "--sync", "can"}, "sends SYNC itself");
+  refused({"timing", "--bus", "can0"}, "timing needs no bus");
+  refused({"plant", "--image", "p", "--sync", "can"}, "--sync can needs the CAN bus");
+  refused({"plant", "--image", "p", "--bus", ""}, "the name of a CAN interface");
 }
 
 TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
-  refused({}, "plant, timing or replay");
-  refused({"fly"}, "plant, timing or replay");
+  refused({}, "plant, timing, controller, lab or replay");
+  refused({"fly"}, "plant, timing, controller, lab or replay");
   refused({"plant"}, "hotfire plant --model");
   refused({"timing", "--perod-us", "500"}, "unknown argument --perod-us");
   refused({"timing", "--cycles"}, "--cycles needs a value");
@@ -82,7 +93,7 @@ TEST(Options, RecordingAndItsLimitsAreRead) {
   CHECK(options.pace == PaceKind::sim);
   UNSIGNED_LONGS_EQUAL(0, options.most_missed_syncs);
   refused({"plant", "--image", "p", "--actuators", "9"}, "from 1 to 8");
-  refused({"plant", "--image", "p", "--sync", "can"}, "clock, sim");
+  refused({"plant", "--image", "p", "--sync", "gps"}, "clock, sim, can");
   refused({"timing", "--record", "run.hfr"}, "--record needs a model");
 }
 

@@ -44,13 +44,14 @@ TEST_GROUP(SyncPace) {
   std::uint64_t silent_from = ~std::uint64_t{0};
   std::uint64_t silent_to = ~std::uint64_t{0};
   std::uint64_t most_missed = 5;
+  std::int64_t patience = kPeriod / 2;
 
   LoopResult run_locked(const LoopSettings& settings, std::int64_t sync_period_ns = kPeriod) {
     Syncs syncs(world.clock, sync_period_ns);
     SilencingPlant plant(world, syncs, silent_from, silent_to);
     ScriptedBus bus(world);
     const auto loop = std::make_unique<Loop<SilencingPlant, ScriptedBus, hal::sim::ManualClock, Pace>>(
-        plant, bus, world.clock, settings, Pace(world.clock, syncs, kPeriod, most_missed), nullptr);
+        plant, bus, world.clock, settings, Pace(world.clock, syncs, kPeriod, most_missed, patience), nullptr);
     loop->run(false, []() noexcept {});
     return loop->result();
   }
@@ -90,6 +91,14 @@ TEST(SyncPace, MoreThanTheMostMissedInARowEndTheLoop) {
   UNSIGNED_LONGS_EQUAL(most_missed + 1, result.missed_syncs);
 }
 
+TEST(SyncPace, PatienceWaitsForALateSyncInsteadOfRunningItsCycleWithoutIt) {
+  patience = 300 * kPeriod;
+  const LoopResult result = run_locked({kPeriod, 10, 0, OverrunPolicy::catch_up}, 250 * kPeriod);
+  UNSIGNED_LONGS_EQUAL(10, result.account.cycles());
+  UNSIGNED_LONGS_EQUAL(0, result.missed_syncs);
+  LONGS_EQUAL(10 * 250 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
+}
+
 TEST(SyncPace, CatchUpRunsACycleForEverySyncThatCameDuringAnOverrun) {
   world.delays[3].step_ns = 3 * kPeriod + 500'000;
   const LoopResult result = run_locked({kPeriod, 10, 0, OverrunPolicy::catch_up});
@@ -109,11 +118,51 @@ TEST(SyncPace, SkipLeavesOutTheSyncsThatCameDuringAnOverrun) {
 TEST(SyncPace, LoopThatWaitsForItsFirstSyncCanBeAskedToStop) {
   Syncs syncs(world.clock, kPeriod);
   syncs.set_silent(true);
-  Pace pace(world.clock, syncs, kPeriod, most_missed);
+  Pace pace(world.clock, syncs, kPeriod, most_missed, patience);
   Wake wake;
   CHECK(!pace.wait(wake));
-  LONGS_EQUAL(Pace::kFirstWaitNs, world.clock.now_ns());
+  LONGS_EQUAL(Pace::kLongestWaitNs, world.clock.now_ns());
   CHECK(!pace.lost());
+}
+
+namespace {
+
+/// Answers that come a while after they are asked for; none while silent.
+struct LateAnswers {
+  hal::sim::ManualClock& clock;
+  std::int64_t after_ns = 0;
+  bool silent = false;
+
+  bool wait_for_frame(std::int64_t deadline_ns, hal::CanFrame&, std::int64_t&) const noexcept {
+    clock.sleep_until_ns(silent ? deadline_ns : clock.now_ns() + after_ns);
+    return !silent;
+  }
+};
+
+}  // namespace
+
+TEST_GROUP(LockstepPace) {
+  hal::sim::ManualClock clock;
+  LateAnswers answers{clock};
+  LockstepPace<hal::sim::ManualClock, LateAnswers> pace{clock, answers, kPeriod};
+  Wake wake;
+};
+
+TEST(LockstepPace, CyclesOfAQuickPlantAreAPeriodApart) {
+  for (int cycle = 0; cycle < 5; ++cycle) {
+    CHECK(pace.wait(wake));
+    LONGS_EQUAL(cycle * kPeriod, wake.release_ns);
+  }
+}
+
+TEST(LockstepPace, NoCycleBeginsBeforeTheAnswerToTheLastOne) {
+  CHECK(pace.wait(wake));
+  answers.after_ns = 3 * kPeriod;
+  CHECK(pace.wait(wake));
+  LONGS_EQUAL(3 * kPeriod, wake.release_ns);
+  CHECK(!wake.slept);
+  answers.silent = true;
+  CHECK(!pace.wait(wake));
 }
 
 }  // namespace hotfire::firmware

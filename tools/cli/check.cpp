@@ -8,12 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "hal/schedule/frame_time.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/files/can_schedule.hpp"
 #include "tools/files/candump.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/model_layout.hpp"
+#include "tools/files/profile_file.hpp"
 #include "tools/files/record.hpp"
 #include "tools/files/recording.hpp"
 #include "tools/structure/vehicle_file.hpp"
@@ -75,11 +77,19 @@ Json describe_schedule(const std::filesystem::path& path) {
   return {{"kind", "schedule"},
           {"bit_rate", schedule.bit_rate},
           {"load", schedule.load()},
-          {"largest_load", kLargestBusLoad},
+          {"largest_load", hal::kLargestBusLoad},
           {"frames", frames}};
 }
 
+Json describe_profile(const std::filesystem::path& path) {
+  const LabProfile profile = load_profile(path);
+  return {{"kind", "profile"}, {"actuators", profile.actuators}, {"duration", profile.duration}};
+}
+
 Json describe(const std::filesystem::path& path) {
+  if (path.extension() == ".toml" && is_profile(path)) {
+    return describe_profile(path);
+  }
   if (path.extension() == ".toml") {
     return is_can_schedule(path) ? describe_schedule(path)
            : is_vehicle(path)    ? describe_vehicle(path)
@@ -88,10 +98,11 @@ Json describe(const std::filesystem::path& path) {
   if (path.extension() == ".csv" || path.extension() == ".log" || is_recording(path)) {
     return describe_record(path);
   }
-  throw FileError(fmt::format(
-      "{}: what it is cannot be told from \"{}\"; allowed: .toml (a model or a CAN schedule), .csv (a record), .log "
-      "(a candump log), a recording of 'hotfire plant --record'",
-      path.string(), path.extension().string()));
+  throw FileError(
+      fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model, a profile or a CAN schedule), .csv "
+                  "(a record), .log "
+                  "(a candump log), a recording of 'hotfire plant --record'",
+                  path.string(), path.extension().string()));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -114,10 +125,14 @@ std::string line_of(const Json& result) {
                        result["topology"].get<std::string>(), result["axes"].get<int>(), result["modes"].get<int>(),
                        result["compliant_gimbal"].get<bool>() ? "compliant" : "rigid");
   }
+  if (result["kind"] == "profile") {
+    return fmt::format("profile of {} actuators, {:g} s long", result["actuators"].get<unsigned>(),
+                       result["duration"].get<double>());
+  }
   if (result["kind"] == "schedule") {
     return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",
                        result["frames"].size(), 100.0 * result["load"].get<double>(),
-                       1e-6 * result["bit_rate"].get<double>(), 100.0 * kLargestBusLoad);
+                       1e-6 * result["bit_rate"].get<double>(), 100.0 * hal::kLargestBusLoad);
   }
   std::vector<std::string> channels;
   for (const Json& channel : result["channels"]) {
@@ -162,11 +177,11 @@ void add_check(CLI::App& program) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "check",
-      "Check model files and CAN schedules (.toml), records (.csv, candump .log) and recordings: what each is, or what is "
-      "wrong, where, and the mend");
-  command->add_option("FILE", options->files, "model files, CAN schedules and records")->required();
+  CLI::App* command = program.add_subcommand("check",
+                                             "Check model files, profiles and CAN schedules (.toml), records (.csv, candump "
+                                             ".log) and recordings: what each is, or what is "
+                                             "wrong, where, and the mend");
+  command->add_option("FILE", options->files, "model files, profiles, CAN schedules and records")->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");
   command->footer(
       "Example: hotfire check declared.toml steps.csv schedule.toml\nExit status: 0 all good, 6 any refused; all are "

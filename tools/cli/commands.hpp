@@ -7,6 +7,7 @@ namespace hotfire {
 /// Each adds one command to the program. A command runs in its callback: it prints its result on standard output and nothing
 /// else there, throws FileError or UsageError, or CLI::RuntimeError with an exit status when all is said.
 void add_check(CLI::App& program);
+void add_controller(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_doctor(CLI::App& program);
 void add_explain(CLI::App& program);
@@ -14,6 +15,7 @@ void add_findings(CLI::App& program);
 void add_hammer(CLI::App& program);
 void add_import(CLI::App& program);
 void add_quiescent(CLI::App& program);
+void add_lab(CLI::App& program);
 void add_reduce(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);

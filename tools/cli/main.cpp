@@ -72,6 +72,8 @@ int run(int argc, char** argv) {
   add_findings(program);
   add_reduce(program);
   add_plant(program);
+  add_controller(program);
+  add_lab(program);
   add_timing(program);
   add_replay(program);
   add_doctor(program);

@@ -18,13 +18,10 @@
 
 namespace hotfire {
 
-namespace {
-
-/// Puts the image into memory that the next program inherits, and returns the path under which it finds it.
 std::string share_image(const std::string& image) {
-  const int file = memfd_create("plant-image", 0);
+  const int file = memfd_create("image", 0);
   if (file < 0 || write(file, image.data(), image.size()) != static_cast<ssize_t>(image.size())) {
-    throw UsageError(fmt::format("the plant image cannot be kept in memory: {}", std::strerror(errno)));
+    throw UsageError(fmt::format("the image cannot be kept in memory: {}", std::strerror(errno)));
   }
   return fmt::format("/proc/self/fd/{}", file);
 }
@@ -34,8 +31,6 @@ bool asks_for_text_only(const std::vector<std::string>& arguments) {
     return argument == "--help" || argument == "-h" || argument == "--version";
   });
 }
-
-}  // namespace
 
 void become_realtime_program(const std::vector<std::string>& arguments) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "hotfire-rt";

@@ -15,6 +15,13 @@ namespace hotfire {
 /// started. Else it does not return: the process becomes hotfire-rt, whose exit status is the command's.
 void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model);
 
+/// Puts an image into memory that the next program inherits, and returns the path under which it finds it. Throws
+/// UsageError.
+std::string share_image(const std::string& image);
+
+/// Whether only help or version is asked for, which needs no file.
+bool asks_for_text_only(const std::vector<std::string>& arguments);
+
 /// Becomes hotfire-rt with these arguments; does not return. Throws UsageError if it cannot be started.
 [[noreturn]] void become_realtime_program(const std::vector<std::string>& arguments);
 

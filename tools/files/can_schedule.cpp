@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "hal/schedule/frame_time.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/model_group.hpp"
 #include "tools/files/toml_source.hpp"
@@ -49,8 +50,8 @@ void read_bus(const TomlSource& source, CanSchedule& schedule) {
 }
 
 double longest(const CanMessage& message, const CanSchedule& schedule) {
-  return message.fd ? longest_fd_frame(message.length, schedule.bit_rate, schedule.data_bit_rate)
-                    : longest_classic_frame(message.length, schedule.bit_rate);
+  return message.fd ? hal::longest_fd_frame(message.length, schedule.bit_rate, schedule.data_bit_rate)
+                    : hal::longest_classic_frame(message.length, schedule.bit_rate);
 }
 
 void read_frames(const TomlSource& source, const CanMap& map, CanSchedule& schedule) {
@@ -78,7 +79,7 @@ void read_frames(const TomlSource& source, const CanMap& map, CanSchedule& sched
 
 void require_fit(const CanSchedule& schedule) {
   const double load = schedule.load();
-  if (load <= kLargestBusLoad) {
+  if (load <= hal::kLargestBusLoad) {
     return;
   }
   std::vector<ScheduledFrame> frames = schedule.frames;
@@ -91,22 +92,10 @@ void require_fit(const CanSchedule& schedule) {
   throw FileError(
       fmt::format("{}: worst-case bus load {:.1f} %; allowed: {:.0f} %. Most is taken by {}. Longer periods, a "
                   "higher bit rate or FD frames lower it",
-                  schedule.path.string(), 100.0 * load, 100.0 * kLargestBusLoad, most));
+                  schedule.path.string(), 100.0 * load, 100.0 * hal::kLargestBusLoad, most));
 }
 
 }  // namespace
-
-double longest_classic_frame(unsigned bytes, double bit_rate) {
-  const unsigned stuff = (33 + 8 * bytes) / 4;
-  return (47 + 8 * bytes + stuff) / bit_rate;
-}
-
-double longest_fd_frame(unsigned bytes, double bit_rate, double data_bit_rate) {
-  constexpr unsigned kMostArbitrationStuff = 4;
-  const unsigned stuff = (21 + 8 * bytes) / 4 - kMostArbitrationStuff;
-  const unsigned check = bytes <= 16 ? 17 + 6 : 21 + 7;
-  return (17 + kMostArbitrationStuff + 13) / bit_rate + (5 + 8 * bytes + stuff + 4 + check) / data_bit_rate;
-}
 
 double CanSchedule::load() const {
   return std::accumulate(frames.begin(), frames.end(), 0.0,

@@ -8,20 +8,6 @@
 
 namespace hotfire {
 
-/// The greatest share of a bus that a schedule may take: the rest is for retransmission, and for what others send.
-inline constexpr double kLargestBusLoad = 0.7;
-
-/// The longest a frame can occupy a bus [s], with the worst stuff bits and the space to the next frame; `bytes` as on the
-/// wire.
-///
-/// Classic, base format: 47 + 8 n bits and floor((33 + 8 n) / 4) stuff bits (Davis, Burns, Bril, Lukkien 2007).
-/// FD, ISO 11898-1:2015, base format: at the arbitration rate 17 bits from start to the rate switch, at most 4 stuff bits of
-/// theirs, and 13 from the check's delimiter to the space; at the data rate 5 + 8 n bits and the other stuff bits of the
-/// floor((21 + 8 n) / 4) that start to data can have together, the stuff count of 4, a check of 17 (to 16 bytes) or 21 bits
-/// and its 6 or 7 fixed stuff bits.
-double longest_classic_frame(unsigned bytes, double bit_rate);
-double longest_fd_frame(unsigned bytes, double bit_rate, double data_bit_rate);
-
 /// A frame that is sent with a period.
 struct ScheduledFrame {
   std::string message;   ///< of the CAN map
@@ -53,8 +39,8 @@ bool is_can_schedule(const std::filesystem::path& path);
 ///     [frames]                  # message of the CAN map = period
 ///     SERVOVALVE_COMMAND = "1 ms"
 ///
-/// Throws FileError with file, line, key and what is allowed; also for a schedule that takes more than kLargestBusLoad of
-/// its bus in the worst case, naming what takes most.
+/// Throws FileError with file, line, key and what is allowed; also for a schedule that takes more than hal::kLargestBusLoad
+/// of its bus in the worst case, naming what takes most.
 CanSchedule load_can_schedule(const std::filesystem::path& path, const CanMap& map = own_can_map());
 
 }  // namespace hotfire

@@ -5,7 +5,7 @@
 set(link_model "^model:")
 set(link_hal "^hal:")
 set(link_firmware "^(firmware|model|hal):")
-set(link_tools "^(tools|model):|^hal:hotfire_hal(_sim|_recording)?$")
+set(link_tools "^(tools|model):|^hal:hotfire_hal(_sim|_recording|_schedule)?$")
 
 function(targets_below folder result)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/can/layout.hpp"
+#include "hal/schedule/frame_time.hpp"
+
+namespace hotfire::firmware::can {
+
+/// Share of a bus that plant and controller take in the worst case: command, readings and SYNC once a period, status and
+/// heartbeat as the map says. Rates in bit/s.
+inline double bus_load(Layout layout, std::size_t actuators, std::int64_t period_ns, double bit_rate,
+                       double data_bit_rate) noexcept {
+  const double period = 1e-9 * static_cast<double>(period_ns);
+  const auto longest = [&](const Message& message) {
+    return message.fd ? hal::longest_fd_frame(message.length, bit_rate, data_bit_rate)
+                      : hal::longest_classic_frame(message.length, bit_rate);
+  };
+  double load = (longest(sync::kMessage) + longest(command_message(layout))) / period;
+  for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {
+    load += longest(reading_message(layout, i)) / period;
+  }
+  for (const Message* report : {&status::kMessage, &heartbeat::kMessage}) {
+    load += longest(*report) / (1e-3 * report->cycle_ms);
+  }
+  return load;
+}
+
+}  // namespace hotfire::firmware::can

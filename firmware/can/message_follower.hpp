@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "firmware/can/codec.hpp"
+#include "hal/can.hpp"
+
+namespace hotfire::firmware::can {
+
+/// What became of the frames of one message. One that was overtaken by a newer one before it was looked at counts as
+/// skipped here and as superseded in its mailbox.
+struct MessageCounters {
+  std::uint64_t taken = 0;
+  std::uint64_t repeated = 0;  ///< with the counter of the one before, not taken
+  std::uint64_t backward = 0;  ///< with a counter of the past, not taken
+  std::uint64_t skipped = 0;   ///< counters never looked at: superseded, or lost on the way
+  std::uint64_t refused = 0;   ///< wrong length, check or value, not taken
+};
+
+/// Takes the newest frame of a message if it says something new: its counter is ahead of the last one's by less than half
+/// of 256. A frame that is repeated, or comes late from a gateway's queue, is not taken.
+class MessageFollower {
+ public:
+  /// The values of a frame. False, and `values` untouched, if it is not to be taken.
+  bool take(const Message& message, const hal::CanFrame& frame, std::span<double> values) noexcept {
+    std::array<double, kMostSignals> read{};
+    std::uint8_t counter = 0;
+    if (decode(message, frame, read, counter) != Decoding::good) {
+      ++counters_.refused;
+      return false;
+    }
+    if (!is_new(counter)) {
+      return false;
+    }
+    std::copy_n(read.begin(), message.signals.size(), values.begin());
+    ++counters_.taken;
+    return true;
+  }
+
+  /// The counter of the last frame that was taken, carried on beyond 256.
+  std::uint64_t sequence() const noexcept { return sequence_; }
+  const MessageCounters& counters() const noexcept { return counters_; }
+
+  /// The next frame is the first again, whatever its counter.
+  void forget() noexcept { following_ = false; }
+
+ private:
+  static constexpr std::size_t kMostSignals = 32;
+
+  bool is_new(std::uint8_t counter) noexcept {
+    constexpr unsigned kHalf = 128;
+    if (!following_) {
+      following_ = true;
+      sequence_ = counter;
+      return true;
+    }
+    const auto ahead = static_cast<std::uint8_t>(counter - static_cast<std::uint8_t>(sequence_));
+    if (ahead == 0 || ahead >= kHalf) {
+      ++(ahead == 0 ? counters_.repeated : counters_.backward);
+      return false;
+    }
+    counters_.skipped += ahead - 1U;
+    sequence_ += ahead;
+    return true;
+  }
+
+  bool following_ = false;
+  std::uint64_t sequence_ = 0;
+  MessageCounters counters_;
+};
+
+}  // namespace hotfire::firmware::can

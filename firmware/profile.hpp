@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace hotfire::firmware {
+
+/// A stretch of a profile: a straight line and a sine on it, whose frequency rises or falls by the same factor in equal
+/// times.
+struct Segment {
+  double duration = 0.0;  ///< [s]
+  double from = 0.0;      ///< of the line, at both ends [rad]
+  double to = 0.0;
+  double amplitude = 0.0;  ///< of the sine, which begins at phase 0 [rad]
+  double frequency = 0.0;  ///< at both ends [Hz]
+  double last_frequency = 0.0;
+
+  /// The command at a time since its beginning.
+  double at(double time) const noexcept {
+    const double line = from + (to - from) * time / duration;
+    return amplitude == 0.0 ? line : line + amplitude * std::sin(2.0 * std::numbers::pi * periods(time));
+  }
+
+ private:
+  double periods(double time) const noexcept {
+    const double growth = frequency == last_frequency ? 0.0 : std::log(last_frequency / frequency) / duration;
+    return growth == 0.0 ? frequency * time : frequency * std::expm1(growth * time) / growth;
+  }
+};
+
+/// What a lab asks of its actuators: segments one after the other. At the border of two the later one counts.
+class Profile {
+ public:
+  explicit Profile(std::vector<Segment> segments) : segments_(std::move(segments)) {
+    for (const Segment& segment : segments_) {
+      starts_.push_back(duration_);
+      duration_ += segment.duration;
+    }
+  }
+
+  double duration() const noexcept { return duration_; }
+
+  /// The command [rad] at a time since the start [s]; after the end, that of the end. Takes the logarithm of the number of
+  /// segments.
+  double at(double time) const noexcept {
+    if (segments_.empty()) {
+      return 0.0;
+    }
+    const auto after = std::upper_bound(starts_.begin() + 1, starts_.end(), time);
+    const auto place = static_cast<std::size_t>(after - starts_.begin()) - 1;
+    return segments_[place].at(std::min(time, duration_) - starts_[place]);
+  }
+
+ private:
+  std::vector<Segment> segments_;
+  std::vector<double> starts_;
+  double duration_ = 0.0;
+};
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <linux/can.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <ctime>
+
+#include "hal/can.hpp"
+
+namespace hotfire::hal {
+
+// What the CAN sockets of this folder have in common.
+
+inline canid_t kernel_id(const CanId& id) noexcept {
+  return id.extended ? (id.value & CAN_EFF_MASK) | CAN_EFF_FLAG : id.value & CAN_SFF_MASK;
+}
+
+/// Lets one id through, and no remote frame.
+inline can_filter exact_filter(const CanId& id) noexcept {
+  return {kernel_id(id), (id.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG};
+}
+
+template <class Value>
+bool set_option(int socket, int level, int name, const Value& value) noexcept {
+  return setsockopt(socket, level, name, &value, sizeof value) == 0;
+}
+
+inline std::int64_t nanoseconds(const timespec& time) noexcept {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  return static_cast<std::int64_t>(time.tv_sec) * kSecond + time.tv_nsec;
+}
+
+inline std::int64_t read_clock(clockid_t clock) noexcept {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return nanoseconds(time);
+}
+
+}  // namespace hotfire::hal

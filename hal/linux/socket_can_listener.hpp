@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "hal/can.hpp"
+#include "hal/failure.hpp"
+
+namespace hotfire::hal {
+
+/// Waits for the frames of one message on a SocketCAN interface, with a socket of its own: the cycle's socket keeps what
+/// comes in meanwhile.
+class SocketCanListener {
+ public:
+  SocketCanListener(std::string interface, const CanSubscription& wanted)
+      : interface_(std::move(interface)), wanted_(wanted) {}
+  ~SocketCanListener();
+  SocketCanListener(const SocketCanListener&) = delete;
+  SocketCanListener& operator=(const SocketCanListener&) = delete;
+
+  /// To be called once, when a `SocketCan` on the same interface has been opened, which refuses what can be wrong with it.
+  std::optional<Failure> open() noexcept;
+
+  /// The oldest frame that was not given yet and its arrival on CLOCK_MONOTONIC; blocks until the absolute time
+  /// `deadline_ns` of that clock, not at all if it has passed. False if there is none. A bus that is down is waited out. A
+  /// signal does not cut it short. Without allocation, lock or exception.
+  bool wait_for_frame(std::int64_t deadline_ns, CanFrame& frame, std::int64_t& arrival_ns) noexcept;
+
+ private:
+  bool take(CanFrame& frame, std::int64_t& arrival_ns) noexcept;
+
+  std::string interface_;
+  CanSubscription wanted_;
+  int socket_ = -1;
+};
+
+}  // namespace hotfire::hal

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "firmware/can/codec.hpp"
+#include "firmware/interlock.hpp"
+#include "hal/can.hpp"
+
+namespace hotfire::test {
+
+/// Runs a line of shell with the helpers of the virtual rig at hand; fails the test if that fails.
+void shell(const std::string& command);
+
+/// Makes the bank `rig`, with the lines that `Line` names.
+void bank_up();
+/// Takes it away, and every bus.
+void bank_down();
+
+/// Waits, 20 s at most, until it is so; fails the test with `what` if it never is.
+void wait_until(const std::string& what, const std::function<bool()>& is_so);
+
+/// What is on the bus beside the lab: an actuator that goes where it is told, with its two potentiometers, which answer
+/// SYNC; it keeps count of the commands, and can be made to go wrong.
+class SensorNode {
+ public:
+  enum class Mode : std::uint8_t { good, silent, damaged, jammed };
+
+  SensorNode();
+  ~SensorNode();
+  SensorNode(const SensorNode&) = delete;
+  SensorNode& operator=(const SensorNode&) = delete;
+
+  /// Hands a report of the controller to everyone on the bus, as a driver does.
+  void report_bus_off() const;
+
+  std::atomic<Mode> mode{Mode::good};
+  std::atomic<double> offset{0.0};         ///< of both readings [m]
+  std::atomic<double> second_offset{0.0};  ///< of the second one
+  std::atomic<std::uint64_t> commands{0};
+  std::atomic<std::uint64_t> heartbeats{0};
+  std::atomic<std::uint64_t> commands_when_not_driving{0};  ///< that came after a heartbeat which said safe or faulted
+  std::atomic<std::uint64_t> quiet{0};                      ///< times that nothing had come for a while
+  std::atomic<firmware::RigState> state{firmware::RigState::safe};
+
+ private:
+  void serve();
+  void take(const hal::CanFrame& frame);
+  void answer();
+
+  int socket_;
+  std::atomic<bool> ended_{false};
+  double position_ = 0.0;
+  std::uint8_t counter_ = 0;
+  std::thread thread_;
+};
+
+/// `hotfire-rt lab` as a process, on can0 and the bank `rig`.
+class LabProgram {
+ public:
+  /// `changes`: lines of the image that take the place of the usual ones. `options` are added.
+  explicit LabProgram(const std::string& changes = "", const std::string& options = "");
+  ~LabProgram();
+  LabProgram(const LabProgram&) = delete;
+  LabProgram& operator=(const LabProgram&) = delete;
+
+  void signal(int number) const;
+  /// Waits for its end; returns the exit status.
+  int wait();
+  std::string output() const;
+
+ private:
+  int process_ = -1;
+};
+
+enum Line : std::uint8_t { kStopLine, kHydraulicLine, kArmLine, kSupplyLine, kHeartbeatLine, kFaultLine };
+
+/// What a line carries, and drives an input.
+bool carries(Line line);
+void pull(Line line, bool up);
+/// Waits for so many changes of the heartbeat line, which changes every cycle.
+void wait_for_beats(int beats);
+/// Presses and releases the arm button, each for some cycles.
+void press();
+
+}  // namespace hotfire::test

@@ -1,0 +1,206 @@
+#include <CppUTest/TestHarness.h>
+
+#include <csignal>
+#include <memory>
+
+#include "firmware/faults.hpp"
+#include "tests/rig/lab_bench.hpp"
+
+namespace hotfire::firmware {
+
+using test::carries;
+using test::press;
+using test::pull;
+using test::SensorNode;
+using test::shell;
+using test::wait_for_beats;
+using test::wait_until;
+
+TEST_GROUP(Lab) {
+  std::unique_ptr<SensorNode> node;
+  std::unique_ptr<test::LabProgram> lab;
+
+  void setup() override {
+    shell("ip link add dev can0 type vcan; ip link set can0 up");
+    test::bank_up();
+    node = std::make_unique<SensorNode>();
+  }
+  void teardown() override {
+    lab.reset();
+    node.reset();
+    test::bank_down();
+  }
+
+  void start(const std::string& changes = "", const std::string& options = "") {
+    lab = std::make_unique<test::LabProgram>(changes, options);
+  }
+
+  void arm() {
+    press();
+    wait_until("supply", [] { return carries(test::kSupplyLine); });
+  }
+
+  void run_profile() {
+    arm();
+    press();
+    wait_until("the profile to run", [&] { return node->state == RigState::running; });
+    const std::uint64_t before = node->commands;
+    wait_until("commands", [&] { return node->commands > before + 5; });
+  }
+
+  /// Nothing is driven, and nothing has been since the program said so.
+  void is_safe() {
+    CHECK(!carries(test::kSupplyLine));
+    UNSIGNED_LONGS_EQUAL(0, node->commands_when_not_driving);
+  }
+
+  /// Waits for a fault, and for all that was sent before it to be counted; returns how many commands that were.
+  std::uint64_t commands_at_fault() {
+    wait_until("the fault line", [] { return carries(test::kFaultLine); });
+    const std::uint64_t quiet = node->quiet;
+    wait_until("the last frames", [&] { return node->state == RigState::faulted || node->quiet > quiet; });
+    is_safe();
+    return node->commands;
+  }
+
+  /// Brings a running lab to a fault and mends it: nothing is sent until it is armed again, which it then is.
+  template <class Provoke, class Mend>
+  void goes_safe(Provoke && provoke, Mend && mend) {
+    run_profile();
+    provoke();
+    const std::uint64_t sent = commands_at_fault();
+    wait_for_beats(5);
+    mend();
+    wait_for_beats(10);
+    CHECK(carries(test::kFaultLine));
+    UNSIGNED_LONGS_EQUAL(sent, node->commands);
+    // After a fault of the bus the first press takes it into use again.
+    press();
+    if (!carries(test::kSupplyLine)) {
+      UNSIGNED_LONGS_EQUAL(sent, node->commands);
+      arm();
+    }
+    wait_until("commands", [&] { return node->commands > sent; });
+  }
+
+  void ended_driving(std::initializer_list<Fault> faults) {
+    lab->signal(SIGTERM);
+    LONGS_EQUAL(1, lab->wait());
+    is_safe();
+    const std::string output = lab->output();
+    for (const Fault fault : faults) {
+      STRCMP_CONTAINS((std::string(text_of(fault).name) + ": ended driving ").c_str(), output.c_str());
+    }
+  }
+};
+
+TEST(Lab, ProfileRunsToItsEndAndTheProgramEndsWithItsOutputsSafe) {
+  start("segment.0.duration 0.5\n", "--record /tmp/lab.hfr");
+  wait_for_beats(10);
+  UNSIGNED_LONGS_EQUAL(0, node->commands);
+  run_profile();
+  LONGS_EQUAL(0, lab->wait());
+  STRCMP_CONTAINS("profile run to its end", lab->output().c_str());
+  is_safe();
+  shell("hotfire-rt replay /tmp/lab.hfr 2>&1 | grep -q 'has no model'");
+}
+
+TEST(Lab, ProgramThatIsKilledAndStartedAnewDrivesNothing) {
+  start();
+  run_profile();
+  lab.reset();
+  const std::uint64_t sent = node->commands;
+  start();
+  wait_for_beats(10);
+  UNSIGNED_LONGS_EQUAL(sent, node->commands);
+  CHECK(!carries(test::kSupplyLine));
+}
+
+TEST(Lab, FaultOfAReadingLeavesItSafeUntilArmedAgain) {
+  start("limits.reading_age 0.4\nlimits.position_error_time 1\n");
+  const auto mode = [&](SensorNode::Mode set) { return [this, set] { node->mode = set; }; };
+  goes_safe(mode(SensorNode::Mode::silent), mode(SensorNode::Mode::good));
+  goes_safe(mode(SensorNode::Mode::damaged), mode(SensorNode::Mode::good));
+  goes_safe(mode(SensorNode::Mode::jammed), mode(SensorNode::Mode::good));
+  const auto offset = [&](double set) { return [this, set] { node->offset = set; }; };
+  goes_safe(offset(0.2), offset(0.0));
+  goes_safe(offset(0.1), offset(0.0));
+  goes_safe([&] { node->second_offset = 0.002; }, [&] { node->second_offset = 0.0; });
+  ended_driving({Fault::stale_sensor, Fault::bad_frame, Fault::position_error, Fault::out_of_range, Fault::limit,
+                 Fault::readings_disagree});
+}
+
+TEST(Lab, FaultOfTheBusLeavesItSafeUntilArmedAgain) {
+  start();
+  goes_safe([&] { node->report_bus_off(); }, [] {});
+  goes_safe([] { shell("ip link set can0 down"); }, [] { shell("ip link set can0 up"); });
+  goes_safe([] { shell("tc qdisc add dev can0 root netem delay 100s limit 1"); },
+            [] { shell("tc qdisc del dev can0 root; ip link set can0 up"); });
+  // While an interface goes down the kernel swallows frames before it says so: that may be found first.
+  ended_driving({Fault::bus_off, Fault::transmit_queue_full});
+}
+
+TEST(Lab, LineOrAStoppedProcessLeavesItSafeUntilArmedAgain) {
+  start("limits.command_age 0.4\n");
+  goes_safe([] { pull(test::kStopLine, false); }, [] { pull(test::kStopLine, true); });
+  goes_safe([] { pull(test::kHydraulicLine, false); }, [] { pull(test::kHydraulicLine, true); });
+  goes_safe(
+      [&] {
+        lab->signal(SIGSTOP);
+        shell("sleep 0.8");
+        lab->signal(SIGCONT);
+      },
+      [] {});
+  ended_driving({Fault::emergency_stop, Fault::hydraulic_enable_lost, Fault::stale_command});
+}
+
+TEST(Lab, EmergencyStopWhileTheBusIsDownAndBothReleasedLetsNoCommandOut) {
+  start();
+  goes_safe(
+      [] {
+        shell("ip link set can0 down");
+        pull(test::kStopLine, false);
+      },
+      [] {
+        shell("ip link set can0 up");
+        pull(test::kStopLine, true);
+      });
+  ended_driving({});
+}
+
+// On a machine this slow a cycle may overrun of itself, which is what is provoked here.
+TEST(Lab, Overrun) {
+  start("limits.overruns 0\n");
+  wait_until("a fault", [&] {
+    press();
+    lab->signal(SIGSTOP);
+    shell("sleep 0.2");
+    lab->signal(SIGCONT);
+    wait_for_beats(4);
+    return carries(test::kFaultLine);
+  });
+  const std::uint64_t sent = commands_at_fault();
+  wait_for_beats(10);
+  UNSIGNED_LONGS_EQUAL(sent, node->commands);
+  lab->signal(SIGTERM);
+  LONGS_EQUAL(5, lab->wait());
+  STRCMP_CONTAINS("interlock: fault 11, overrun", lab->output().c_str());
+}
+
+TEST(Lab, RecorderFull) {
+  shell("mkdir -p /full; mount -t tmpfs -o size=16k full /full");
+  start("", "--record /full/lab.hfr");
+  arm();
+  const std::uint64_t sent = commands_at_fault();
+  wait_for_beats(10);
+  UNSIGNED_LONGS_EQUAL(sent, node->commands);
+  // A recording that has ended does not go on: no arming mends it.
+  press();
+  CHECK(!carries(test::kSupplyLine));
+  lab->signal(SIGTERM);
+  LONGS_EQUAL(5, lab->wait());
+  STRCMP_CONTAINS("interlock: fault 15, recorder full", lab->output().c_str());
+  shell("umount /full");
+}
+
+}  // namespace hotfire::firmware
