@@ -111,14 +111,16 @@ class SyncPace {
   std::uint64_t drop_overdue(std::int64_t written_ns) noexcept {
     hal::Sync sync;
     std::uint64_t dropped = behind_;
-    if (source_.wait_for_sync(written_ns, sync)) {
-      dropped += sync.superseded + 1;
-      last_ns_ = sync.arrival_ns;
-    } else {
+    if (!source_.wait_for_sync(written_ns, sync)) {
       last_ns_ += static_cast<std::int64_t>(behind_) * period_ns_;
+      behind_ = 0;
+      return dropped;
     }
-    behind_ = 0;
-    return dropped;
+    // One that came after the writing, which it may answer, is the next cycle's and is not overdue.
+    const bool is_next = sync.arrival_ns > written_ns;
+    last_ns_ = is_next ? sync.arrival_ns - period_ns_ : sync.arrival_ns;
+    behind_ = is_next ? 1 : 0;
+    return dropped + sync.superseded + (is_next ? 0 : 1);
   }
 
   bool lost() const noexcept { return missed_in_a_row_ > most_missed_; }

@@ -115,6 +115,35 @@ TEST(SyncPace, SkipLeavesOutTheSyncsThatCameDuringAnOverrun) {
   LONGS_EQUAL(13 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
 }
 
+namespace {
+
+/// One sync that has come at a time.
+struct OneSync {
+  std::int64_t arrival_ns = 0;
+
+  bool wait_for_sync(std::int64_t, hal::Sync& sync) noexcept {
+    const bool there = arrival_ns != 0;
+    sync = there ? hal::Sync{arrival_ns, 0} : sync;
+    arrival_ns = 0;
+    return there;
+  }
+};
+
+}  // namespace
+
+TEST(SyncPace, SyncThatCameAfterTheWritingIsNotOverdueAndHasItsCycle) {
+  OneSync source{kPeriod};
+  SyncPace<hal::sim::ManualClock, OneSync> pace(world.clock, source, kPeriod, most_missed, patience);
+  Wake wake;
+  CHECK(pace.wait(wake));
+  source.arrival_ns = 5 * kPeriod;
+  UNSIGNED_LONGS_EQUAL(0, pace.drop_overdue(4 * kPeriod));
+  CHECK(pace.wait(wake));
+  LONGS_EQUAL(5 * kPeriod, wake.release_ns);
+  source.arrival_ns = 6 * kPeriod;
+  UNSIGNED_LONGS_EQUAL(1, pace.drop_overdue(7 * kPeriod));
+}
+
 TEST(SyncPace, LoopThatWaitsForItsFirstSyncCanBeAskedToStop) {
   Syncs syncs(world.clock, kPeriod);
   syncs.set_silent(true);
