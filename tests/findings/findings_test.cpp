@@ -1,5 +1,8 @@
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 
 #include "tools/findings/document.hpp"
@@ -7,6 +10,30 @@
 #include <CppUTest/TestHarness.h>
 
 namespace hotfire::findings {
+
+namespace {
+
+/// The words of two pages in turn; numbers may differ by a hundredth: another machine's library rounds the last digit of an
+/// exponential otherwise, and a figure that is searched for moves with it.
+void check_same_page(const std::string& computed, const std::string& published) {
+  std::istringstream one(computed);
+  std::istringstream other(published);
+  std::string word;
+  std::string wanted;
+  while (one >> word) {
+    CHECK_TRUE_TEXT(static_cast<bool>(other >> wanted), "docs/findings.md ends early");
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (*end == '\0') {
+      DOUBLES_EQUAL(std::strtod(wanted.c_str(), nullptr), value, 1e-2 * std::abs(value) + 1e-3);
+    } else {
+      STRCMP_EQUAL(word.c_str(), wanted.c_str());
+    }
+  }
+  CHECK_TRUE_TEXT(!(other >> wanted), "docs/findings.md goes on");
+}
+
+}  // namespace
 
 TEST_GROUP(Findings){};
 
@@ -26,7 +53,7 @@ TEST(Findings, AreInsideTheirTolerancesAndPublishedAsTheyCameOut) {
   }
   std::ifstream file(HOTFIRE_SOURCE_DIR "/docs/findings.md");
   const std::string published(std::istreambuf_iterator<char>(file), {});
-  STRCMP_EQUAL(markdown(rows).c_str(), published.c_str());
+  check_same_page(markdown(rows), published);
 }
 
 TEST(Findings, AreReachedWithTheSameActuatorInEverySet) {
