@@ -21,6 +21,7 @@
 #include "model/effects/structural_mode.hpp"
 #include "model/effects/torque_offset.hpp"
 #include "model/effects/unlisted.hpp"
+#include "model/effects/unlisted_motion.hpp"
 #include "model/effects/valve_asymmetry.hpp"
 #include "model/effects/valve_deadband.hpp"
 #include "model/effects/valve_hysteresis.hpp"

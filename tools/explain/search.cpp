@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "tools/explain/channel_check.hpp"
+#include "tools/explain/finalists.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
@@ -17,12 +18,8 @@ namespace {
 /// A residual whose part beyond noise is below this share of the noise rms is left alone: the model is then twice as close
 /// to the truth as the sensor is, and two friction laws of the same family differ by as much.
 constexpr double kImmaterialExcess = 0.5;
-/// An effect is kept if it lowers the BIC by at least this much: odds beyond 150 to 1 [Kass and Raftery 1995, p. 777].
-constexpr double kStrongEvidence = 10.0;
 /// ... and the held-out error by at least this share of it.
 constexpr double kLeastHeldOutDrop = 0.01;
-/// How many effects of a round are fitted jointly with everything else.
-constexpr std::size_t kFinalists = 3;
 /// How many unlisted terms are fitted jointly, and what share of the listed effects' held-out error a term of unknown law
 /// has to stay below to take their place: it has more freedom than any of them.
 constexpr std::size_t kUnlistedFinalists = 4;
@@ -30,8 +27,6 @@ constexpr double kUnlistedAdvantage = 0.7;
 /// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise
 /// itself is told to one or two percent, which is as much.
 constexpr double kNothingLeft = 0.2;
-/// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
-constexpr double kCloseVariant = 0.9;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by.
 template <class Family>
 constexpr Resolution kRankingResolution = std::is_same_v<Family, DirectFamily> ? Resolution::fine : Resolution::coarse;
@@ -106,38 +101,6 @@ class Search {
     return !options_.watch.interrupted() && keep_best(round, screened);
   }
 
-  /// The screened candidates that are fitted jointly: the best names, each with its close variants.
-  static std::vector<std::size_t> finalists_of(const std::vector<Screened<Family>>& screened) {
-    std::vector<std::pair<std::string, double>> best_of_name;
-    std::vector<std::size_t> finalists;
-    for (std::size_t i = 0; i < screened.size() && screened[i].criterion < -kStrongEvidence; ++i) {
-      const std::string& name = screened[i].candidate.name;
-      const auto known =
-          std::find_if(best_of_name.begin(), best_of_name.end(), [&](const auto& n) { return n.first == name; });
-      if (known == best_of_name.end() && best_of_name.size() < kFinalists) {
-        best_of_name.emplace_back(name, screened[i].criterion);
-        finalists.push_back(i);
-      } else if (known != best_of_name.end() && screened[i].criterion < kCloseVariant * known->second) {
-        finalists.push_back(i);
-      }
-    }
-    return finalists;
-  }
-
-  /// Names in the order of their best law, the laws of one name from the simplest on.
-  static std::vector<std::size_t> simplest_laws_first(const std::vector<std::size_t>& order,
-                                                      const std::vector<Screened<Family>>& screened) {
-    const auto rank_of = [&](std::size_t i) {
-      return std::find_if(order.begin(), order.end(),
-                          [&](std::size_t k) { return screened[k].candidate.name == screened[i].candidate.name; });
-    };
-    std::vector<std::size_t> sorted = order;
-    std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
-      return std::pair(rank_of(a), screened[a].fitted.free.size()) < std::pair(rank_of(b), screened[b].fitted.free.size());
-    });
-    return sorted;
-  }
-
   /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
   /// another effect that promised more than twice as much.
   bool is_settled(std::size_t wanted, const std::vector<std::size_t>& order, const std::vector<Screened<Family>>& screened,
@@ -159,9 +122,9 @@ class Search {
     for (const Screened<Family>& s : screened) {
       trials.push_back({round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", ""});
     }
-    const std::vector<std::size_t> order = finalists_of(screened);
+    const std::vector<std::size_t> order = finalists_of<Family>(screened);
     std::vector<Assessed<Family>> finalists(screened.size());
-    for (const std::size_t i : simplest_laws_first(order, screened)) {
+    for (const std::size_t i : simplest_laws_first<Family>(order, screened)) {
       if (options_.watch.interrupted()) {
         return false;
       }

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/explain/screening.hpp"
+
+namespace hotfire::explain {
+
+/// An effect is kept if it lowers the BIC by at least this much: odds beyond 150 to 1 [Kass and Raftery 1995, p. 777].
+inline constexpr double kStrongEvidence = 10.0;
+/// How many effects of a round are fitted jointly with everything else.
+inline constexpr std::size_t kFinalists = 3;
+/// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
+inline constexpr double kCloseVariant = 0.9;
+
+/// The screened candidates that are fitted jointly: the best names, each with its close variants.
+template <class Family>
+std::vector<std::size_t> finalists_of(const std::vector<Screened<Family>>& screened) {
+  std::vector<std::pair<std::string, double>> best_of_name;
+  std::vector<std::size_t> finalists;
+  for (std::size_t i = 0; i < screened.size() && screened[i].criterion < -kStrongEvidence; ++i) {
+    const std::string& name = screened[i].candidate.name;
+    const auto known =
+        std::find_if(best_of_name.begin(), best_of_name.end(), [&](const auto& n) { return n.first == name; });
+    if (known == best_of_name.end() && best_of_name.size() < kFinalists) {
+      best_of_name.emplace_back(name, screened[i].criterion);
+      finalists.push_back(i);
+    } else if (known != best_of_name.end() && screened[i].criterion < kCloseVariant * known->second) {
+      finalists.push_back(i);
+    }
+  }
+  return finalists;
+}
+
+/// Names in the order of their best law, the laws of one name from the simplest on.
+template <class Family>
+std::vector<std::size_t> simplest_laws_first(const std::vector<std::size_t>& order,
+                                             const std::vector<Screened<Family>>& screened) {
+  const auto rank_of = [&](std::size_t i) {
+    return std::find_if(order.begin(), order.end(),
+                        [&](std::size_t k) { return screened[k].candidate.name == screened[i].candidate.name; });
+  };
+  std::vector<std::size_t> sorted = order;
+  std::stable_sort(sorted.begin(), sorted.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(rank_of(a), screened[a].fitted.free.size()) < std::pair(rank_of(b), screened[b].fitted.free.size());
+  });
+  return sorted;
+}
+
+}  // namespace hotfire::explain
