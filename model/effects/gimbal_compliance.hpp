@@ -60,7 +60,7 @@ struct GimbalCompliance {
     // The last step's speed: one far above the solution would put the substitution on the wrong side of a reversal.
     const S first = speed_under(torque_at(state.speed));
     const S second = speed_under(torque_at(first));
-    const S torque = torque_at(extrapolated_speed<S>(state.speed, first, second));
+    S torque = torque_at(extrapolated_speed<S>(state.speed, first, second));
     state.speed = speed_under(torque);
     state.before_last = state.last;
     state.last = torque;

@@ -26,6 +26,7 @@ struct Effort {
 inline constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
 inline constexpr Effort kRanking{8, 2, 1e-4};  ///< which finalist is best
 inline constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
+inline constexpr Effort kAllRows{8, 1, 1e-5};  ///< a small move: to the rows that were held out
 
 /// A model with what it predicts under fine steps.
 template <class Family>

@@ -9,6 +9,8 @@ namespace {
 
 /// Largest factor by which a start lies above or below a field's typical value.
 constexpr double kStartSpan = 4.0;
+/// ... and of the two further starts that stand for a small effect.
+constexpr double kWhisper = 16.0;
 
 /// Standard deviation of the logarithm of an effect's parameter about its typical value before any data: a factor of ten.
 /// Worth less than one effective sample; it keeps a parameter that the data do not determine from wandering off to a bound.
@@ -242,6 +244,17 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
       for (std::size_t k = 0; k < own.size(); ++k) {
         starts.back().push_back(start_coordinate(own[k], k, n, frequency));
       }
+    }
+  }
+  if (!has_frequency && !all_ordinates && !own.empty()) {
+    // Small ones: an effect far below its typical size shows from there, where from elsewhere it only overshoots. Of some
+    // effects the small ones have large values (a rate limit).
+    for (const double factor : {1.0 / kWhisper, kWhisper}) {
+      starts.push_back(starts.front());
+      const FreeParameter& size = own.front();
+      starts.back().front() = size.scale == FreeParameter::Scale::linear
+                                  ? (factor < 1.0 ? factor : -1.0 / factor)
+                                  : size.coordinate(std::clamp(size.unit_size * factor, size.lower, size.upper));
     }
   }
   return starts;

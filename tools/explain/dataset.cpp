@@ -87,6 +87,15 @@ std::vector<std::string> names_of(const std::vector<Record>& records) {
   return names;
 }
 
+void require_known_records(const std::vector<Exclusion>& exclusions, const std::vector<Record>& records) {
+  for (const Exclusion& exclusion : exclusions) {
+    if (std::none_of(records.begin(), records.end(), [&](const Record& r) { return r.name == exclusion.record; })) {
+      throw UsageError(fmt::format("--exclude {}: no record of that name; there are: {}", exclusion.record,
+                                   fmt::join(names_of(records), ", ")));
+    }
+  }
+}
+
 template <class Parameters>
 struct ChannelsOf;
 template <>
@@ -130,12 +139,7 @@ Exclusion exclusion_from(const std::string& text) {
 }
 
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records, const std::vector<Exclusion>& exclusions) {
-  for (const Exclusion& exclusion : exclusions) {
-    if (std::none_of(records.begin(), records.end(), [&](const Record& r) { return r.name == exclusion.record; })) {
-      throw UsageError(fmt::format("--exclude {}: no record of that name; there are: {}", exclusion.record,
-                                   fmt::join(names_of(records), ", ")));
-    }
-  }
+  require_known_records(exclusions, records);
   Dataset data;
   std::string input;
   std::visit(

@@ -78,6 +78,8 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
     matrix.diagonal().array() += 1e-9 * std::max(1e-30, matrix.diagonal().maxCoeff());
   }
   normal_.compute(matrix);
+  Eigen::VectorXd move;
+  cost_ = eliminated_cost(evaluator.residuals(prediction), move);
 }
 
 template <class Family>
@@ -194,16 +196,22 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
     return best;
   }
   // One or two parameters, or a table, have one valley; more have several.
+  const bool has_table = std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
   const bool one_valley =
       own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
   const std::size_t valleys = one_valley ? 1 : kStarts;
   const std::vector<Start> starts =
       scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(), frequencies_)
                                           : start_points(own, frequencies_));
-  for (std::size_t i = 0; i < starts.size() && i < valleys; ++i) {
+  // A table starts as nothing, and a frequency has to be met. Of any other law one of the starts is better than nothing, or
+  // it is not what is missing.
+  const bool searched =
+      has_table || std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.unit == "Hz"; });
+  const bool hopeless = !searched && !starts.empty() && starts.front().cost >= cost_;
+  for (std::size_t i = 0; i < starts.size() && i < (hopeless ? 1 : valleys); ++i) {
     Screened<Family> screened{candidate, fitted, 0.0, 0.0, true};
     screened.fitted.u = starts[i].u;
-    improve(screened, kShortFit);
+    improve(screened, hopeless ? 0 : kShortFit);
     if (screened.good && (!best.good || screened.criterion < best.criterion)) {
       best = std::move(screened);
     }
@@ -293,7 +301,7 @@ void Screening<Family>::improve(Screened<Family>& screened, int iterations) cons
   }
   const double began = seconds_now();
   Fitted<Family>& fitted = screened.fitted;
-  screened.good = fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, &frozen_});
+  screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, &frozen_});
   Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
   if (residual.size() == 0) {
     screened.good = false;

@@ -75,6 +75,7 @@ class Screening {
   Eigen::VectorXd prior_;   ///< information of each frozen parameter's prior
   Eigen::VectorXd prior_gradient_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
+  double cost_ = 0.0;  ///< of the current model, as `eliminated_cost` counts it
 };
 
 extern template class Screening<SimplexFamily>;
