@@ -247,13 +247,8 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
       verdict == "explained" ? ", close to what the sensors can tell" : "; a part is left unexplained");
 }
 
-template <class Family>
-json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult<Family>& found,
-                 const std::vector<Estimate>& estimated) {
-  json warnings = json::array();
-  if (found.interrupted) {
-    warnings.push_back("The search was interrupted: what is reported is what was known by then.");
-  }
+/// Rows that are simulated and not compared.
+void warn_of_rows(const Dataset& data, json& warnings) {
   for (const Experiment& experiment : data.experiments) {
     if (experiment.first_scored > 0) {
       warnings.push_back(fmt::format("{} does not start at rest: its first {:.2f} s are simulated but not compared.",
@@ -266,7 +261,11 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
                                      experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
     }
   }
-  for (const Kept& kept : found.kept) {
+}
+
+/// Effects that are no fault of the plant.
+void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
+  for (const Kept& kept : found) {
     const std::string& name = kept.trial.candidate.name;
     if (name == model::SensorScale::name || name == model::SensorDelay::name) {
       warnings.push_back(fmt::format(
@@ -275,6 +274,17 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
           name, kept.trial.candidate.option_name));
     }
   }
+}
+
+template <class Family>
+json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult<Family>& found,
+                 const std::vector<Estimate>& estimated) {
+  json warnings = json::array();
+  if (found.interrupted) {
+    warnings.push_back("The search was interrupted: what is reported is what was known by then.");
+  }
+  warn_of_rows(data, warnings);
+  warn_of_channels(found.kept, warnings);
   for (const std::string& key : model.left_out) {
     warnings.push_back(key + " is not in the model file: its reference value was taken, and held exact.");
   }
