@@ -47,7 +47,7 @@ Friction lugre(const ReferenceTaos& taos, const Pair& slip, const Pair& z) {
   }
   const double speed = slip.norm();
   const double sliding = law.level * (1.0 + (taos.vibration_ratio - 1.0) * std::exp(-speed / taos.vibration_velocity));
-  const double level = stribeck(sliding, law.static_ratio, law.stribeck, speed);
+  const double level = study::stribeck(sliding, law.static_ratio, law.stribeck, speed);
   const Pair rate = slip - law.stiffness * speed / level * z;
   const double fading = std::exp(-(speed / law.damping_dies_at) * (speed / law.damping_dies_at));
   return {law.stiffness * z + law.damping * fading * rate, rate};
@@ -104,7 +104,7 @@ int derivative(double, N_Vector state, N_Vector result, void* user) {
     const Vector direction = line.normalized();
     const double stroke = line.norm() - (taos.on_engine[i] - taos.on_vehicle[i]).norm();
     const double deflection = of(axis, kReferencePiston) - stroke - moved[i] - direction.dot(bearing.head<3>());
-    forces[i] = reference_spring_force(taos.axes[i], deflection);
+    forces[i] = study::spring_force(taos.axes[i], deflection);
     on_bearing += forces[i] * direction;
     for (int about = 0; about < 2; ++about) {
       torque(about) += forces[i] * direction.dot(turned.axes[static_cast<std::size_t>(about)].cross(at));
@@ -127,7 +127,7 @@ int derivative(double, N_Vector state, N_Vector result, void* user) {
     double* own_rate = d + axis * kAxisStates;
     const double torque_motor = a.position_gain * (a.arm * problem.commands[i] - own[kReferencePiston]) -
                                 a.pressure_gain * (own[kReferencePressure] - own[kReferenceWashout]);
-    reference_hydraulics(a, clamp_to(torque_motor, 1.0), own, own_rate);
+    reference_hydraulics(a, study::clamp_to(torque_motor, 1.0), own, own_rate);
     own_rate[kReferencePiston] = own[kReferencePistonRate];
     own_rate[kReferencePistonRate] =
         (a.area * own[kReferencePressure] - forces[i] - a.piston_damping * own[kReferencePistonRate]) / a.piston_mass;

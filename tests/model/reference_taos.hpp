@@ -4,9 +4,11 @@
 #include <array>
 #include <vector>
 
-#include "tests/model/reference_axis.hpp"
+#include "tools/study/reference_axis.hpp"
 
 namespace hotfire::test {
+
+using study::ReferenceAxis;
 
 /// One engine with two hydraulic axes on a compliant bearing and a modal structure, written from physics.md sections 1 to 3
 /// alone, by vector mechanics: what the model is judged by. Nothing of model/ is used here.

@@ -10,14 +10,6 @@ namespace {
 /// Rate at which the play between valve command and spool gives way beyond its width [1/s].
 constexpr double kPlayGivesWay = 1e7;
 
-double clamp_to(double x, double limit) { return std::clamp(x, -limit, limit); }
-double sign(double x) { return (x > 0.0) - (x < 0.0); }
-double beyond(double x, double limit) { return x - clamp_to(x, limit); }
-
-double stribeck(double level, double ratio, double at, double v) {
-  return level * (1.0 + (ratio - 1.0) * std::exp(-(v / at) * (v / at)));
-}
-
 struct Friction {
   double force = 0.0;
   double rate = 0.0;  ///< of the bristle
@@ -83,6 +75,8 @@ double soft_deflection(const ReferenceAxis& axis, double force) {
   return own + force / axis.load_stiffness;
 }
 
+}  // namespace
+
 double spring_force(const ReferenceAxis& axis, double deflection) {
   const double total = 1.0 / (1.0 / axis.actuator_stiffness + 1.0 / axis.load_stiffness);
   const double played = beyond(deflection, axis.backlash);
@@ -102,6 +96,8 @@ double spring_force(const ReferenceAxis& axis, double deflection) {
   }
   return sign(played) * high;
 }
+
+namespace {
 
 struct Lever {
   double stroke = 0.0;  ///< of the actuator [m]

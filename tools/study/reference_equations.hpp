@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -36,6 +38,17 @@ using StateVector = std::array<double, kStates>;
 /// What a state is measured in; tolerances are a tiny part of it.
 inline constexpr StateVector kStateScale{0.01, 1.0,  1e6,  1e6, 0.01, 0.1,  0.01, 0.1, 0.01,
                                          1e-5, 1e-4, 1e-5, 0.1, 1.0,  0.01, 0.01, 1e6, 1e-4};
+
+inline double clamp_to(double x, double limit) { return std::clamp(x, -limit, limit); }
+inline double sign(double x) { return (x > 0.0) - (x < 0.0); }
+inline double beyond(double x, double limit) { return x - clamp_to(x, limit); }
+
+inline double stribeck(double level, double ratio, double at, double v) {
+  return level * (1.0 + (ratio - 1.0) * std::exp(-(v / at) * (v / at)));
+}
+
+/// Force of the load spring [N], with play and softness, at a deflection [m].
+double spring_force(const ReferenceAxis& axis, double deflection);
 
 /// The states that an axis has, in order.
 std::vector<ReferenceState> states_of(const ReferenceAxis& axis);
