@@ -106,3 +106,37 @@ TEST(Dataset, ARecordWithoutTheModelsInputIsRefusedByName) {
     STRCMP_CONTAINS("command", error.what());
   }
 }
+
+TEST(Dataset, AFastRecordIsThinnedToEveryKthRowUnderTheMeanOfTheCommandsBetween) {
+  std::vector<double> ramp(100001);
+  for (std::size_t row = 0; row < ramp.size(); ++row) {
+    ramp[row] = 1e-6 * static_cast<double>(row);
+  }
+  const auto data = hotfire::explain::make_dataset(
+      axis(),
+      {record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-4),
+       record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-3)},
+      {hotfire::explain::exclusion_from("record.csv@3.0-3.5")});
+  const auto thin = hotfire::explain::thinned(data, 2e-3);
+  const auto& fast = thin.experiments[0];
+  DOUBLES_EQUAL(2e-3, fast.period, 1e-15);
+  LONGS_EQUAL(10001, fast.rows());
+  LONGS_EQUAL(10001, fast.measured[0].size());
+  DOUBLES_EQUAL(ramp[70], fast.measured[0][7], 0.0);
+  // Ten commands of a ramp, from the 70th on: their mean is four and a half rows later.
+  DOUBLES_EQUAL(ramp[70] + 4.5e-6, fast.input[7], 1e-15);
+  const auto seconds = [](const hotfire::explain::Experiment& experiment, const auto& blocks) {
+    std::size_t rows = 0;
+    for (const auto& block : blocks) {
+      rows += block.last - block.first;
+    }
+    return static_cast<double>(rows) * experiment.period;
+  };
+  // A row more or less at either end of at most thirty blocks.
+  DOUBLES_EQUAL(seconds(data.experiments[0], data.experiments[0].fitted), seconds(fast, fast.fitted), 30 * 2e-3);
+  DOUBLES_EQUAL(seconds(data.experiments[0], data.experiments[0].held_out), seconds(fast, fast.held_out), 30 * 2e-3);
+  DOUBLES_EQUAL(0.5, seconds(fast, fast.excluded), 2e-3);
+  // A record that is no faster stays as it is.
+  LONGS_EQUAL(data.experiments[1].rows(), thin.experiments[1].rows());
+  CHECK(thin.experiments[1].input == data.experiments[1].input);
+}

@@ -16,7 +16,8 @@ Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const F
 }
 
 template <class Family>
-Assessed<Family> refined(const Evaluator<Family>& evaluator, unsigned threads, Fitted<Family> fitted, const Effort& effort) {
+Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
+                         Fitted<Family> fitted, const Effort& effort) {
   Prediction prediction;
   if (!evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
     return {};
@@ -37,7 +38,7 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, unsigned threads, F
       break;
     }
   }
-  return assess(Evaluator<Family>(evaluator.data(), Resolution::fine), threads, fitted);
+  return assess(fine, threads, fitted);
 }
 
 template <class Family>
@@ -103,7 +104,7 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
         reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
       }
     }
-    Assessed<Family> simple = refined(fine, threads, reduced, kFinal);
+    Assessed<Family> simple = refined(fine, fine, threads, reduced, kFinal);
     const std::vector<ChannelFit>& effective = winner.goodness.fitted;
     if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {
       candidate = law;
@@ -115,7 +116,8 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
 
 #define HOTFIRE_INSTANTIATE(Family)                                                                                   \
   template Assessed<Family> assess(const Evaluator<Family>&, unsigned, const Fitted<Family>&);                        \
-  template Assessed<Family> refined(const Evaluator<Family>&, unsigned, Fitted<Family>, const Effort&);               \
+  template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
+                                    const Effort&);                                                                   \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
   template double criterion_change(const Assessed<Family>&, const Assessed<Family>&, const std::vector<ChannelFit>&); \
   template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);                                   \

@@ -32,10 +32,11 @@ inline constexpr Effort kAllRows{8, 1, 1e-5};  ///< a small move: to the rows th
 template <class Family>
 Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted);
 
-/// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper stands. Not good() if
-/// the start or the end can't be simulated.
+/// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper stands, assessed
+/// under fine steps on every row. Not good() if the start or the end can't be simulated.
 template <class Family>
-Assessed<Family> refined(const Evaluator<Family>& evaluator, unsigned threads, Fitted<Family> fitted, const Effort& effort);
+Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
+                         Fitted<Family> fitted, const Effort& effort);
 
 /// A model without one of its effects, the other parameters where they are.
 template <class Family>

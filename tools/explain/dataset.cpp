@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "tools/explain/statistics.hpp"
 #include "tools/files/error.hpp"
@@ -206,6 +207,42 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
     share_out(data.experiments[e]);
   }
   return data;
+}
+
+Dataset thinned(const Dataset& data, double period) {
+  Dataset thin = data;
+  for (Experiment& experiment : thin.experiments) {
+    const auto every = static_cast<std::size_t>(std::max(1.0, std::floor(period / experiment.period * (1.0 + 1e-9))));
+    if (every == 1) {
+      continue;
+    }
+    const auto kept = [&](std::size_t row) { return (row + every - 1) / every; };
+    const auto thin_blocks = [&](std::vector<Block>& blocks) {
+      for (Block& block : blocks) {
+        block = {kept(block.first), kept(block.last)};
+      }
+      std::erase_if(blocks, [](const Block& block) { return block.first == block.last; });
+    };
+    const std::vector<double> full = std::move(experiment.input);
+    experiment.input.assign(kept(full.size()), 0.0);
+    for (std::size_t row = 0; row < experiment.input.size(); ++row) {
+      const auto first = full.begin() + static_cast<std::ptrdiff_t>(row * every);
+      const auto held = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(every), full.end() - first);
+      experiment.input[row] = std::accumulate(first, first + held, 0.0) / static_cast<double>(held);
+    }
+    for (std::vector<double>& channel : experiment.measured) {
+      for (std::size_t row = 0; row * every < channel.size(); ++row) {
+        channel[row] = channel[row * every];
+      }
+      channel.resize(kept(channel.size()));
+    }
+    experiment.period *= static_cast<double>(every);
+    experiment.first_scored = kept(experiment.first_scored);
+    thin_blocks(experiment.fitted);
+    thin_blocks(experiment.held_out);
+    thin_blocks(experiment.excluded);
+  }
+  return thin;
 }
 
 std::vector<std::string> held_out_names(const Dataset& data) {

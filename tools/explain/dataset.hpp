@@ -61,6 +61,10 @@ struct Dataset {
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
 
+/// The records at a period of about `period` [s]: every k-th row, under the mean of the commands held from it to the next.
+/// The rows that a fit sees, are held out or excluded stay so. Records that are no faster are left as they are.
+Dataset thinned(const Dataset& data, double period);
+
 /// "steps.csv@8.0-12.0" for every held-out block.
 std::vector<std::string> held_out_names(const Dataset& data);
 

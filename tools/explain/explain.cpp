@@ -71,7 +71,7 @@ void fit_to_all_rows(Dataset data, const ExplainOptions& options, SearchResult<F
     experiment.held_out.clear();
   }
   const Evaluator<Family> whole(data, Resolution::fine);
-  const Assessed<Family> again = refined(whole, options.threads, found.explained.model, kAllRows);
+  const Assessed<Family> again = refined(whole, whole, options.threads, found.explained.model, kAllRows);
   if (again.good()) {
     found.explained.model = again.model;
   }

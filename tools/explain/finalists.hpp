@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "tools/explain/screening.hpp"
+#include "tools/explain/trial.hpp"
 
 namespace hotfire::explain {
 
-/// An effect is kept if it lowers the BIC by at least this much: odds beyond 150 to 1 [Kass and Raftery 1995, p. 777].
-inline constexpr double kStrongEvidence = 10.0;
 /// How many effects of a round are fitted jointly with everything else.
 inline constexpr std::size_t kFinalists = 3;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.

@@ -52,6 +52,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   evaluator.differentiate(current.base, current.free, current.u, all, threads, residual, frozen_.jacobian);
   Prediction prediction;
   evaluator.predict(current.base, current.free, current.u, threads, prediction);
+  current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
   goodness_ = goodness(evaluator.data(), prediction);
   const std::size_t first_used = evaluator.data().used.front() ? 0 : 1;
   frequencies_ = strongest_frequencies(evaluator.data(), prediction, first_used, 3);
@@ -59,7 +60,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
   for (const Stretch& s : evaluator.stretches()) {
     weight_.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
-        .setConstant(1.0 / std::sqrt(current.temper[s.channel]));
+        .setConstant(1.0 / std::sqrt(current_.temper[s.channel]));
   }
   prior_.setZero(static_cast<Eigen::Index>(current.free.size()));
   prior_gradient_ = prior_;

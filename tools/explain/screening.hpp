@@ -65,7 +65,7 @@ class Screening {
   std::vector<ChannelFit> mean_squares(const Eigen::VectorXd& residual) const;
 
   const Evaluator<Family>& evaluator_;
-  const Fitted<Family>& current_;
+  Fitted<Family> current_;  ///< tempered as this evaluator's rows are coloured
   const Scales& scales_;
   unsigned threads_;
   Frozen frozen_;

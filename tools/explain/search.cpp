@@ -27,17 +27,17 @@ constexpr double kUnlistedAdvantage = 0.7;
 /// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise
 /// itself is told to one or two percent, which is as much.
 constexpr double kNothingLeft = 0.2;
-/// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by.
+/// Rows no closer than this tell candidates apart [s]: the fastest that a hydraulic axis does in its sensors is tens of
+/// hertz.
+constexpr double kRankingPeriod = 2e-3;
+/// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
+/// were thinned by.
 template <class Family>
-constexpr Resolution kRankingResolution = std::is_same_v<Family, DirectFamily> ? Resolution::fine : Resolution::coarse;
+constexpr bool kRankedCoarsely = !std::is_same_v<Family, DirectFamily>;
 
 double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
-
-std::string label(const Candidate& candidate) {
-  return candidate.option_name.empty() ? candidate.name : candidate.name + " (" + candidate.option_name + ")";
-}
 
 bool reaches_noise(const Dataset& data, const Prediction& prediction) {
   return excess_over_noise(data, prediction) <= kImmaterialExcess;
@@ -53,8 +53,9 @@ class Search {
       : data_(data),
         model_(model),
         options_(options),
+        thin_(kRankedCoarsely<Family> ? thinned(data, kRankingPeriod) : data),
         fine_(data, Resolution::fine),
-        coarse_(data, kRankingResolution<Family>) {}
+        coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine) {}
 
   SearchResult<Family> run() {
     if constexpr (std::is_same_v<Family, DirectFamily>) {
@@ -73,7 +74,7 @@ class Search {
       refuse_impossible_channels(data_, result_.declared.prediction);
     }
     options_.watch.progress("calibrating the declared parameters within their tolerances");
-    result_.calibrated = refined(fine_, options_.threads, start, kFinal);
+    result_.calibrated = calibrated(start);
     result_.explained = result_.calibrated;
     for (int round = 1; round <= options_.most_effects && !options_.watch.interrupted(); ++round) {
       if (reaches_noise(data_, result_.explained.prediction) || !add_effect(round)) {
@@ -99,6 +100,23 @@ class Search {
     const Screening<Family> screening(coarse_, current, scales_, options_.threads);
     const auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     return !options_.watch.interrupted() && keep_best(round, screened);
+  }
+
+  /// Fitted as its rank needs it.
+  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const {
+    return refined(coarse_, fine_, options_.threads, fitted, effort);
+  }
+  /// Fitted as the report says it.
+  Assessed<Family> settled(const Fitted<Family>& fitted) const {
+    return refined(fine_, fine_, options_.threads, fitted, kFinal);
+  }
+  /// The declared model within its tolerances: fast records are dear, so the way there is made on thinned ones.
+  Assessed<Family> calibrated(const Fitted<Family>& declared) const {
+    if (fine_.fit_rows() == coarse_.fit_rows()) {
+      return settled(declared);
+    }
+    const Assessed<Family> near = ranked(declared, kRanking);
+    return settled(near.good() ? near.model : declared);
   }
 
   /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
@@ -133,7 +151,7 @@ class Search {
       }
       options_.watch.progress(fmt::format("round {}: fitting {} with everything else", round, label(screened[i].candidate)));
       const double began = seconds_now();
-      finalists[i] = refined(coarse_, options_.threads, screened[i].fitted, kRanking);
+      finalists[i] = ranked(screened[i].fitted, kRanking);
       trials[i].seconds += seconds_now() - began;
     }
     const std::optional<std::size_t> best = rank(trials, finalists, order);
@@ -141,8 +159,7 @@ class Search {
     if (best) {
       winner = polished(round, std::move(finalists[*best]), trials[*best].candidate);
       options_.watch.progress(fmt::format("round {}: fitting {} with fine steps", round, label(trials[*best].candidate)));
-      winner = simplest_law(fine_, scales_, options_.threads, refined(fine_, options_.threads, winner.model, kFinal),
-                            trials[*best].candidate);
+      winner = simplest_law(fine_, scales_, options_.threads, settled(winner.model), trials[*best].candidate);
       for (const std::size_t i : order) {
         const Assessed<Family>& finalist = i == *best ? winner : finalists[i];
         if (winner.good() && finalist.good()) {
@@ -154,7 +171,7 @@ class Search {
                            trials[*best].held_out_ratio < 1.0 - kLeastHeldOutDrop;
     for (std::size_t i = 0; i < trials.size(); ++i) {
       trials[i].decision = supported && i == *best ? "kept" : "dropped";
-      trials[i].reason = reason(trials[i], best ? &trials[*best] : nullptr);
+      trials[i].reason = reason_of(trials[i], best ? &trials[*best] : nullptr);
     }
     result_.trials.insert(result_.trials.end(), trials.begin(), trials.end());
     if (!supported) {
@@ -181,7 +198,7 @@ class Search {
       }
       for (std::size_t i = 0; i < screened.size(); ++i) {
         if (label(screened[i].candidate) == label(other.candidate) && finalists[i].good()) {
-          const Assessed<Family> again = refined(fine_, options_.threads, finalists[i].model, kFinal);
+          const Assessed<Family> again = settled(finalists[i].model);
           return again.good() ? std::optional(Rival<Family>{kept.trial.candidate, other.candidate, again.model})
                               : std::nullopt;
         }
@@ -207,7 +224,7 @@ class Search {
         continue;
       }
       options_.watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
-      finalists.back() = refined(fine_, options_.threads, s.fitted, kFinal);
+      finalists.back() = ranked(s.fitted, kRanking);
       if (!finalists.back().good()) {
         continue;
       }
@@ -219,6 +236,13 @@ class Search {
           fmt::format("leaves {:.1f} % of the calibrated model's held-out error", 100.0 * trials.back().held_out_ratio);
       if (!best || trials.back().held_out_ratio < trials[*best].held_out_ratio) {
         best = trials.size() - 1;
+      }
+    }
+    if (best) {
+      Assessed<Family> again = settled(finalists[*best].model);
+      if (again.good()) {
+        trials[*best].held_out_ratio = held_out_ratio(again, result_.calibrated);
+        finalists[*best] = std::move(again);
       }
     }
     const double listed = held_out_ratio(result_.explained, result_.calibrated);
@@ -247,7 +271,7 @@ class Search {
     for (std::size_t i = 0; i + 1 < result_.kept.size(); ++i) {
       Assessed<Family> again = polished(round, result_.explained, result_.kept[i].trial.candidate);
       if (Goodness::combined(again.goodness.fitted) < Goodness::combined(result_.explained.goodness.fitted)) {
-        again = refined(fine_, options_.threads, again.model, kFinal);
+        again = settled(again.model);
         if (again.good()) {
           result_.explained = std::move(again);
         }
@@ -275,7 +299,7 @@ class Search {
     if (!again.good) {
       return winner;
     }
-    Assessed<Family> other = refined(coarse_, options_.threads, again.fitted, kRanking);
+    Assessed<Family> other = ranked(again.fitted, kRanking);
     const bool better =
         other.good() && Goodness::combined(other.goodness.fitted) < Goodness::combined(winner.goodness.fitted);
     return better ? other : winner;
@@ -312,22 +336,6 @@ class Search {
     trial.held_out_ratio = held_out_ratio(with, current);
   }
 
-  static std::string reason(const Trial& trial, const Trial* best) {
-    if (trial.decision == "kept") {
-      return fmt::format("lowers the held-out error by {:.1f} % and the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
-                         -trial.delta_criterion);
-    }
-    if (!trial.refined) {
-      return trial.delta_criterion > -kStrongEvidence ? "does not lower the BIC" : "behind the finalists in screening";
-    }
-    if (best != &trial && best->delta_criterion < trial.delta_criterion) {
-      return fmt::format("{} is better by {:.0f} in BIC", label(best->candidate),
-                         trial.delta_criterion - best->delta_criterion);
-    }
-    return fmt::format("lowers the held-out error by only {:.2f} %, the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
-                       -trial.delta_criterion);
-  }
-
   /// Takes out every earlier effect without which the model is as good.
   void take_out_superfluous(int round) {
     for (std::size_t i = 0; i + 1 < result_.kept.size();) {
@@ -337,8 +345,7 @@ class Search {
                   "taken out", "the model is as good without it since a later effect was added"};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
       const double began = seconds_now();
-      Assessed<Family> rest =
-          refined(coarse_, options_.threads, without_effect(result_.explained.model, trial.candidate), kCheck);
+      Assessed<Family> rest = ranked(without_effect(result_.explained.model, trial.candidate), kCheck);
       if (rest.good()) {
         compare(trial, rest, rest.goodness.fitted);
       }
@@ -346,7 +353,7 @@ class Search {
       if (rest.good() && trial.delta_criterion < kStrongEvidence) {
         result_.trials.push_back(trial);
         result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
-        result_.explained = refined(fine_, options_.threads, rest.model, kFinal);
+        result_.explained = settled(rest.model);
       } else {
         ++i;
       }
@@ -356,6 +363,7 @@ class Search {
   const Dataset& data_;
   const ModelFile& model_;
   const SearchOptions& options_;
+  const Dataset thin_;
   Evaluator<Family> fine_;
   Evaluator<Family> coarse_;
   Scales scales_;

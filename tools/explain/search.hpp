@@ -1,35 +1,14 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "tools/explain/assessed.hpp"
 #include "tools/explain/next_experiment.hpp"
 #include "tools/explain/screening.hpp"
+#include "tools/explain/trial.hpp"
 
 namespace hotfire::explain {
-
-/// Two candidates whose BIC differs by less than this are not told apart by the data.
-inline constexpr double kTied = 10.0;
-
-/// One candidate in one round, and what became of it.
-struct Trial {
-  int round = 0;
-  Candidate candidate;
-  bool refined = false;          ///< fitted jointly with everything else
-  double delta_criterion = 0.0;  ///< BIC with it minus without it (negative is better)
-  double held_out_ratio = 1.0;   ///< held-out error with it over without it; 1 if not refined
-  double seconds = 0.0;
-  std::string decision;  ///< "kept", "dropped", "taken out"
-  std::string reason;
-};
-
-/// An effect the search kept, with what it reached when it was added and the other effects tried in its place, best first.
-struct Kept {
-  Trial trial;
-  std::vector<Trial> alternatives;
-};
 
 template <class Family>
 struct SearchResult {
@@ -50,9 +29,6 @@ struct SearchOptions {
 
 /// True if every channel's residual is noise but for a part that the sensor could not show.
 bool reaches_noise(const Dataset& data, const Prediction& prediction);
-
-/// "gimbal_friction (lugre)".
-std::string label(const Candidate& candidate);
 
 /// Calibrates the declared model within its tolerances, then adds effects one by one while the data support them: every
 /// candidate is screened, the best are fitted jointly with everything else, and one is kept if it lowers the BIC and the
