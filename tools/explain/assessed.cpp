@@ -2,10 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tools/explain/uncertainty.hpp"
 
 namespace hotfire::explain {
+
+namespace {
+
+/// Change of the logarithm of a temper below which it stands.
+constexpr double kTemperStands = 0.2;
+/// A fit that ran out of iterations goes on where its last pass left less than this share of the error.
+constexpr double kStillFalling = 0.95;
+
+}  // namespace
 
 template <class Family>
 Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted) {
@@ -23,6 +33,7 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
     return {};
   }
   fitted.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
+  double left = Goodness::combined(goodness(evaluator.data(), prediction).fitted);
   for (int pass = 0; pass < effort.passes; ++pass) {
     if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, nullptr}) ||
         !evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
@@ -34,7 +45,8 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
       change = std::max(change, std::abs(std::log(next[c] / fitted.temper[c])));
     }
     fitted.temper = next;
-    if (change < 0.2) {
+    const double before = std::exchange(left, Goodness::combined(goodness(evaluator.data(), prediction).fitted));
+    if (change < kTemperStands && (fitted.converged || left > kStillFalling * before)) {
       break;
     }
   }
@@ -54,6 +66,23 @@ Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& cand
     }
   }
   return rest;
+}
+
+template <class Family>
+Fitted<Family> with_declared_values(Fitted<Family> model) {
+  for (std::size_t k = 0; k < model.free.size(); ++k) {
+    if (model.free[k].is_declared()) {
+      model.u[k] = 0.0;
+    }
+  }
+  return model;
+}
+
+template <class Family>
+Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second) {
+  const bool better =
+      second.good() && Goodness::combined(second.goodness.fitted) < Goodness::combined(first.goodness.fitted);
+  return better ? second : first;
 }
 
 template <class Family>
@@ -119,6 +148,8 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
   template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
                                     const Effort&);                                                                   \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
+  template Fitted<Family> with_declared_values(Fitted<Family>);                                                       \
+  template Assessed<Family> better_of(Assessed<Family>, Assessed<Family>);                                            \
   template double criterion_change(const Assessed<Family>&, const Assessed<Family>&, const std::vector<ChannelFit>&); \
   template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);                                   \
   template Assessed<Family> simplest_law(const Evaluator<Family>&, const Scales&, unsigned, Assessed<Family>, Candidate&);

@@ -24,7 +24,7 @@ struct Effort {
   double tolerance;
 };
 inline constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
-inline constexpr Effort kRanking{8, 2, 1e-4};  ///< which finalist is best
+inline constexpr Effort kRanking{8, 5, 1e-4};  ///< which finalist is best
 inline constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
 inline constexpr Effort kAllRows{8, 1, 1e-5};  ///< a small move: to the rows that were held out
 
@@ -41,6 +41,15 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
 /// A model without one of its effects, the other parameters where they are.
 template <class Family>
 Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate);
+
+/// A model with its declared parameters as declared, the effects where they are: a calibration that had to stand in for a
+/// missing effect is further from the truth than the declaration.
+template <class Family>
+Fitted<Family> with_declared_values(Fitted<Family> model);
+
+/// Whichever leaves less on the rows that a fit sees; the first if the second could not be simulated.
+template <class Family>
+Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second);
 
 /// BIC of one model less that of another, on given effective samples.
 template <class Family>

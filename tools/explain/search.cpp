@@ -285,6 +285,10 @@ class Search {
       return winner;
     }
     options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
+    winner = better_of(std::move(winner), ranked(with_declared_values(winner.model), kRanking));
+    if (reaches_noise(data_, winner.prediction)) {
+      return winner;
+    }
     Fitted<Family> anchor = without_effect(winner.model, candidate);
     anchor.base.effects.active[candidate.effect] = true;
     std::vector<double> own;
@@ -299,10 +303,7 @@ class Search {
     if (!again.good) {
       return winner;
     }
-    Assessed<Family> other = ranked(again.fitted, kRanking);
-    const bool better =
-        other.good() && Goodness::combined(other.goodness.fitted) < Goodness::combined(winner.goodness.fitted);
-    return better ? other : winner;
+    return better_of(std::move(winner), ranked(again.fitted, kRanking));
   }
 
   /// Sets how every finalist does, all on the effective samples of the one with the least error: a model that leaves a
