@@ -5,8 +5,8 @@
 
 namespace hotfire::model {
 
-/// A measured channel whose clock is late: the reading is the value `delay` ago (`DelayLine`). A channel that is early shows
-/// as all others, and the command, being late.
+/// A measured channel whose clock is late, or early where `delay` is negative: the reading is the value `delay` ago, or the
+/// one that its motion leads to (`DelayLine`).
 struct SensorDelay {
   static constexpr std::string_view name = "sensor_delay";
   static constexpr Site site = Site::sensor;
@@ -23,7 +23,8 @@ struct SensorDelay {
     int option = 0;
     S delay{0.0};
     static constexpr auto fields() {
-      return std::array{Field<Params>{"delay", "s", 0.0, kLongestDelay, 0.005, "how late the channel is", &Params::delay}};
+      return std::array{Field<Params>{"delay", "s", -kLongestDelay, kLongestDelay, 0.005,
+                                      "how late the channel is; early: negative", &Params::delay}};
     }
   };
 

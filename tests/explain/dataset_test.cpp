@@ -112,11 +112,10 @@ TEST(Dataset, AFastRecordIsThinnedToEveryKthRowUnderTheMeanOfTheCommandsBetween)
   for (std::size_t row = 0; row < ramp.size(); ++row) {
     ramp[row] = 1e-6 * static_cast<double>(row);
   }
-  const auto data = hotfire::explain::make_dataset(
-      axis(),
-      {record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-4),
-       record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-3)},
-      {hotfire::explain::exclusion_from("record.csv@3.0-3.5")});
+  const auto data = hotfire::explain::make_dataset(axis(),
+                                                   {record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-4),
+                                                    record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-3)},
+                                                   {hotfire::explain::exclusion_from("record.csv@3.0-3.5")});
   const auto thin = hotfire::explain::thinned(data, 2e-3);
   const auto& fast = thin.experiments[0];
   DOUBLES_EQUAL(2e-3, fast.period, 1e-15);
