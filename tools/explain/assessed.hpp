@@ -36,7 +36,7 @@ Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const F
 /// under fine steps on every row. Not good() if the start or the end can't be simulated.
 template <class Family>
 Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
-                         Fitted<Family> fitted, const Effort& effort);
+                         Fitted<Family> fitted, const Effort& effort, Slopes slopes = Slopes::exact);
 
 /// A model without one of its effects, the other parameters where they are.
 template <class Family>

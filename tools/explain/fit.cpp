@@ -120,7 +120,8 @@ class SimulationError : public ceres::CostFunction {
       std::copy(options_.frozen->u.begin(), options_.frozen->u.end(), at.begin());
     }
     if (want_jacobian) {
-      if (!evaluator_.differentiate(fitted_.base, fitted_.free, at, simulated_, options_.threads, residual, jacobian)) {
+      if (!differentiate<Family>(evaluator_, fitted_.base, fitted_.free, at, simulated_, options_.threads, options_.slopes,
+                                 residual, jacobian)) {
         return false;
       }
     } else {
@@ -176,6 +177,7 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
   fitted.converged = summary.termination_type == ceres::CONVERGENCE;
+  fitted.stalled = !summary.iterations.empty() && !summary.iterations.back().step_is_successful;
   return summary.IsSolutionUsable();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/explain/evaluator.hpp"
+#include "tools/explain/slopes.hpp"
 
 namespace hotfire::explain {
 
@@ -22,6 +23,7 @@ struct Fitted {
   Temper temper;
   Eigen::MatrixXd normal;  ///< J^T J of the last derivative, priors included
   bool converged = false;
+  bool stalled = false;  ///< ended on a step that was refused: what the derivatives promise is not kept
 };
 
 /// Derivatives of the declared parameters, frozen at a calibrated model: while candidates are screened, the declared
@@ -36,10 +38,11 @@ struct FitOptions {
   unsigned threads = 1;
   double tolerance = 1e-5;         ///< relative change of the cost at which a fit has converged
   const Frozen* frozen = nullptr;  ///< for the first frozen->u.size() parameters
+  Slopes slopes = Slopes::exact;
 };
 
 /// Minimises the weighted simulation error plus the priors of the declared tolerances from `fitted.u` (Levenberg-Marquardt
-/// in Ceres, exact gradients), and leaves the result there. False if the start itself can't be simulated.
+/// in Ceres), and leaves the result there. False if the start itself can't be simulated.
 template <class Family>
 bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options);
 

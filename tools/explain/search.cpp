@@ -103,8 +103,8 @@ class Search {
   }
 
   /// Fitted as its rank needs it.
-  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const {
-    return refined(coarse_, fine_, options_.threads, fitted, effort);
+  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort, Slopes slopes = Slopes::exact) const {
+    return refined(coarse_, fine_, options_.threads, fitted, effort, slopes);
   }
   /// Fitted as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted) const {
@@ -286,6 +286,9 @@ class Search {
     }
     options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
     winner = better_of(std::move(winner), ranked(with_declared_values(winner.model), kRanking));
+    if (winner.model.stalled) {
+      winner = better_of(std::move(winner), ranked(winner.model, kRanking, Slopes::wide));
+    }
     if (reaches_noise(data_, winner.prediction)) {
       return winner;
     }

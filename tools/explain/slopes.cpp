@@ -1,0 +1,73 @@
+#include "tools/explain/slopes.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "tools/explain/parallel.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Half the width of a wide difference, in the coordinate of an effect's parameter and in tolerances of a declared one.
+constexpr double kWideStep = 0.1;
+constexpr double kWideTolerance = 0.3;
+/// The whole range of a sensor is thousands of times its noise: a reading that moves by more than a million for one unit of
+/// a parameter (one tolerance, a factor e) is a derivative that ran away.
+constexpr double kRunawaySlope = 1e6;
+
+template <class Family>
+bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
+                 std::span<const FreeParameter> free, std::span<const double> u, std::span<const std::size_t> wanted,
+                 unsigned threads, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
+  const std::size_t count = wanted.size();
+  std::vector<Eigen::VectorXd> sides(2 * count + 1);
+  std::vector<double> reached(2 * count, 0.0);
+  parallel_for(sides.size(), threads, [&](std::size_t i) {
+    std::vector<double> at(u.begin(), u.end());
+    if (i < 2 * count) {
+      const FreeParameter& parameter = free[wanted[i / 2]];
+      const double step = parameter.is_declared() ? kWideTolerance : kWideStep;
+      const double a = parameter.coordinate(parameter.lower);
+      const double b = parameter.coordinate(parameter.upper);
+      double& moved = at[wanted[i / 2]];
+      moved = std::clamp(moved + (i % 2 == 0 ? -step : step), std::min(a, b), std::max(a, b));
+      reached[i] = moved;
+    }
+    Prediction prediction;
+    if (evaluator.predict(base, free, at, 1, prediction)) {
+      sides[i] = evaluator.residuals(prediction);
+    }
+  });
+  if (std::any_of(sides.begin(), sides.end(), [](const Eigen::VectorXd& side) { return side.size() == 0; })) {
+    return false;
+  }
+  residual = sides.back();
+  jacobian.resize(residual.size(), static_cast<Eigen::Index>(count));
+  for (std::size_t k = 0; k < count; ++k) {
+    jacobian.col(static_cast<Eigen::Index>(k)) = (sides[2 * k + 1] - sides[2 * k]) / (reached[2 * k + 1] - reached[2 * k]);
+  }
+  return true;
+}
+
+}  // namespace
+
+template <class Family>
+bool differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
+                   std::span<const FreeParameter> free, std::span<const double> u, std::span<const std::size_t> wanted,
+                   unsigned threads, Slopes slopes, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
+  if (slopes == Slopes::exact && evaluator.differentiate(base, free, u, wanted, threads, residual, jacobian) &&
+      (jacobian.size() == 0 || jacobian.cwiseAbs().maxCoeff() < kRunawaySlope)) {
+    return true;
+  }
+  return differences(evaluator, base, free, u, wanted, threads, residual, jacobian);
+}
+
+template bool differentiate(const Evaluator<SimplexFamily>&, const PlainParameters<SimplexFamily>&,
+                            std::span<const FreeParameter>, std::span<const double>, std::span<const std::size_t>, unsigned,
+                            Slopes, Eigen::VectorXd&, Eigen::MatrixXd&);
+template bool differentiate(const Evaluator<DirectFamily>&, const PlainParameters<DirectFamily>&,
+                            std::span<const FreeParameter>, std::span<const double>, std::span<const std::size_t>, unsigned,
+                            Slopes, Eigen::VectorXd&, Eigen::MatrixXd&);
+
+}  // namespace hotfire::explain
