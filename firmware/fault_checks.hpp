@@ -47,8 +47,8 @@ struct ObservedRig {
   bool bus_down = false;
 };
 
-/// Finds what is wrong in a cycle, before anything is sent in it. A value that is not finite is within no limit, so it also
-/// raises the faults that it hides. Pure logic, no allocation.
+/// Finds what is wrong in a cycle, before anything is sent in it. A value that is not finite is that fault and no other of
+/// its actuator: its limits say nothing then. Pure logic, no allocation.
 class FaultChecks {
  public:
   /// `period` in s.
@@ -83,17 +83,19 @@ class FaultChecks {
   };
 
   FaultSet look_at(const ObservedActuator& actuator, Last& last) noexcept {
-    FaultSet found;
     const auto& [first, second] = actuator.readings;
+    if (!std::isfinite(first) || !std::isfinite(second) || !std::isfinite(actuator.command)) {
+      last = {};
+      return Fault::not_finite;
+    }
+    FaultSet found;
     for (std::size_t i = 0; i < actuator.readings.size(); ++i) {
       const double reading = actuator.readings[i];
-      found.add_if(!std::isfinite(reading), Fault::not_finite);
       found.add_if(!(reading >= limits_.lowest_reading && reading <= limits_.highest_reading), Fault::out_of_range);
       found.add_if(!(actuator.reading_ages_ns[i] <= limits_.reading_age_ns), Fault::stale_sensor);
       found.add_if(!within(reading), Fault::limit);
     }
     found.add_if(!(std::abs(first - second) <= limits_.disagreement), Fault::readings_disagree);
-    found.add_if(!std::isfinite(actuator.command), Fault::not_finite);
     found.add_if(!within(actuator.command), Fault::limit);
     const double rate = last.has_command ? std::abs(actuator.command - last.command) / period_ : 0.0;
     found.add_if(!(rate <= limits_.command_rate), Fault::limit);

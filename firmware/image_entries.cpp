@@ -8,19 +8,32 @@
 namespace hotfire::firmware {
 
 double read_bounded(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit) {
+  double value = lower;
+  read_list(entries, key, lower, upper, unit, std::span(&value, 1));
+  return value;
+}
+
+void read_list(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit,
+               std::span<double> values) {
   const Entry* entry = entries.take(key);
   if (entry == nullptr) {
-    return lower;
+    return;
   }
-  char* end = nullptr;
-  const double value = std::strtod(entry->value.c_str(), &end);
-  // Written so that NaN is refused as well.
-  if (*end == '\0' && value >= lower && value <= upper) {
-    return value;
+  const char* next = entry->value.c_str();
+  bool good = true;
+  for (std::size_t i = 0; i < values.size() && good; ++i) {
+    char* end = nullptr;
+    const double value = std::strtod(next, &end);
+    // Written so that NaN is refused as well.
+    good = end != next && value >= lower && value <= upper && *end == (i + 1 < values.size() ? ',' : '\0');
+    values[i] = good ? value : lower;
+    next = end + 1;
   }
-  const std::string shown(unit == "1" ? "" : unit);
-  entries.refuse(*entry, text("allowed is a number from %g to %g %s", lower, upper, shown.c_str()));
-  return lower;
+  if (!good) {
+    const std::string many = values.size() == 1 ? "a number" : text("%zu numbers, commas between them,", values.size());
+    const std::string shown(unit == "1" ? "" : unit);
+    entries.refuse(*entry, text("allowed is %s from %g to %g %s", many.c_str(), lower, upper, shown.c_str()));
+  }
 }
 
 ReadText read_image_text(const std::string& path) {

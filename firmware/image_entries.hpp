@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "firmware/text.hpp"
@@ -78,16 +80,18 @@ class Entries {
       refuse(entry, text("the key is already in line %d", first->line));
       return;
     }
+    places_.emplace(entry.key, entries_.size());
     entries_.push_back(entry);
   }
 
   Entry* find(const std::string& key) {
-    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key == key; });
-    return found == entries_.end() ? nullptr : &*found;
+    const auto found = places_.find(key);
+    return found == places_.end() ? nullptr : &entries_[found->second];
   }
 
   std::string name_;
   std::vector<Entry> entries_;
+  std::unordered_map<std::string, std::size_t> places_;  ///< of a key in `entries_`: a lab's profile has many
   std::string error_;
 };
 
@@ -111,6 +115,10 @@ int read_word(Entries& entries, const std::string& key, const Words& words) {
 
 /// A number within bounds; refuses any other, NaN too.
 double read_bounded(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit);
+
+/// Numbers within bounds, commas between them, exactly as many as `values` has; refuses any other.
+void read_list(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit,
+               std::span<double> values);
 
 /// The text of a file; an error if it cannot be read.
 struct ReadText {

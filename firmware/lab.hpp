@@ -12,10 +12,11 @@
 #include "firmware/interlock.hpp"
 #include "firmware/profile.hpp"
 #include "hal/plant_bus.hpp"
+#include "hal/recording/fnv1a.hpp"
 
 namespace hotfire::firmware {
 
-/// What a lab does with its actuators, and what it allows. Every actuator is given the same command.
+/// What a lab does with its actuators, and what it allows.
 struct LabSettings {
   Profile profile{{}};
   std::size_t actuators = 1;
@@ -43,8 +44,8 @@ struct LabInputs {
 /// What it does in that cycle.
 struct LabOutputs {
   InterlockOutputs interlock;
-  std::array<double, hal::kMaxActuators> commands{};  ///< [rad]
-  std::array<double, hal::kMaxActuators> currents{};  ///< [A]; to be sent only if `interlock.drive`
+  PerActuator commands{};  ///< [rad]; finite
+  PerActuator currents{};  ///< [A]; to be sent only if `interlock.drive`
 };
 
 /// Drives actuators through a profile behind the interlock: holds them where they are when armed, brings them slowly to the
@@ -81,6 +82,7 @@ class Lab {
       follow_pistons();
       begin_profile();
     }
+    leave_out_what_is_not_finite();
     set_currents();
     return outputs_;
   }
@@ -89,6 +91,11 @@ class Lab {
   std::size_t actuators() const noexcept { return settings_.actuators; }
   /// Where the pistons are, each the mean of its readings [m].
   std::span<const double> positions() const noexcept { return std::span(positions_).first(settings_.actuators); }
+  /// Adds the commands and the positions.
+  void add_to(hal::Fnv1a& hash) const noexcept {
+    hash.add(std::span(outputs_.commands).first(settings_.actuators));
+    hash.add(positions());
+  }
   /// The whole profile has been run since the last arming.
   bool completed() const noexcept { return completed_; }
   std::uint64_t armings() const noexcept { return armings_; }
@@ -114,6 +121,14 @@ class Lab {
     }
   }
 
+  /// A command that is not finite is a fault and is not sent; nor is it handed on, as the loop of a plant would end at it.
+  void leave_out_what_is_not_finite() noexcept {
+    for (std::size_t i = 0; i < settings_.actuators; ++i) {
+      const double stands = std::isfinite(positions_[i]) ? positions_[i] / settings_.piston_per_command : 0.0;
+      outputs_.commands[i] = std::isfinite(outputs_.commands[i]) ? outputs_.commands[i] : stands;
+    }
+  }
+
   void begin_profile() noexcept {
     time_ = 0.0;
     at_begin_ = false;
@@ -126,16 +141,17 @@ class Lab {
     if (at_begin_) {
       time_ += period_;
       completed_ = time_ >= settings_.profile.duration();
-      outputs_.commands.fill(settings_.profile.at(time_));
+      outputs_.commands = settings_.profile.at(time_);
       return;
     }
-    const double begin = settings_.profile.at(0.0);
+    const PerActuator begin = settings_.profile.at(0.0);
     const double most = settings_.approach_rate * period_;
     at_begin_ = true;
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
       double& command = outputs_.commands[i];
-      at_begin_ = at_begin_ && std::abs(begin - command) <= most;
-      command += std::clamp(begin - command, -most, most);
+      const double left = begin[i] - command;
+      at_begin_ = at_begin_ && std::abs(left) <= most;
+      command += std::clamp(left, -most, most);
     }
   }
 

@@ -58,14 +58,17 @@ LabLines read_lines(Entries& entries) {
   return lines;
 }
 
-std::vector<Segment> read_segments(Entries& entries) {
+std::vector<Segment> read_segments(Entries& entries, std::size_t actuators) {
   std::vector<Segment> segments;
-  for (std::string prefix = "segment.0."; entries.has_prefix(prefix); prefix = text("segment.%zu.", segments.size())) {
+  for (std::string prefix = "segment.0."; entries.has(prefix + "duration"); prefix = text("segment.%zu.", segments.size())) {
+    const auto read_angles = [&](const char* key, PerActuator& angles) {
+      read_list(entries, prefix + key, -kLargest, kLargest, "rad", std::span(angles).first(actuators));
+    };
     Segment segment;
     segment.duration = read_bounded(entries, prefix + "duration", kSmallest, kLargest, "s");
-    segment.from = read_bounded(entries, prefix + "from", -kLargest, kLargest, "rad");
-    segment.to = read_bounded(entries, prefix + "to", -kLargest, kLargest, "rad");
-    segment.amplitude = read_bounded(entries, prefix + "amplitude", -kLargest, kLargest, "rad");
+    read_angles("from", segment.from);
+    read_angles("to", segment.to);
+    read_angles("amplitude", segment.amplitude);
     segment.frequency = read_bounded(entries, prefix + "frequency", kSmallest, 1000.0, "Hz");
     segment.last_frequency = read_bounded(entries, prefix + "last_frequency", kSmallest, 1000.0, "Hz");
     segments.push_back(segment);
@@ -87,7 +90,7 @@ LabImage parse_lab_image(const std::string& text, const std::string& name, doubl
   read_settings(entries, settings);
   read_limits(entries, settings.limits, period);
   image.lines = read_lines(entries);
-  settings.profile = Profile(read_segments(entries));
+  settings.profile = Profile(read_segments(entries, settings.actuators));
   entries.refuse_unused();
   image.text = text;
   image.error = entries.error();

@@ -16,7 +16,6 @@
 #include "hal/clock.hpp"
 #include "hal/gpio.hpp"
 #include "hal/recording/fnv1a.hpp"
-#include "hal/recording/format.hpp"
 
 namespace hotfire::firmware {
 
@@ -95,12 +94,11 @@ class LabRig {
   /// The commands [rad].
   std::span<const double> measured() const noexcept { return std::span(lab_.outputs().commands).first(lab_.actuators()); }
   static constexpr std::uint32_t missing() noexcept { return 0; }
-  void add_to(hal::Fnv1a& hash) const noexcept {
-    hash.add(measured());
-    hash.add(lab_.positions());
-  }
+  void add_to(hal::Fnv1a& hash) const noexcept { lab_.add_to(hash); }
 
   const Lab& lab() const noexcept { return lab_; }
+  /// What the lab has seen in this cycle.
+  const LabInputs& inputs() const noexcept { return inputs_; }
   const can::MessageCounters& readings(std::size_t message) const noexcept { return followers_[message].counters(); }
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
@@ -241,33 +239,6 @@ class LabRig {
   bool drove_ = false;    ///< a command was sent that is not known to be out
   bool pending_ = false;  ///< at the beginning of the cycle a frame of the one before was not out
   bool taken_back_ = false;
-};
-
-/// Records a lab as a plant is: a cycle has the command that was held in it, and what the pistons read at its end. The flags
-/// carry the state and the first fault too.
-template <class Rig>
-class LabRecorder {
- public:
-  LabRecorder(Recorder& recorder, const Rig& rig) noexcept : recorder_(recorder), rig_(rig) {}
-
-  void record(const hal::CycleHead& head, std::span<const double>, std::span<const double> commands) noexcept {
-    if (begun_) {
-      recorder_.record(head_, std::span(commands_).first(commands.size()), rig_.lab().positions());
-    }
-    const InterlockOutputs& interlock = rig_.lab().outputs().interlock;
-    begun_ = true;
-    head_ = head;
-    head_.flags |= static_cast<std::uint64_t>(interlock.state) << hal::CycleHead::kStateShift |
-                   static_cast<std::uint64_t>(interlock.first) << hal::CycleHead::kFaultShift;
-    std::copy(commands.begin(), commands.end(), commands_.begin());
-  }
-
- private:
-  Recorder& recorder_;
-  const Rig& rig_;
-  bool begun_ = false;
-  hal::CycleHead head_;
-  std::array<double, hal::kMaxActuators> commands_{};
 };
 
 }  // namespace hotfire::firmware

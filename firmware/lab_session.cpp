@@ -3,6 +3,7 @@
 #include "firmware/can_session.hpp"
 #include "firmware/image_entries.hpp"
 #include "firmware/lab_image.hpp"
+#include "firmware/lab_recorder.hpp"
 #include "firmware/lab_rig.hpp"
 #include "firmware/run_loop.hpp"
 #include "hal/linux/gpiod_lines.hpp"
@@ -31,8 +32,8 @@ RecordedPlant recorded(const Lab& lab, const std::string& image) {
   RecordedPlant plant;
   plant.topology = kLabTopology;
   plant.input = {"command", "rad"};
-  plant.channels = {{"piston", "m"}};
-  plant.start.assign(lab.actuators(), 0.0);
+  plant.channels.assign(kLabChannels.begin(), kLabChannels.end());
+  plant.start.assign(lab.actuators() * kLabChannels.size(), 0.0);
   plant.image = image;
   return plant;
 }

@@ -1,28 +1,38 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "hal/plant_bus.hpp"
+
 namespace hotfire::firmware {
 
-/// A stretch of a profile: a straight line and a sine on it, whose frequency rises or falls by the same factor in equal
-/// times.
+/// A value for each actuator.
+using PerActuator = std::array<double, hal::kMaxActuators>;
+
+/// A stretch of a profile: for each actuator a straight line and a sine on it. The sine is the same for all but for its
+/// amplitude; its frequency rises or falls by the same factor in equal times.
 struct Segment {
   double duration = 0.0;  ///< [s]
-  double from = 0.0;      ///< of the line, at both ends [rad]
-  double to = 0.0;
-  double amplitude = 0.0;  ///< of the sine, which begins at phase 0 [rad]
-  double frequency = 0.0;  ///< at both ends [Hz]
+  PerActuator from{};     ///< of the line, at both ends [rad]
+  PerActuator to{};
+  PerActuator amplitude{};  ///< of the sine, which begins at phase 0 [rad]
+  double frequency = 0.0;   ///< at both ends [Hz]
   double last_frequency = 0.0;
 
-  /// The command at a time since its beginning.
-  double at(double time) const noexcept {
-    const double line = from + (to - from) * time / duration;
-    return amplitude == 0.0 ? line : line + amplitude * std::sin(2.0 * std::numbers::pi * periods(time));
+  /// The commands at a time since its beginning.
+  PerActuator at(double time) const noexcept {
+    const double sine = std::sin(2.0 * std::numbers::pi * periods(time));
+    PerActuator commands{};
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      commands[i] = from[i] + (to[i] - from[i]) * time / duration + amplitude[i] * sine;
+    }
+    return commands;
   }
 
  private:
@@ -44,11 +54,11 @@ class Profile {
 
   double duration() const noexcept { return duration_; }
 
-  /// The command [rad] at a time since the start [s]; after the end, that of the end. Takes the logarithm of the number of
+  /// The commands [rad] at a time since the start [s]; after the end, those of the end. Takes the logarithm of the number of
   /// segments.
-  double at(double time) const noexcept {
+  PerActuator at(double time) const noexcept {
     if (segments_.empty()) {
-      return 0.0;
+      return {};
     }
     const auto after = std::upper_bound(starts_.begin() + 1, starts_.end(), time);
     const auto place = static_cast<std::size_t>(after - starts_.begin()) - 1;

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "firmware/json.hpp"
-#include "firmware/lab_image.hpp"
+#include "firmware/lab_replay.hpp"
 #include "firmware/plant.hpp"
 #include "firmware/plant_image.hpp"
 #include "firmware/status.hpp"
@@ -16,17 +16,15 @@ namespace {
 
 using Reader = hal::RecordingReader;
 
-/// The first of the recorded readings that is not the replayed one, bit for bit; empty if none.
+/// The first of the recorded readings that is not the replayed one; empty if none.
 std::string differing(const hal::RecordingHeader& header, std::span<const double> recorded,
                       std::span<const double> replayed) {
-  for (std::size_t i = 0; i < recorded.size(); ++i) {
-    if (std::bit_cast<std::uint64_t>(recorded[i]) != std::bit_cast<std::uint64_t>(replayed[i])) {
-      const hal::RecordedChannel& channel = header.channels[i % header.channels.size()];
-      return text("%s of actuator %zu: recorded %.17g, replayed %.17g %s", channel.name.c_str(),
-                  i / header.channels.size() + 1, recorded[i], replayed[i], channel.unit.c_str());
-    }
+  std::string what;
+  const std::size_t channels = header.channels.size();
+  for (std::size_t i = 0; i < recorded.size() && what.empty(); ++i) {
+    what = firmware::differing(header.channels[i % channels], i / channels, recorded[i], replayed[i]);
   }
-  return {};
+  return what;
 }
 
 template <class Model>
@@ -45,30 +43,13 @@ Replay replay_model(Reader& reader, const typename Model::Parameters& parameters
   }
   hal::Fnv1a hash;
   hal::Command command;
-  hal::RecordedCycle cycle;
-  while (reader.next(cycle)) {
-    if (cycle.dropped_before > 0 && !result.gap) {
-      result.gap = cycle.head.cycle - cycle.dropped_before;
-    }
-    if (result.gap || result.difference) {
-      continue;
-    }
+  replay_cycles(reader, result, [&](const hal::RecordedCycle& cycle) {
     std::copy(cycle.commands.begin(), cycle.commands.end(), command.values.begin());
     plant.step(command);
     plant.add_to(hash);
-    std::string what = differing(header, cycle.readings, plant.measured());
-    if (what.empty() && hash.value() != cycle.head.hash) {
-      what = "the state behind equal readings";
-    }
-    if (what.empty()) {
-      ++result.proved;
-    } else {
-      result.difference = {cycle.head.cycle, what};
-    }
-  }
-  result.recorded = reader.cycles();
-  result.dropped = reader.dropped();
-  result.end = reader.end();
+    const std::string what = differing(header, cycle.readings, plant.measured());
+    return what.empty() && hash.value() != cycle.head.hash ? "the state behind equal readings" : what;
+  });
   return result;
 }
 
@@ -98,9 +79,10 @@ std::string sentence(const Replay& result) {
 }
 
 std::string as_text(const std::string& path, const hal::RecordingHeader& header, const Replay& result) {
-  std::string report = text("%s: %s, %u %s, period %g us, model %016llx\n", path.c_str(), header.topology.c_str(),
-                            header.actuators, header.actuators == 1 ? "actuator" : "actuators",
-                            static_cast<double>(header.period_ns) * 1e-3, whole(hal::model_hash(header.model)));
+  std::string report =
+      text("%s: %s, %u %s, period %g us, %s %016llx\n", path.c_str(), header.topology.c_str(), header.actuators,
+           header.actuators == 1 ? "actuator" : "actuators", static_cast<double>(header.period_ns) * 1e-3,
+           header.topology == kLabTopology ? "profile" : "model", whole(hal::model_hash(header.model)));
   report += text("  recorded      %s on %s by hotfire %s%s\n", header.started.c_str(), header.host.c_str(),
                  header.version.c_str(), header.version == HOTFIRE_VERSION ? "" : ", replayed by " HOTFIRE_VERSION);
   report += text("  cycles        %llu recorded, %llu dropped; %s\n", whole(result.recorded), whole(result.dropped),
@@ -137,11 +119,39 @@ std::string as_json(const std::string& path, const hal::RecordingHeader& header,
 
 }  // namespace
 
+std::string differing(const hal::RecordedChannel& channel, std::size_t actuator, double recorded, double replayed) {
+  if (std::bit_cast<std::uint64_t>(recorded) == std::bit_cast<std::uint64_t>(replayed)) {
+    return {};
+  }
+  return text("%s of actuator %zu: recorded %.17g, replayed %.17g %s", channel.name.c_str(), actuator + 1, recorded,
+              replayed, channel.unit.c_str());
+}
+
+void replay_cycles(Reader& reader, Replay& result,
+                   const std::function<std::string(const hal::RecordedCycle&)>& difference_in) {
+  hal::RecordedCycle cycle;
+  while (reader.next(cycle)) {
+    if (cycle.dropped_before > 0 && !result.gap) {
+      result.gap = cycle.head.cycle - cycle.dropped_before;
+    }
+    if (result.gap || result.difference) {
+      continue;
+    }
+    const std::string what = difference_in(cycle);
+    if (what.empty()) {
+      ++result.proved;
+    } else {
+      result.difference = {cycle.head.cycle, what};
+    }
+  }
+  result.recorded = reader.cycles();
+  result.dropped = reader.dropped();
+  result.end = reader.end();
+}
+
 Replay replay(Reader& reader) {
   if (reader.header().topology == kLabTopology) {
-    Replay refused;
-    refused.error = "the recording of a lab has no model: 'hotfire simulate' and 'hotfire explain' take it as a record";
-    return refused;
+    return replay_lab(reader);
   }
   const PlantImage image = parse_plant_image(reader.header().model, "the model in the header");
   if (!image.parameters) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -8,7 +9,8 @@
 
 namespace hotfire::firmware {
 
-/// What a replay found: the recorded commands, fed to the recorded model from its start, offline.
+/// What a replay found: the recorded inputs, fed to the recorded model, or to a lab's logic with the recorded profile, from
+/// the start, offline.
 struct Replay {
   /// The first cycle whose state or readings are not the bits that were recorded.
   struct Difference {
@@ -24,6 +26,14 @@ struct Replay {
   hal::RecordingReader::End end = hal::RecordingReader::End::cut_off;
   std::string error{};  ///< the recording cannot be replayed at all
 };
+
+/// Says that a recorded value is not the replayed one, bit for bit; empty if it is. Actuators count from 0.
+std::string differing(const hal::RecordedChannel& channel, std::size_t actuator, double recorded, double replayed);
+
+/// Goes through a recording up to what was dropped or differs. `difference_in` replays a cycle and says what of it is not as
+/// recorded; empty if all is.
+void replay_cycles(hal::RecordingReader& reader, Replay& result,
+                   const std::function<std::string(const hal::RecordedCycle&)>& difference_in);
 
 /// Replays a recording from a fresh reader.
 Replay replay(hal::RecordingReader& reader);

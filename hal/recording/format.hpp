@@ -26,9 +26,14 @@ struct CycleHead {
   static constexpr std::uint64_t kLost = 4;
   /// It is counted apart.
   static constexpr std::uint64_t kWarmUp = 8;
-  /// Of a lab: the state of its interlock, and the number of the first fault since it was armed, 8 bits each.
+  /// Of a lab: the state of its interlock, and the number of the first fault since it was armed, 8 bits each; then what it
+  /// saw that is a yes or no.
   static constexpr unsigned kStateShift = 8;
   static constexpr unsigned kFaultShift = 16;
+  static constexpr unsigned kInputsShift = 24;
+  static constexpr std::uint64_t lab_flags(std::uint64_t state, std::uint64_t fault) noexcept {
+    return state << kStateShift | fault << kFaultShift;
+  }
 
   std::uint64_t cycle = 0;      ///< from 0, without gaps in the loop: a gap in a recording is what was dropped
   std::int64_t release_ns = 0;  ///< CLOCK_MONOTONIC, as the moments that follow
@@ -36,11 +41,14 @@ struct CycleHead {
   std::int64_t read_ns = 0;
   std::int64_t stepped_ns = 0;
   std::int64_t written_ns = 0;
-  std::uint64_t command_sequence = 0;  ///< the sender's count of the command in use
+  std::uint64_t command_sequence = 0;  ///< the sender's count of the command in use; of a lab its last one's age [ns]
   std::uint64_t hash = 0;              ///< FNV-1a over state and readings of every cycle up to this one
   std::uint64_t flags = 0;
 };
 static_assert(sizeof(CycleHead) == 72);
+
+/// Values of one actuator that a recording has room for, beside its command.
+inline constexpr std::size_t kMostRecordedChannels = 8;
 
 constexpr std::size_t cycle_bytes(std::size_t actuators, std::size_t readings) noexcept {
   return sizeof(CycleHead) + sizeof(double) * (actuators + readings);

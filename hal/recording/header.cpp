@@ -11,9 +11,6 @@
 namespace hotfire::hal {
 namespace {
 
-/// The last line of a header, with the end of the line before it.
-constexpr std::string_view kLastLine = "\ncycles\n";
-
 std::string hexadecimal(double value) {
   char digits[32];
   std::snprintf(digits, sizeof digits, "%a", value);
@@ -98,7 +95,7 @@ bool take(RecordingHeader& header, std::string_view key, std::string_view value,
 
 std::string what_is_wrong(const RecordingHeader& header, const std::string& hash) {
   if (header.period_ns <= 0 || header.actuators == 0 || header.actuators > kMaxActuators || header.channels.empty() ||
-      header.channels.size() * header.actuators > kMaxReadings || header.input.name.empty()) {
+      header.channels.size() > kMostRecordedChannels || header.input.name.empty()) {
     return "its header lacks period_ns, actuators, input or channel, or has more of them than a plant can have";
   }
   if (header.start.size() != header.channels.size() * header.actuators) {
@@ -143,19 +140,19 @@ std::string header_text(const RecordingHeader& header) {
   for (std::string_view rest = header.model; !rest.empty();) {
     add("model", std::string(take_line(rest)));
   }
-  return text.append(kLastLine.substr(1));
+  return text.append(kLastHeaderLine.substr(1));
 }
 
 ParsedHeader parse_header(std::string_view text) {
   if (!text.starts_with(kRecordingMark)) {
     return {{}, 0, "it does not begin with `hotfire recording 1`: it is no recording, or one of another version"};
   }
-  const std::size_t last = text.find(kLastLine);
+  const std::size_t last = text.find(kLastHeaderLine);
   if (last == std::string_view::npos) {
     return {{}, 0, "its header has no end: the file is cut off"};
   }
   ParsedHeader parsed;
-  parsed.bytes = last + kLastLine.size();
+  parsed.bytes = last + kLastHeaderLine.size();
   std::string_view lines = text.substr(kRecordingMark.size(), last + 1 - kRecordingMark.size());
   std::string hash;
   for (int number = 2; !lines.empty(); ++number) {

@@ -14,7 +14,10 @@ struct ParsedHeader {
   std::string error;
 };
 
-/// Reads the header at the beginning of a recording. A header is below 256 KiB.
+/// The last line of a header, with the end of the line before it.
+inline constexpr std::string_view kLastHeaderLine = "\ncycles\n";
+
+/// Reads the header at the beginning of a recording.
 ParsedHeader parse_header(std::string_view text);
 
 }  // namespace hotfire::hal

@@ -8,7 +8,8 @@
 namespace hotfire::hal {
 namespace {
 
-constexpr std::size_t kMostHeader = 1 << 18;
+/// More than the header of a plant has; the profile of a lab makes it as long as it likes.
+constexpr std::size_t kHeaderPiece = 1 << 18;
 
 /// Up to `wanted` bytes.
 std::size_t read_bytes(std::ifstream& file, void* into, std::size_t wanted) {
@@ -16,13 +17,26 @@ std::size_t read_bytes(std::ifstream& file, void* into, std::size_t wanted) {
   return static_cast<std::size_t>(file.gcount());
 }
 
+/// The beginning of a file up to where its header ends, or all of it.
+std::string read_header_text(std::ifstream& file) {
+  std::string text;
+  std::size_t read = kHeaderPiece;
+  while (read == kHeaderPiece && text.find(kLastHeaderLine) == std::string::npos) {
+    const std::size_t before = text.size();
+    text.resize(before + kHeaderPiece);
+    read = read_bytes(file, text.data() + before, kHeaderPiece);
+    text.resize(before + read);
+  }
+  return text;
+}
+
 }  // namespace
 
 RecordingReader::RecordingReader(const std::string& path) : file_(path, std::ios::binary) {
-  std::string start(kMostHeader, '\0');
+  std::string start;
   if (file_.is_open()) {
     errno = 0;
-    start.resize(read_bytes(file_, start.data(), start.size()));
+    start = read_header_text(file_);
   }
   if (errno != 0) {
     error_ = path + ": cannot be read: " + std::strerror(errno);

@@ -44,12 +44,28 @@ TEST(ProfileFile, ProfileBecomesLinesOfAnImageInSi) {
              "segment.8.duration 0x1p+1\nsegment.8.from 0x1p-3\nsegment.8.to 0x0p+0\n", "segment.9.duration 0x1p+0\n"});
 }
 
+TEST(ProfileFile, AnAngleIsOneForAllActuatorsOrAListWithOneForEach) {
+  head.replace(head.find("actuators = 1"), 13, "actuators = 2");
+  const std::string text = lines(
+      "[[profile]]\nkind = \"steps\"\nlevels = [0.0625, [0.0625, -0.125]]\nhold = 1\n[[profile]]\nkind = \"sweep\"\n"
+      "amplitude = [\"0 rad\", 0.0625]\nfrom = 1\nto = 2\nduration = 4\n[[profile]]\nkind = \"sines\"\n"
+      "amplitudes = [[0.125, 0.0625]]\nfrequencies = [1, 2]\nperiods = 3\n[[profile]]\nkind = \"table\"\ntimes = [0, 1]\n"
+      "commands = [0, [0.125, 0.0625]]\n");
+  test::expect_message(
+      text, {"segment.0.from 0x1p-4,0x1p-4\n", "segment.1.to 0x1p-4,-0x1p-3\n", "segment.2.amplitude 0x0p+0,0x1p-4\n",
+             "segment.4.amplitude 0x1p-3,0x1p-4\n", "segment.5.from 0x0p+0,0x0p+0\nsegment.5.to 0x1p-3,0x1p-4\n"});
+  refused("[[profile]]\nkind = \"steps\"\nlevels = [[0, 0, 0]]\nhold = 1\n",
+          {"profile.0.levels", "for all actuators, or a list of 2, one for each"});
+  refused("[[profile]]\nkind = \"steps\"\nlevels = [[0, 0.126]]\nhold = 1\n", {"the commands of actuator 2, ", "0.126 rad"});
+}
+
 TEST(ProfileFile, WhatCannotBeIsRefusedWithItsLineAndWhatIsAllowed) {
   refused("", {"profile: missing; declare at least one"});
   refused("[[profile]]\nkind = \"swep\"\n", {"p.toml:30", "profile.0.kind", "did you mean \"sweep\"?"});
   refused("[[profile]]\nkind = \"rest\"\n", {"profile.0.duration: missing"});
   refused("[[profile]]\nkind = \"rest\"\nduration = \"1 m\"\n", {"profile.0.duration"});
-  refused("[[profile]]\nkind = \"steps\"\nlevels = []\nhold = 1\n", {"profile.0.levels", "a list of numbers in rad"});
+  refused("[[profile]]\nkind = \"steps\"\nlevels = []\nhold = 1\n",
+          {"profile.0.levels", "a list, each entry a number in rad"});
   refused("[[profile]]\nkind = \"sines\"\namplitudes = [0.01]\nfrequencies = [1]\nperiods = 0\n",
           {"profile.0.periods", "1 to"});
   refused("[[profile]]\nkind = \"table\"\ntimes = [0, 2, 1]\ncommands = [0, 0, 0]\n", {"rising, but 1 follows 2"});

@@ -12,7 +12,8 @@ TEST_GROUP(LabImage) {
       "limits.lowest_position -0.06\nlimits.highest_position 0.06\nlimits.command_rate 100\nlimits.position_error 0.005\n"
       "limits.position_error_time 0.5\nlimits.overruns 3\nline.emergency_stop estop\nline.hydraulic_enable hydraulic\n"
       "line.arm arm\nline.supply supply\nline.heartbeat heartbeat\nline.fault fault\nsegment.0.duration 2\n"
-      "segment.0.from 0.01\nsegment.0.to 0.03\nsegment.0.amplitude 0\nsegment.0.frequency 1\nsegment.0.last_frequency 1\n";
+      "segment.0.from 0.01,-1\nsegment.0.to 0.03,-0x1p+1\nsegment.0.amplitude 0,0\nsegment.0.frequency "
+      "1\nsegment.0.last_frequency 1\n";
 
   void refused(const std::string& line, const std::string& instead, const char* part) const {
     std::string changed = image;
@@ -30,7 +31,8 @@ TEST(LabImage, EveryKeyArrives) {
   LONGS_EQUAL(7'812'500, read.settings->limits.reading_age_ns);
   UNSIGNED_LONGS_EQUAL(500, read.settings->limits.position_error_cycles);
   UNSIGNED_LONGS_EQUAL(3, read.settings->most_overruns);
-  DOUBLES_EQUAL(0.02, read.settings->profile.at(1.0), 1e-12);
+  DOUBLES_EQUAL(0.02, read.settings->profile.at(1.0)[0], 1e-12);
+  DOUBLES_EQUAL(-1.5, read.settings->profile.at(1.0)[1], 1e-12);
   STRCMP_EQUAL("hydraulic", read.lines.hydraulic_enable.c_str());
 }
 
@@ -43,6 +45,9 @@ TEST(LabImage, WhatCannotBeIsRefusedWithItsLine) {
   refused("rest_speed 0.001", "rest_speed nan", "rest_speed = nan");
   refused("line.arm arm\n", "", "missing key line.arm");
   refused("segment.0.to 0.03", "segment.1.to 0.03", "missing key segment.0.to");
+  refused("segment.0.to 0.03,-0x1p+1", "segment.0.to 0.03", "allowed is 2 numbers, commas between them, from");
+  refused("segment.0.to 0.03", "segment.0.to 0.03,1", "allowed is 2 numbers");
+  refused("segment.0.duration 2", "segment.0.duration 2,3", "allowed is a number");
   refused("schema 1", "schema 1\nstranger 1", "stranger");
 }
 

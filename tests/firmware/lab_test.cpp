@@ -13,6 +13,7 @@ namespace hotfire::firmware {
 
 using test_lab::kPeriod;
 using test_lab::kPeriodNs;
+using test_lab::segment;
 using test_lab::settings;
 
 TEST_GROUP(Lab) {
@@ -124,6 +125,47 @@ TEST(Lab, JammedActuatorIsAPositionErrorOnceItLastsTooLong) {
   UNSIGNED_LONGS_EQUAL(1, lab.times_first(Fault::position_error));
 }
 
+TEST(Lab, EveryActuatorIsGivenItsOwnCommand) {
+  LabSettings two = settings();
+  two.actuators = 2;
+  two.profile = Profile({{1.0, {0.02, -0.01}, {0.02, -0.01}, {0.0, 0.005}, 0.25, 0.25}});
+  Lab one(two, kPeriod);
+  LabInputs pressed;
+  pressed.arm = pressed.start = true;
+  const auto follow = [&](LabInputs in) {
+    for (std::size_t i = 0; i < 2 && one.outputs().interlock.drive; ++i) {
+      in.readings[i] = {0.5 * one.outputs().commands[i], 0.5 * one.outputs().commands[i]};
+    }
+    one.step(in);
+  };
+  for (int press = 0; press < 2; ++press) {
+    follow({});
+    follow(pressed);
+  }
+  // 20 cycles to where the profile begins, then all of it: its sine ends at its peak.
+  for (int i = 0; i < 1019; ++i) {
+    follow({});
+  }
+  CHECK(one.outputs().interlock.state == RigState::running);
+  DOUBLES_EQUAL(0.02, one.outputs().commands[0], 1e-12);
+  DOUBLES_EQUAL(-0.005, one.outputs().commands[1], 1e-6);
+  DOUBLES_EQUAL(0.1 * one.outputs().commands[1], one.outputs().currents[1], 1e-15);
+}
+
+TEST(Lab, CommandThatIsNotFiniteIsThatFaultAndIsHandedToNobody) {
+  LabSettings broken = settings();
+  broken.profile = Profile({segment(1.0, 0.0, NAN)});
+  Lab one(broken, kPeriod);
+  LabInputs pressed;
+  pressed.arm = pressed.start = true;
+  for (int i = 0; i < 100; ++i) {
+    one.step(i % 2 == 0 ? LabInputs{} : pressed);
+    CHECK(std::isfinite(one.outputs().commands[0]));
+  }
+  CHECK(one.times_first(Fault::not_finite) > 0);
+  UNSIGNED_LONGS_EQUAL(one.armings() - (one.outputs().interlock.drive ? 1 : 0), one.times_first(Fault::not_finite));
+}
+
 TEST(Lab, OverrunsThatAreAllowedInARowAreNoFault) {
   LabSettings tolerant = settings();
   tolerant.most_overruns = 2;
@@ -141,21 +183,21 @@ TEST(Lab, OverrunsThatAreAllowedInARowAreNoFault) {
 TEST_GROUP(Profile){};
 
 TEST(Profile, SegmentsFollowEachOtherAndTheEndIsHeld) {
-  const Profile profile({{1.0, 0.0, 2.0, 0.0, 1.0, 1.0}, {2.0, 5.0, 5.0, 1.0, 0.25, 0.25}});
+  const Profile profile({segment(1.0, 0.0, 2.0), segment(2.0, 5.0, 5.0, 1.0, 0.25, 0.25)});
   DOUBLES_EQUAL(3.0, profile.duration(), 0.0);
-  DOUBLES_EQUAL(1.0, profile.at(0.5), 1e-12);
-  DOUBLES_EQUAL(5.0, profile.at(1.0), 1e-12);
-  DOUBLES_EQUAL(6.0, profile.at(2.0), 1e-12);
-  DOUBLES_EQUAL(5.0, profile.at(10.0), 1e-12);
+  DOUBLES_EQUAL(1.0, profile.at(0.5)[0], 1e-12);
+  DOUBLES_EQUAL(5.0, profile.at(1.0)[0], 1e-12);
+  DOUBLES_EQUAL(6.0, profile.at(2.0)[0], 1e-12);
+  DOUBLES_EQUAL(5.0, profile.at(10.0)[0], 1e-12);
 }
 
 TEST(Profile, SweepHasTheFrequenciesOfItsEnds) {
-  const Profile profile({{10.0, 0.0, 0.0, 1.0, 1.0, 4.0}});
-  const auto slope = [&](double time) { return (profile.at(time + 1e-7) - profile.at(time)) / 1e-7; };
+  const Profile profile({segment(10.0, 0.0, 0.0, 1.0, 1.0, 4.0)});
+  const auto slope = [&](double time) { return (profile.at(time + 1e-7)[0] - profile.at(time)[0]) / 1e-7; };
   DOUBLES_EQUAL(2.0 * std::numbers::pi, slope(0.0), 1e-3);
   // Phase of a sweep of equal factors: f0 T / ln(f1 / f0) (e^{t ln(f1 / f0) / T} - 1) periods.
   const double periods = 10.0 / std::log(4.0) * (2.0 - 1.0);
-  DOUBLES_EQUAL(std::sin(2.0 * std::numbers::pi * periods), profile.at(5.0), 1e-9);
+  DOUBLES_EQUAL(std::sin(2.0 * std::numbers::pi * periods), profile.at(5.0)[0], 1e-9);
 }
 
 }  // namespace hotfire::firmware

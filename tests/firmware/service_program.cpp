@@ -1,4 +1,4 @@
-// Runs hotfire-rt as a service manager does, with a notify socket and a watchdog: service_program HOTFIRE-RT UNIT
+// Runs hotfire-rt as a service manager does, with a notify socket and a watchdog: service_program HOTFIRE-RT FOLDER-OF-UNITS
 #include <sys/wait.h>
 
 #include <csignal>
@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
+#include <vector>
 
 #include "tests/firmware/recorded_run.hpp"
 #include "tests/support/notify_socket.hpp"
@@ -53,11 +55,13 @@ void check_the_program(const std::string& program, const std::filesystem::path& 
   expect(WIFEXITED(status) && WEXITSTATUS(status) == 0, "it ends well on SIGTERM");
 }
 
-void check_the_unit(const std::string& path) {
+void check_the_unit(const std::string& path, std::initializer_list<const char*> own) {
   std::ifstream file(path);
   const std::string unit{std::istreambuf_iterator<char>(file), {}};
-  for (const char* line : {"\nType=notify\n", "\nWatchdogSec=", "\nLimitRTPRIO=99\n", "\nLimitMEMLOCK=infinity\n",
-                           "/hotfire plant --model /etc/hotfire/%i.toml"}) {
+  std::vector<const char*> lines{"\nType=notify\n", "\nWatchdogSec=", "\nLimitRTPRIO=99\n", "\nLimitMEMLOCK=infinity\n",
+                                 "CAP_SYS_NICE CAP_IPC_LOCK"};
+  lines.insert(lines.end(), own);
+  for (const char* line : lines) {
     expect(unit.find(line) != std::string::npos, line);
   }
   expect(unit.find('@') == std::string::npos || unit.find("@CMAKE") == std::string::npos, "every path is filled in");
@@ -68,14 +72,18 @@ void check_the_unit(const std::string& path) {
 
 int main(int count, char** values) {
   if (count != 3) {
-    std::fprintf(stderr, "usage: %s HOTFIRE-RT UNIT\n", values[0]);
+    std::fprintf(stderr, "usage: %s HOTFIRE-RT FOLDER-OF-UNITS\n", values[0]);
     return 2;
   }
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("hotfire-service-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   hotfire::check_the_program(values[1], folder);
-  hotfire::check_the_unit(values[2]);
+  const std::string units = values[2];
+  hotfire::check_the_unit(units + "/hotfire-plant@.service", {"/hotfire plant --model /etc/hotfire/%i.toml"});
+  // What ended by itself, or by an interlock, is not started anew.
+  hotfire::check_the_unit(units + "/hotfire-lab@.service",
+                          {"/hotfire lab --profile /etc/hotfire/%i.toml", " CAP_NET_ADMIN\n", "\nRestart=on-abnormal\n"});
   std::filesystem::remove_all(folder);
   return hotfire::failures == 0 ? 0 : 1;
 }

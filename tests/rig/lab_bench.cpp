@@ -1,6 +1,7 @@
 #include "tests/rig/lab_bench.hpp"
 
 #include <CppUTest/TestHarness.h>
+#include <fcntl.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
@@ -10,12 +11,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <vector>
 
 #include "firmware/can/can_map.hpp"
 
@@ -145,8 +148,8 @@ LabProgram::LabProgram(const std::string& changes, const std::string& options) {
   process_ = fork();
   if (process_ == 0) {
     const std::string command =
-        "exec hotfire-rt lab --image /tmp/lab.image --bus can0 --gpio rig --period-us 10000 --warm-up 0 " + options +
-        " >/tmp/lab.out 2>&1";
+        "exec hotfire-rt lab --image /tmp/lab.image --bus can0 --gpio rig --period-us 10000 --warm-up 0 --record " +
+        std::string(kRecording) + " " + options + " >/tmp/lab.out 2>&1";
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
   }
@@ -166,6 +169,33 @@ LabProgram::~LabProgram() {
 
 void LabProgram::signal(int number) const { kill(process_, number); }
 
+void LabProgram::change_memory(double from, double to) const {
+  const std::string folder = "/proc/" + std::to_string(process_);
+  const int memory = open((folder + "/mem").c_str(), O_RDWR);
+  std::ifstream maps(folder + "/maps");
+  int changed = 0;
+  for (std::string line; std::getline(maps, line);) {
+    if (!line.ends_with("[heap]")) {
+      continue;
+    }
+    std::istringstream fields(line);
+    off_t begin = 0;
+    off_t end = 0;
+    char dash = 0;
+    fields >> std::hex >> begin >> dash >> end;
+    std::vector<double> values(static_cast<std::size_t>(end - begin) / sizeof(double));
+    CHECK_EQUAL(end - begin, pread(memory, values.data(), values.size() * sizeof(double), begin));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::bit_cast<std::uint64_t>(values[i]) == std::bit_cast<std::uint64_t>(from)) {
+        const auto place = static_cast<off_t>(i * sizeof(double));
+        changed += pwrite(memory, &to, sizeof to, begin + place) == sizeof to ? 1 : 0;
+      }
+    }
+  }
+  close(memory);
+  CHECK(changed > 0);
+}
+
 int LabProgram::wait() {
   int status = 0;
   wait_until("the end of the program", [&] { return waitpid(process_, &status, WNOHANG) == process_; });
@@ -179,7 +209,7 @@ std::string LabProgram::output() const {
 }
 
 void bank_up() {
-  shell("bank_up rig estop hydraulic arm supply heartbeat fault");
+  shell("lab_bank_up");
   std::string device;
   std::string chip;
   std::getline(std::ifstream("/sys/kernel/config/gpio-sim/rig/dev_name"), device);

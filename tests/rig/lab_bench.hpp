@@ -59,9 +59,11 @@ class SensorNode {
   std::thread thread_;
 };
 
-/// `hotfire-rt lab` as a process, on can0 and the bank `rig`.
+/// `hotfire-rt lab` as a process, on can0 and the bank `rig`, recorded.
 class LabProgram {
  public:
+  static constexpr const char* kRecording = "/tmp/lab.hfr";
+
   /// `changes`: lines of the image that take the place of the usual ones. `options` are added.
   explicit LabProgram(const std::string& changes = "", const std::string& options = "");
   ~LabProgram();
@@ -69,6 +71,8 @@ class LabProgram {
   LabProgram& operator=(const LabProgram&) = delete;
 
   void signal(int number) const;
+  /// Changes a number in the memory of the running program, wherever it has it, as memory that goes bad would.
+  void change_memory(double from, double to) const;
   /// Waits for its end; returns the exit status.
   int wait();
   std::string output() const;

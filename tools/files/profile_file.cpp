@@ -51,17 +51,24 @@ constexpr std::array<Number, 10> kLimitNumbers{{{"command_age", "s", 0.0, 600.0}
 constexpr std::array<std::string_view, 6> kLines{"emergency_stop", "hydraulic_enable", "arm",
                                                  "supply",         "heartbeat",        "fault"};
 
+/// Angles [rad], one for each actuator.
+using Angles = std::vector<double>;
+
 /// A stretch as the real-time side knows it: a straight line with a sine on it.
 struct Stretch {
   double duration = 0.0;
-  double from = 0.0;
-  double to = 0.0;
-  double amplitude = 0.0;
+  Angles from;
+  Angles to;
+  Angles amplitude;
   double frequency = 1.0;
   double last_frequency = 1.0;
 
-  double highest() const { return std::max(from, to) + std::abs(amplitude); }
-  double lowest() const { return std::min(from, to) - std::abs(amplitude); }
+  double highest(std::size_t actuator) const {
+    return std::max(from[actuator], to[actuator]) + std::abs(amplitude[actuator]);
+  }
+  double lowest(std::size_t actuator) const {
+    return std::min(from[actuator], to[actuator]) - std::abs(amplitude[actuator]);
+  }
 };
 
 class Reader {
@@ -166,13 +173,7 @@ class Reader {
       const std::string prefix = fmt::format("profile.{}", index++);
       const toml::table& table = source_.table(part, prefix);
       for (const Stretch& stretch : read_part(table, prefix + ".")) {
-        if (piston_per_command_ * stretch.highest() > highest_ || piston_per_command_ * stretch.lowest() < lowest_) {
-          source_.refuse_missing(
-              table, prefix,
-              fmt::format("its commands, {:g} to {:g} rad, stand for positions beyond limits.lowest_position and "
-                          "limits.highest_position, {:g} to {:g} m",
-                          stretch.lowest(), stretch.highest(), lowest_, highest_));
-        }
+        refuse_beyond_limits(stretch, table, prefix);
         write(stretch, segments++);
         duration_ += stretch.duration;
       }
@@ -182,13 +183,26 @@ class Reader {
     }
   }
 
+  void refuse_beyond_limits(const Stretch& stretch, const toml::table& table, const std::string& prefix) const {
+    for (std::size_t i = 0; i < actuators_; ++i) {
+      if (piston_per_command_ * stretch.highest(i) > highest_ || piston_per_command_ * stretch.lowest(i) < lowest_) {
+        source_.refuse_missing(
+            table, prefix,
+            fmt::format(
+                "the commands of actuator {}, {:g} to {:g} rad, stand for positions beyond limits.lowest_position and "
+                "limits.highest_position, {:g} to {:g} m",
+                i + 1, stretch.lowest(i), stretch.highest(i), lowest_, highest_));
+      }
+    }
+  }
+
   std::vector<Stretch> read_part(const toml::table& table, const std::string& prefix) const {
     static constexpr std::array<std::string_view, 5> kKinds{"rest", "steps", "sweep", "sines", "table"};
     const toml::node& node = needed(table, prefix, "kind", fmt::format("{}", fmt::join(kKinds, ", ")));
     const std::string kind = source_.text(node, prefix + "kind");
     if (kind == "rest") {
       refuse_unknown_keys(source_, table, prefix, {"kind", "duration"});
-      return {{duration(table, prefix)}};
+      return {line_of(duration(table, prefix), all(0.0), all(0.0))};
     }
     if (kind == "steps") {
       return steps(table, prefix);
@@ -213,18 +227,18 @@ class Reader {
     refuse_unknown_keys(source_, table, prefix, {"kind", "levels", "hold"});
     const double hold = number(table, prefix, {"hold", "s", 1e-3, 1e6});
     std::vector<Stretch> result;
-    for (const double level : numbers(table, prefix, {"levels", "rad", -kAny, kAny})) {
-      result.push_back({hold, level, level});
+    for (const Angles& level : list_of_angles(table, prefix, "levels")) {
+      result.push_back(line_of(hold, level, level));
     }
     return result;
   }
 
   std::vector<Stretch> sweep(const toml::table& table, const std::string& prefix) const {
     refuse_unknown_keys(source_, table, prefix, {"kind", "amplitude", "from", "to", "duration"});
-    const double amplitude = number(table, prefix, {"amplitude", "rad", -kAny, kAny});
+    const Angles amplitude = angles(needed(table, prefix, "amplitude", angles_allowed()), prefix + "amplitude");
     const double from = number(table, prefix, {"from", "Hz", 1e-3, kHighestFrequency});
     const double to = number(table, prefix, {"to", "Hz", 1e-3, kHighestFrequency});
-    return {{duration(table, prefix), 0.0, 0.0, amplitude, from, to}};
+    return {{duration(table, prefix), all(0.0), all(0.0), amplitude, from, to}};
   }
 
   std::vector<Stretch> sines(const toml::table& table, const std::string& prefix) const {
@@ -232,9 +246,9 @@ class Reader {
     const toml::node& node = needed(table, prefix, "periods", "a whole number");
     const auto periods = static_cast<double>(count(node, prefix + "periods", 1, 100'000));
     std::vector<Stretch> result;
-    for (const double amplitude : numbers(table, prefix, {"amplitudes", "rad", -kAny, kAny})) {
+    for (const Angles& amplitude : list_of_angles(table, prefix, "amplitudes")) {
       for (const double frequency : numbers(table, prefix, {"frequencies", "Hz", 1e-3, kHighestFrequency})) {
-        result.push_back({periods / frequency, 0.0, 0.0, amplitude, frequency, frequency});
+        result.push_back({periods / frequency, all(0.0), all(0.0), amplitude, frequency, frequency});
       }
     }
     return result;
@@ -243,7 +257,7 @@ class Reader {
   std::vector<Stretch> points(const toml::table& table, const std::string& prefix) const {
     refuse_unknown_keys(source_, table, prefix, {"kind", "times", "commands"});
     const std::vector<double> times = numbers(table, prefix, {"times", "s", 0.0, 1e6});
-    const std::vector<double> commands = numbers(table, prefix, {"commands", "rad", -kAny, kAny});
+    const std::vector<Angles> commands = list_of_angles(table, prefix, "commands");
     if (times.size() != commands.size() || times.size() < 2 || times.front() != 0.0) {
       source_.refuse_missing(table, prefix + "times", "allowed: as many as commands, at least two, the first 0");
     }
@@ -253,35 +267,71 @@ class Reader {
         source_.refuse_missing(table, prefix + "times",
                                fmt::format("allowed: rising, but {:g} follows {:g}", times[i], times[i - 1]));
       }
-      result.push_back({times[i] - times[i - 1], commands[i - 1], commands[i]});
+      result.push_back(line_of(times[i] - times[i - 1], commands[i - 1], commands[i]));
     }
     return result;
   }
 
+  const toml::array& list(const toml::table& table, const std::string& prefix, std::string_view key,
+                          const std::string& allowed) const {
+    const toml::node& node = needed(table, prefix, key, allowed);
+    if (!node.is_array() || node.as_array()->empty()) {
+      source_.refuse(node, prefix + std::string(key), "allowed: " + allowed);
+    }
+    return *node.as_array();
+  }
+
   std::vector<double> numbers(const toml::table& table, const std::string& prefix, const Number& wanted) const {
     const std::string key = prefix + std::string(wanted.key);
-    const toml::node& node = needed(table, prefix, wanted.key, fmt::format("a list of numbers in {}", wanted.unit));
-    const toml::array* list = node.as_array();
-    if (list == nullptr || list->empty()) {
-      source_.refuse(node, key, fmt::format("allowed: a list of numbers in {}", wanted.unit));
-    }
     std::vector<double> result;
-    for (const toml::node& item : *list) {
+    for (const toml::node& item : list(table, prefix, wanted.key, fmt::format("a list of numbers in {}", wanted.unit))) {
       result.push_back(within(item, key, wanted.unit, wanted.lower, wanted.upper));
     }
     return result;
   }
 
+  std::string angles_allowed() const {
+    return fmt::format("a number in rad, for all actuators, or a list of {}, one for each", actuators_);
+  }
+
+  Angles all(double angle) const { return Angles(actuators_, angle); }
+
+  /// What an angle of the profile is: a number for all actuators, or a list with one for each.
+  Angles angles(const toml::node& node, const std::string& key) const {
+    const toml::array* each = node.as_array();
+    if (each == nullptr) {
+      return all(within(node, key, "rad", -kAny, kAny));
+    }
+    if (each->size() != actuators_) {
+      source_.refuse(node, key, "allowed: " + angles_allowed());
+    }
+    Angles result;
+    for (const toml::node& item : *each) {
+      result.push_back(within(item, key, "rad", -kAny, kAny));
+    }
+    return result;
+  }
+
+  std::vector<Angles> list_of_angles(const toml::table& table, const std::string& prefix, std::string_view key) const {
+    std::vector<Angles> result;
+    for (const toml::node& item : list(table, prefix, key, "a list, each entry " + angles_allowed())) {
+      result.push_back(angles(item, prefix + std::string(key)));
+    }
+    return result;
+  }
+
+  Stretch line_of(double duration, const Angles& from, const Angles& to) const { return {duration, from, to, all(0.0)}; }
+
   void write(const Stretch& stretch, std::size_t index) {
-    const auto field = [&](std::string_view key, double value) {
-      line(fmt::format("segment.{}.{}", index, key), exact(value));
+    const auto field = [&](std::string_view key, const std::vector<double>& values) {
+      line(fmt::format("segment.{}.{}", index, key), fmt::format("{:a}", fmt::join(values, ",")));
     };
-    field("duration", stretch.duration);
+    field("duration", {stretch.duration});
     field("from", stretch.from);
     field("to", stretch.to);
     field("amplitude", stretch.amplitude);
-    field("frequency", stretch.frequency);
-    field("last_frequency", stretch.last_frequency);
+    field("frequency", {stretch.frequency});
+    field("last_frequency", {stretch.last_frequency});
   }
 
   template <class Numbers>

@@ -101,6 +101,11 @@ Column read_column(const CsvLines& lines, std::size_t number, std::string_view c
 
 }  // namespace
 
+bool is_record_channel(std::string_view name) {
+  return std::any_of(kKnownChannels.begin(), kKnownChannels.end(),
+                     [name](const KnownChannel& known) { return known.name == name; });
+}
+
 std::vector<Column> read_header(const CsvLines& lines, std::string_view header) {
   std::vector<Column> columns;
   const auto has = [&columns](std::string_view name) {

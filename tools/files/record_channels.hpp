@@ -16,6 +16,9 @@ struct Column {
   UnitConverter convert;
 };
 
+/// Whether a record can have a channel of this name.
+bool is_record_channel(std::string_view name);
+
 /// Reads the header line, `time[s],command[rad],...`, which `lines` gave last. Throws FileError for a channel that is not
 /// known or named twice, a unit that is not known or of another dimension, and a header without time.
 std::vector<Column> read_header(const CsvLines& lines, std::string_view header);

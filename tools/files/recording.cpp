@@ -7,6 +7,7 @@
 
 #include "hal/recording/reader.hpp"
 #include "tools/files/error.hpp"
+#include "tools/files/record_channels.hpp"
 
 namespace hotfire {
 
@@ -32,16 +33,19 @@ class Rows {
   Rows(const hal::RecordingHeader& header, std::size_t actuator) : actuator_(actuator) {
     record_.period = static_cast<double>(header.period_ns) * 1e-9;
     record_.channels.push_back({header.input.name, header.input.unit, {}});
-    for (const hal::RecordedChannel& channel : header.channels) {
-      record_.channels.push_back({channel.name, channel.unit, {}});
+    for (std::size_t i = 0; i < header.channels.size(); ++i) {
+      const hal::RecordedChannel& channel = header.channels[i];
+      if (is_record_channel(channel.name)) {
+        record_.channels.push_back({channel.name, channel.unit, {}});
+        places_.push_back(actuator * header.channels.size() + i);
+      }
     }
   }
 
   void add(double command, std::span<const double> readings) {
-    const std::size_t channels = record_.channels.size() - 1;
     record_.channels.front().values.push_back(command);
-    for (std::size_t i = 0; i < channels; ++i) {
-      record_.channels[i + 1].values.push_back(readings[actuator_ * channels + i]);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      record_.channels[i + 1].values.push_back(readings[places_[i]]);
     }
     ++record_.rows;
   }
@@ -51,6 +55,7 @@ class Rows {
 
  private:
   std::size_t actuator_;
+  std::vector<std::size_t> places_;  ///< of the actuator's channels among the readings
   Record record_;
 };
 

@@ -17,7 +17,8 @@ struct RecordingPart {
 /// True if the file begins like a recording of `hotfire plant --record`.
 bool is_recording(const std::filesystem::path& path);
 
-/// A recording (docs/recording.md) as a record: time, the input and every channel of one actuator, on the plant's own time:
+/// A recording (docs/recording.md) as a record: time, the input and every channel of one actuator that a record can have, on
+/// the plant's own time:
 /// cycle n begins at (n + 1) periods, and its row has the command held from there on and what the sensors read there, which
 /// is what the cycle before had sent. The first row, at time 0, is the plant at rest at zero before its first cycle.
 ///

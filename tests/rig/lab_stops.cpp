@@ -1,0 +1,96 @@
+#include "tests/rig/lab_stops.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <cmath>
+
+#include "firmware/lab_recorder.hpp"
+#include "hal/recording/reader.hpp"
+
+namespace hotfire::test {
+namespace {
+
+using firmware::Fault;
+using firmware::LabInputs;
+using firmware::RigState;
+using Head = hal::CycleHead;
+
+/// Whether what a lab was given shows the fault, by the limits themselves and not by the code under test.
+bool shows(Fault fault, const LabInputs& in, std::int64_t age_limit_ns) {
+  const auto& [first, second] = in.readings[0];
+  switch (fault) {
+    case Fault::stale_command:
+      return in.rig.command_age_ns > age_limit_ns;
+    case Fault::stale_sensor:
+      return in.ages_ns[0] > age_limit_ns;
+    case Fault::out_of_range:
+      return std::abs(first) > 0.15;
+    case Fault::readings_disagree:
+      return std::abs(first - second) > 0.001;
+    case Fault::bad_frame:
+      return in.rig.bad_frame;
+    case Fault::bus_off:
+      return in.rig.bus_off;
+    case Fault::bus_down:
+      return in.rig.bus_down;
+    case Fault::transmit_queue_full:
+      return in.rig.transmit_queue_full;
+    case Fault::emergency_stop:
+      return in.rig.emergency_stop;
+    case Fault::hydraulic_enable_lost:
+      return !in.rig.hydraulic_enable;
+    case Fault::overrun:
+      return in.rig.overrun;
+    case Fault::limit:
+      return std::abs(first) > 0.06;
+    case Fault::recorder_full:
+      return in.rig.dropped_recording;
+    case Fault::position_error:  // has to last
+    case Fault::not_finite:      // is never handed on
+      break;
+  }
+  return false;
+}
+
+constexpr std::size_t kLastCycles = 64;
+
+}  // namespace
+
+LabRecord read_lab_record(const std::string& path, std::int64_t age_limit_ns) {
+  LabRecord result;
+  hal::RecordingReader reader(path);
+  STRCMP_EQUAL("", reader.error().c_str());
+  hal::RecordedCycle cycle;
+  std::array<std::uint64_t, firmware::kFaults.size() + 1> shown_since{};
+  Stop now;
+  while (reader.next(cycle)) {
+    const auto state = static_cast<RigState>((cycle.head.flags >> Head::kStateShift) & 0xff);
+    const LabInputs inputs = firmware::recorded_inputs(cycle.head, cycle.readings);
+    const bool drives = state != RigState::safe && state != RigState::faulted;
+    if (drives || !now.drove.empty()) {
+      for (const firmware::FaultText& text : firmware::kFaults) {
+        std::uint64_t& since = shown_since[static_cast<std::size_t>(text.fault)];
+        since = !shows(text.fault, inputs, age_limit_ns) ? 0 : since == 0 ? cycle.head.cycle : since;
+      }
+    }
+    if (drives) {
+      result.commands += (cycle.head.flags & Head::kLost) == 0 ? 1 : 0;
+      now.drove.push_back(cycle.head.woken_ns);
+      if (now.drove.size() > kLastCycles) {
+        now.drove.erase(now.drove.begin());
+      }
+    } else if (!now.drove.empty()) {
+      if (state == RigState::faulted) {
+        now.fault = static_cast<Fault>((cycle.head.flags >> Head::kFaultShift) & 0xff);
+        now.seen = shown_since[static_cast<std::size_t>(now.fault)];
+        now.safe = cycle.head.cycle;
+        result.stops.push_back(now);
+      }
+      now = {};
+      shown_since = {};
+    }
+  }
+  return result;
+}
+
+}  // namespace hotfire::test
