@@ -170,6 +170,10 @@ class Loop {
     std::copy(measured.begin(), measured.end(), reading.values.begin());
     reading.count = measured.size();
     reading.missing = plant_.missing();
+    if constexpr (requires { plant_.strings(); }) {
+      std::copy(plant_.strings().begin(), plant_.strings().end(), reading.strings.begin());
+      reading.string_count = plant_.strings().size();
+    }
     reading.sequence = cycle;
     reading.command_sequence = command_.sequence;
     finite_ = std::all_of(measured.begin(), measured.end(), [](double value) { return std::isfinite(value); });

@@ -124,6 +124,10 @@ constexpr OptionLine kLines[] = {
      [](const std::string& value, Options& o) {
        return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
      }},
+    {"--strings", "",
+     "plant on a CAN bus: string potentiometers too, four an engine, whose pitch and yaw are actuators\n"
+     "1 and 2, 3 and 4 and so on",
+     [](const std::string&, Options& o) { return o.strings = true, std::string(); }},
     {"--sync", "S", "what gives the cycles: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)",
      [](const std::string& value, Options& o) { return read_name(value, kPaceKinds, o.pace); }},
     {"--max-missed-syncs", "N", "end after more than N in a row; default 10",

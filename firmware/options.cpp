@@ -127,6 +127,9 @@ std::string conflict_in(const Options& options) {
   if (options.mode == Mode::controller && options.pace == PaceKind::can) {
     return "the controller sends SYNC itself: leave --sync out";
   }
+  if (options.strings && (options.mode != Mode::plant || !options.on_can())) {
+    return "--strings is of a plant on a CAN bus: plant --bus can0";
+  }
   if (options.pace == PaceKind::can && !options.on_can()) {
     return "--sync can needs the CAN bus that SYNC is on: --bus can0";
   }

@@ -12,6 +12,7 @@
 #include "model/direct.hpp"
 #include "model/simplex.hpp"
 #include "model/step_size.hpp"
+#include "model/string_potentiometer.hpp"
 
 namespace hotfire::firmware {
 
@@ -55,7 +56,19 @@ class Plant {
   /// What the sensors read, actuator after actuator, in the order of `Model::channels`.
   std::span<const double> measured() const noexcept { return readings_; }
 
-  /// Which of them are not sent, one bit each.
+  /// Gives every engine its four string potentiometers, at their representative places on a structure that stands still.
+  /// Actuators 1 and 2 are the pitch and the yaw of the first engine, and so on; an angle without an actuator is zero. For a
+  /// model that has an engine; before the first step.
+  void string_up() {
+    static_assert(StringPotentiometers::kStrings * ((hal::kMaxActuators + 1) / 2) == hal::kMaxStrings);
+    strings_.resize(StringPotentiometers::kStrings * ((states_.size() + 1) / 2));
+    measure_strings();
+  }
+
+  /// What the string potentiometers read: the change of each length from zero angles [m], engine after engine.
+  std::span<const double> strings() const noexcept { return strings_; }
+
+  /// Which of the readings of `measured` are not sent, one bit each.
   std::uint32_t missing() const noexcept { return missing_; }
 
   /// Adds the continuous state of every actuator and what its sensors read. What an effect remembers is not in it: it acts
@@ -102,18 +115,36 @@ class Plant {
     }
   }
 
+  using StringPotentiometers = model::StringPotentiometers<double>;
+
+  void measure_strings() noexcept {
+    if constexpr (requires { Model::kAngle; }) {
+      const auto angle = [this](std::size_t actuator) {
+        return actuator < states_.size() ? states_[actuator].y(Model::kAngle) : 0.0;
+      };
+      for (std::size_t i = 0; i < strings_.size(); i += StringPotentiometers::kStrings) {
+        const std::size_t pitch = 2 * (i / StringPotentiometers::kStrings);
+        const auto lengths = geometry_.lengths(angle(pitch), angle(pitch + 1), {0.0, 0.0, 0.0});
+        std::copy(lengths.begin(), lengths.end(), strings_.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+  }
+
   void measure() noexcept {
     auto next = readings_.begin();
     for (const typename Model::State& state : states_) {
       const auto& measured = Model::measured(state);
       next = std::copy(measured.begin(), measured.end(), next);
     }
+    measure_strings();
   }
 
   int steps_;
   Model model_;
   std::vector<typename Model::State> states_;
   std::vector<double> readings_;
+  StringPotentiometers geometry_{StringPotentiometers::representative()};
+  std::vector<double> strings_;
   std::vector<double> before_;  ///< what was sent in the cycle before
   std::vector<Broken> broken_;
   PlayedSensors sensors_;

@@ -37,9 +37,12 @@ class PlantSession {
   }
 
   int run_on_can() {
-    CanSession session(options_, can::plant_ids(options_.frame_layout(), options_.actuators));
+    CanSession session(options_, can::plant_ids(options_.frame_layout(), options_.actuators, options_.strings));
     if (const int status = session.open(); status != kGood) {
       return status;
+    }
+    if (options_.strings) {
+      plant_->string_up();
     }
     CanPlantBus wire(session.socket(), clock_,
                      {options_.frame_layout(), options_.actuators, Model::channels.size(), options_.command_per_current,

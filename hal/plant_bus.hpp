@@ -9,6 +9,7 @@ namespace hotfire::hal {
 
 inline constexpr std::size_t kMaxActuators = 8;
 inline constexpr std::size_t kMaxReadings = 3 * kMaxActuators;
+inline constexpr std::size_t kMaxStrings = 2 * kMaxActuators;
 
 /// What a controller asks of the plant: one value an actuator, in the plant's SI unit.
 struct Command {
@@ -19,7 +20,9 @@ struct Command {
 /// What the plant's sensors read, actuator after actuator.
 struct Reading {
   std::array<double, kMaxReadings> values{};
-  std::size_t count = 0;               ///< how many of `values` are used
+  std::size_t count = 0;                      ///< how many of `values` are used
+  std::array<double, kMaxStrings> strings{};  ///< of string potentiometers, engine after engine [m]
+  std::size_t string_count = 0;
   std::uint32_t missing = 0;           ///< bit i: `values[i]` is not sent, its sensor is silent
   std::uint64_t sequence = 0;          ///< number of the plant's cycle
   std::uint64_t command_sequence = 0;  ///< the command this reading answers

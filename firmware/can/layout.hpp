@@ -37,6 +37,13 @@ constexpr const Message& reading_message(Layout layout, std::size_t which) noexc
   return layout == Layout::fd ? pistons_fd::kMessage : which == 0 ? piston_1::kMessage : piston_2::kMessage;
 }
 
+/// Messages that carry the readings of string potentiometers: four of one engine, or sixteen of four.
+constexpr std::size_t string_messages(Layout layout) noexcept { return layout == Layout::classic ? 2 : 1; }
+
+constexpr const Message& string_message(Layout layout, std::size_t which) noexcept {
+  return layout == Layout::fd ? strings_fd::kMessage : which == 0 ? strings_12::kMessage : strings_34::kMessage;
+}
+
 /// Where the two redundant readings of an actuator stand: the message, and the first of its two values.
 struct PistonPlace {
   std::size_t message;
@@ -56,10 +63,13 @@ struct NodeIds {
 };
 
 /// Of a plant: mailbox 0 is the command.
-inline NodeIds plant_ids(Layout layout, std::size_t actuators) {
+inline NodeIds plant_ids(Layout layout, std::size_t actuators, bool strings = false) {
   NodeIds ids{{{id_of(command_message(layout)), command_message(layout).fd}}, {id_of(status::kMessage)}};
   for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {
     ids.senders.push_back(id_of(reading_message(layout, i)));
+  }
+  for (std::size_t i = 0; strings && i < string_messages(layout); ++i) {
+    ids.senders.push_back(id_of(string_message(layout, i)));
   }
   return ids;
 }

@@ -27,7 +27,8 @@ struct PlantBusSettings {
 };
 
 /// The plant's side of a CAN bus (`hal::PlantBus`): takes the command of its layout, sends the readings of its actuators,
-/// the first value of each as both of its redundant ones, and its status. `Bus` has the ids of `plant_ids`.
+/// the first value of each as both of its redundant ones, those of its string potentiometers if it has any, and its status.
+/// `Bus` has the ids of `plant_ids`.
 ///
 /// A servovalve that nobody commands gets no current: when the newest command is older than its age limit, the plant is
 /// commanded zero, and the next frame is the first of a new series. What a played fault keeps from being sent is left out;
@@ -36,7 +37,11 @@ template <hal::CanBus Bus, hal::Clock Clock>
 class PlantBus {
  public:
   PlantBus(Bus& bus, Clock& clock, const PlantBusSettings& settings) noexcept
-      : bus_(bus), clock_(clock), settings_(settings), status_(status::kMessage, settings.period_ns) {}
+      : bus_(bus),
+        clock_(clock),
+        settings_(settings),
+        status_(status::kMessage, settings.period_ns),
+        strings_(string_message(settings.layout, 0), settings.period_ns) {}
 
   bool try_receive_command(hal::Command& command) noexcept {
     const std::int64_t now = clock_.now_ns();
@@ -66,7 +71,11 @@ class PlantBus {
           bus_, std::array{static_cast<double>(RigState::running), stale_ ? static_cast<double>(Fault::stale_command) : 0.0,
                            static_cast<double>(overruns_ % kCounts), superseded});
     }
-    return settings_.layout == Layout::classic ? send_classic(reading) : send_fd(reading);
+    const bool taken = settings_.layout == Layout::classic ? send_classic(reading) : send_fd(reading);
+    if (reading.string_count > 0 && strings_.is_due()) {
+      send_strings(reading);
+    }
+    return taken;
   }
 
   /// A cycle of the loop has overrun.
@@ -136,11 +145,23 @@ class PlantBus {
     return missing == settings_.actuators || send(pistons_fd::kMessage, values, reading.sequence);
   }
 
+  void send_strings(const hal::Reading& reading) noexcept {
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < string_messages(settings_.layout); ++i) {
+      const Message& message = string_message(settings_.layout, i);
+      send(message, std::span(reading.strings).subspan(first, message.signals.size()), string_counter_);
+      first += message.signals.size();
+    }
+    ++string_counter_;
+  }
+
   Bus& bus_;
   Clock& clock_;
   PlantBusSettings settings_;
   MessageFollower commands_;
   PeriodicFrame status_;
+  PeriodicFrame strings_;  ///< says when they are due
+  std::uint8_t string_counter_ = 0;
   std::int64_t arrived_ns_ = 0;
   bool commanded_ = false;
   bool stale_ = false;

@@ -1,4 +1,5 @@
 #include "tests/firmware/lab_on_wire.hpp"
+#include "tests/firmware/recorded_run.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::firmware {
@@ -76,6 +77,26 @@ TEST(LabRig, EmergencyStopWhileTheBusIsDownAndBothReleasedLetsNoCommandOutUntilA
   UNSIGNED_LONGS_EQUAL(sent, commands);
   press();
   CHECK(commands > sent);
+}
+
+TEST(LabRig, CycleAfterTheFirstOneThatIsNotRecordedIsSafe) {
+  constexpr int kSlots = 4;
+  test::MemorySink disk;
+  const std::lock_guard stalled(disk.gate);
+  Recorder recorder(disk, 1, 1, kSlots);
+  rig.watch(&recorder);
+  cycle();
+  press();
+  const std::array<double, 1> value{};
+  while (!recorder.dropping()) {
+    CHECK(on(kSupply));
+    recorder.record({}, value, value);
+  }
+  const std::uint64_t sent = commands;
+  cycle();
+  CHECK(lab.outputs().interlock.first == Fault::recorder_full);
+  CHECK(!on(kSupply));
+  UNSIGNED_LONGS_EQUAL(sent, commands);
 }
 
 TEST(LabRig, CycleTakesNothingFromTheHeap) {

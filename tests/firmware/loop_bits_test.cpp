@@ -79,4 +79,34 @@ TEST(LoopBits, HashIsFnv1aOverTheBytesFromTheLowestUp) {
   CHECK(hash.value() == 0xd1ed9c0b5072eac1);
 }
 
+TEST(LoopBits, StringPotentiometersReadTheGeometryOfEveryPairOfActuatorsAndChangeNoBit) {
+  constexpr std::size_t kStrings = 4;
+  Plant<Simplex> plain({}, 1e-3, 3);
+  Plant<Simplex> stringed({}, 1e-3, 3);
+  stringed.string_up();
+  UNSIGNED_LONGS_EQUAL(0, plain.strings().size());
+  UNSIGNED_LONGS_EQUAL(2 * kStrings, stringed.strings().size());
+  hal::Command command;
+  command.values = {0.02, -0.01, 0.015};
+  for (int cycle = 0; cycle < 300; ++cycle) {
+    plain.step(command);
+    stringed.step(command);
+  }
+  hal::Fnv1a one;
+  hal::Fnv1a other;
+  plain.add_to(one);
+  stringed.add_to(other);
+  CHECK(one.value() == other.value());
+  // Channel 1 is the engine's angle; the third actuator's engine has no yaw.
+  const std::span<const double> read = plain.measured();
+  const model::StringPotentiometers<double> geometry(model::StringPotentiometers<double>::representative());
+  const auto first = geometry.lengths(read[1], read[4], {0.0, 0.0, 0.0});
+  const auto second = geometry.lengths(read[7], 0.0, {0.0, 0.0, 0.0});
+  CHECK(std::abs(first[0]) > 1e-3);
+  for (std::size_t i = 0; i < kStrings; ++i) {
+    DOUBLES_EQUAL(first[i], stringed.strings()[i], 0.0);
+    DOUBLES_EQUAL(second[i], stringed.strings()[kStrings + i], 0.0);
+  }
+}
+
 }  // namespace hotfire::firmware

@@ -64,6 +64,8 @@ TEST(Options, WhatABusCannotDoIsRefused) {
   refused({"controller", "--bus", "can0", "--sync", "can"}, "sends SYNC itself");
   refused({"timing", "--bus", "can0"}, "timing needs no bus");
   refused({"plant", "--image", "p", "--sync", "can"}, "--sync can needs the CAN bus");
+  refused({"plant", "--image", "p", "--strings"}, "--strings is of a plant on a CAN bus");
+  refused({"controller", "--bus", "can0", "--strings"}, "--strings is of a plant on a CAN bus");
   refused({"plant", "--image", "p", "--bus", ""}, "the name of a CAN interface");
 }
 

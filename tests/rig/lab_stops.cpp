@@ -15,8 +15,15 @@ using firmware::LabInputs;
 using firmware::RigState;
 using Head = hal::CycleHead;
 
-/// Whether what a lab was given shows the fault, by the limits themselves and not by the code under test.
-bool shows(Fault fault, const LabInputs& in, std::int64_t age_limit_ns) {
+/// A cycle: what the lab was given, and what it commanded [m].
+struct Given {
+  const LabInputs& inputs;
+  double command;
+};
+
+/// Whether a cycle shows the fault, by the limits themselves and not by the code under test. A position error has to last.
+bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
+  const LabInputs& in = given.inputs;
   const auto& [first, second] = in.readings[0];
   switch (fault) {
     case Fault::stale_command:
@@ -45,18 +52,20 @@ bool shows(Fault fault, const LabInputs& in, std::int64_t age_limit_ns) {
       return std::abs(first) > 0.06;
     case Fault::recorder_full:
       return in.rig.dropped_recording;
-    case Fault::position_error:  // has to last
-    case Fault::not_finite:      // is never handed on
+    case Fault::position_error:
+      return std::abs(given.command - 0.5 * (first + second)) > 0.005;
+    case Fault::not_finite:  // is never handed on
       break;
   }
   return false;
 }
 
 constexpr std::size_t kLastCycles = 64;
+constexpr double kPistonPerCommand = 0.5;
 
 }  // namespace
 
-LabRecord read_lab_record(const std::string& path, std::int64_t age_limit_ns) {
+LabRecord read_lab_record(const std::string& path, const LabLimits& limits) {
   LabRecord result;
   hal::RecordingReader reader(path);
   STRCMP_EQUAL("", reader.error().c_str());
@@ -70,7 +79,9 @@ LabRecord read_lab_record(const std::string& path, std::int64_t age_limit_ns) {
     if (drives || !now.drove.empty()) {
       for (const firmware::FaultText& text : firmware::kFaults) {
         std::uint64_t& since = shown_since[static_cast<std::size_t>(text.fault)];
-        since = !shows(text.fault, inputs, age_limit_ns) ? 0 : since == 0 ? cycle.head.cycle : since;
+        since = !shows(text.fault, {inputs, kPistonPerCommand * cycle.commands[0]}, limits.age_ns) ? 0
+                : since == 0                                                                       ? cycle.head.cycle
+                                                                                                   : since;
       }
     }
     if (drives) {
@@ -82,7 +93,8 @@ LabRecord read_lab_record(const std::string& path, std::int64_t age_limit_ns) {
     } else if (!now.drove.empty()) {
       if (state == RigState::faulted) {
         now.fault = static_cast<Fault>((cycle.head.flags >> Head::kFaultShift) & 0xff);
-        now.seen = shown_since[static_cast<std::size_t>(now.fault)];
+        now.seen = shown_since[static_cast<std::size_t>(now.fault)] +
+                   (now.fault == Fault::position_error ? limits.position_error_cycles : 0);
         now.safe = cycle.head.cycle;
         result.stops.push_back(now);
       }

@@ -17,11 +17,17 @@ struct Stop {
   std::vector<std::int64_t> drove{};  ///< when the last cycles before it began, CLOCK_MONOTONIC [ns]
 };
 
-/// What a recording says of a lab that was run with the limits of `LabProgram`, but for `age_limit_ns` of what can be stale.
+/// What a recording says of a lab.
 struct LabRecord {
   std::vector<Stop> stops{};
   std::uint64_t commands = 0;  ///< that were handed to the bus
 };
-LabRecord read_lab_record(const std::string& path, std::int64_t age_limit_ns);
+
+/// Of the limits that it was run with, those that the usual image of `LabProgram` has otherwise.
+struct LabLimits {
+  std::int64_t age_ns = 0;                  ///< of a command and a reading
+  std::uint64_t position_error_cycles = 0;  ///< in a row that are no fault
+};
+LabRecord read_lab_record(const std::string& path, const LabLimits& limits);
 
 }  // namespace hotfire::test

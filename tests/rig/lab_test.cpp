@@ -16,8 +16,8 @@ namespace hotfire::firmware {
 
 namespace {
 
-constexpr std::int64_t kAgeLimitNs = 400'000'000;
-const char* const kAgeLimits = "limits.reading_age 0.4\nlimits.command_age 0.4\n";
+constexpr test::LabLimits kShortLimits{400'000'000, 100};
+const char* const kShortLimitLines = "limits.reading_age 0.4\nlimits.command_age 0.4\nlimits.position_error_time 1\n";
 
 std::int64_t now_ns() {
   timespec now{};
@@ -137,9 +137,9 @@ TEST_GROUP(Lab) {
   test::LabRecord look_at_recording(const char* verdict = kSameBits) const {
     shell(std::string("hotfire-rt replay ") + test::LabProgram::kRecording + " >/tmp/replay || true; grep -F '" + verdict +
           "' /tmp/replay || { cat /tmp/replay; false; }");
-    const test::LabRecord record = test::read_lab_record(test::LabProgram::kRecording, kAgeLimitNs);
+    const test::LabRecord record = test::read_lab_record(test::LabProgram::kRecording, kShortLimits);
     for (const test::Stop& stop : record.stops) {
-      const bool is_shown = stop.fault != Fault::position_error && stop.fault != Fault::not_finite;
+      const bool is_shown = stop.fault != Fault::not_finite;
       CHECK_EQUAL(is_shown, stop.seen != 0);
       CHECK(!is_shown || stop.safe - stop.seen <= kMostPeriods);
       if (is_shown) {
@@ -175,7 +175,7 @@ TEST(Lab, ProgramThatIsKilledAndStartedAnewDrivesNothing) {
 }
 
 TEST(Lab, FaultOfAReadingLeavesItSafeUntilArmedAgain) {
-  start(std::string(kAgeLimits) + "limits.position_error_time 1\n");
+  start(kShortLimitLines);
   const auto mode = [&](SensorNode::Mode set) { return [this, set] { node->mode = set; }; };
   goes_safe(mode(SensorNode::Mode::silent), mode(SensorNode::Mode::good));
   goes_safe(mode(SensorNode::Mode::damaged), mode(SensorNode::Mode::good));
@@ -205,7 +205,7 @@ TEST(Lab, FaultOfTheBusLeavesItSafeUntilArmedAgain) {
 }
 
 TEST(Lab, LineOrAStoppedProcessLeavesItSafeUntilArmedAgain) {
-  start(kAgeLimits);
+  start(kShortLimitLines);
   goes_safe([] { pull(test::kStopLine, false); }, [] { pull(test::kStopLine, true); });
   goes_safe([] { pull(test::kHydraulicLine, false); }, [] { pull(test::kHydraulicLine, true); });
   goes_safe(

@@ -128,6 +128,9 @@ TEST(CanBusLoad, ClassicLayoutFitsAMegabitAndNotHalfOfIt) {
   CHECK(bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6) < hal::kLargestBusLoad);
   CHECK(bus_load(Layout::classic, 2, kMillisecond, 500e3, 500e3) > hal::kLargestBusLoad);
   CHECK(bus_load(Layout::fd, 8, kMillisecond, 1e6, 5e6) < hal::kLargestBusLoad);
+  const double strings = 2.0 * hal::longest_classic_frame(8, 1e6) / 4e-3;
+  DOUBLES_EQUAL(bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6) + strings,
+                bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6, true), 1e-12);
 }
 
 }  // namespace hotfire::firmware::can

@@ -184,6 +184,45 @@ TEST(CanPlantBus, StatusIsSentEveryHundredMilliseconds) {
   UNSIGNED_LONGS_EQUAL(3, seen);
 }
 
+TEST(CanPlantBus, StringPotentiometersAreSentEveryFourMillisecondsByAPlantThatHasThem) {
+  for (const Layout layout : {Layout::classic, Layout::fd}) {
+    World world{layout, most_actuators(layout), 3};
+    std::vector<hal::CanSubscription> heard;
+    for (std::size_t i = 0; i < string_messages(layout); ++i) {
+      heard.push_back({id_of(string_message(layout, i)), string_message(layout, i).fd});
+    }
+    Wire::Node listener{world.wire, heard, {}};
+    hal::Reading reading;
+    for (std::size_t i = 0; i < hal::kMaxStrings; ++i) {
+      reading.strings[i] = 0.001 * static_cast<double>(i + 1);
+    }
+    const auto seen = [&] {
+      world.bus.try_send_reading(reading);
+      world.controller.receive(0);
+      world.take();
+      listener.receive(0);
+      return listener.mailbox(0).fresh;
+    };
+    CHECK(!seen());
+    reading.string_count = layout == Layout::classic ? 4 : 16;
+    for (int cycle = 0; cycle < 9; ++cycle) {
+      const bool sent = seen();
+      CHECK_EQUAL(cycle % 4 == 0, sent);
+    }
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < string_messages(layout); ++i) {
+      std::array<double, hal::kMaxStrings> values{};
+      std::uint8_t counter = 0;
+      CHECK(decode(string_message(layout, i), listener.mailbox(i).frame, values, counter) == Decoding::good);
+      UNSIGNED_LONGS_EQUAL(2, counter);
+      for (std::size_t k = 0; k < string_message(layout, i).signals.size(); ++k) {
+        DOUBLES_EQUAL(reading.strings[next++], values[k], 1e-12);
+      }
+    }
+    UNSIGNED_LONGS_EQUAL(reading.string_count, next);
+  }
+}
+
 TEST(CanPlantBus, ReadingThatCannotBeSaidOrSentIsDropped) {
   hal::Reading reading;
   reading.values[0] = 2.0;
