@@ -18,7 +18,7 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 struct World {
   World(Layout layout, std::size_t actuators, std::size_t channels = 1)
       : bus(node, clock, {layout, actuators, channels, 5.0, kMillisecond, 20 * kMillisecond}),
-        node(wire, plant_ids(layout, actuators).subscriptions, plant_ids(layout, actuators).senders),
+        node(wire, plant_ids(layout, actuators).subscriptions, plant_ids(layout, actuators, true).senders),
         controller(wire, heard(layout, actuators), controller_ids(layout, actuators).senders),
         message(command_message(layout)) {}
 
