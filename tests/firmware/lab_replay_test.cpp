@@ -2,76 +2,17 @@
 
 #include <fstream>
 #include <iterator>
-#include <memory>
 
-#include "firmware/lab_recorder.hpp"
-#include "firmware/recording_session.hpp"
 #include "tests/files/scratch.hpp"
-#include "tests/firmware/lab_on_wire.hpp"
+#include "tests/firmware/recorded_lab.hpp"
 
 namespace hotfire::firmware {
-
-namespace {
-
-const std::string kImage =
-    "schema 1\ntopology lab\nactuators 1\npiston_per_command 0.5\ncurrent_per_command 0.1\ncurrent_per_error 0.3\n"
-    "current_limit 0.02\napproach_rate 1\nrest_speed 0.01\nstopping_time 0.05\nlimits.command_age 0.005\n"
-    "limits.reading_age 0.005\nlimits.lowest_reading -0.15\nlimits.highest_reading 0.15\nlimits.disagreement 0.001\n"
-    "limits.lowest_position -0.06\nlimits.highest_position 0.06\nlimits.command_rate 100\nlimits.position_error 0.05\n"
-    "limits.position_error_time 0.5\nlimits.overruns 0\nline.emergency_stop estop\nline.hydraulic_enable hydraulic\n"
-    "line.arm arm\nline.supply supply\nline.heartbeat heartbeat\nline.fault fault\nsegment.0.duration 0.1\n"
-    "segment.0.from 0\nsegment.0.to 0\nsegment.0.amplitude 0.01\nsegment.0.frequency 10\nsegment.0.last_frequency 20\n";
-
-}  // namespace
 
 TEST_GROUP(LabReplay) {
   test::Scratch scratch;
   const std::string path = scratch.path("lab.hfr").string();
 
-  /// Records a lab that is armed, run, stopped by an emergency stop, armed and run again to the end of its profile, and is
-  /// pressed once more when its readings are out of range. `cycles` in a row are dropped from `gap` on.
-  std::uint64_t record(std::uint64_t gap = ~std::uint64_t{0}) const {
-    LabImage image = parse_lab_image(kImage, "image", test_lab::kPeriod);
-    test_lab::LabOnWire bench(std::move(*image.settings));
-    Options options;
-    options.recording = path;
-    RecordedPlant plant;
-    plant.topology = kLabTopology;
-    plant.input = {"command", "rad"};
-    plant.channels.assign(kLabChannels.begin(), kLabChannels.end());
-    plant.start.assign(kLabChannels.size(), 0.0);
-    plant.image = kImage;
-    RecordingSession session(options, plant);
-    CHECK(!session.start());
-    LabRecorder<test_lab::LabOnWire::Rig> recorder(session.recorder(), bench.rig);
-    hal::Fnv1a hash;
-    hal::CycleHead head;
-    bench.after_cycle = [&] {
-      bench.rig.add_to(hash);
-      head.hash = hash.value();
-      if (head.cycle != gap) {
-        recorder.record(head, {}, bench.rig.measured());
-      }
-      ++head.cycle;
-      // An actuator that lags.
-      bench.piston += 0.2 * (0.5 * bench.lab.outputs().commands[0] - bench.piston);
-    };
-    bench.piston = 0.004;
-    bench.cycles(5);
-    bench.press();
-    bench.press();
-    bench.cycles(30);
-    bench.board.drive(kEmergencyStopReleased, false);
-    bench.cycles(5);
-    bench.board.drive(kEmergencyStopReleased, true);
-    bench.press();
-    bench.press();
-    bench.cycles(300);
-    CHECK(bench.lab.completed());
-    bench.piston = 0.2;
-    bench.press();
-    return session.close().stored;
-  }
+  std::uint64_t record() const { return test_lab::record_lab(path); }
 
   Replay replayed() const {
     hal::RecordingReader reader(path);
@@ -162,7 +103,7 @@ TEST(LabReplay, OneThingThatIsNotAsTheLogicWouldHaveItIsNamed) {
 }
 
 TEST(LabReplay, NothingBehindADroppedCycleIsClaimed) {
-  record(30);
+  test_lab::record_lab(path, 30);
   const Replay result = replayed();
   CHECK(!result.difference);
   UNSIGNED_LONGS_EQUAL(30, result.gap.value());

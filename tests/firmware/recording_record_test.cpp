@@ -8,6 +8,7 @@
 #include "hal/recording/header.hpp"
 #include "hal/recording/reader.hpp"
 #include "tests/files/scratch.hpp"
+#include "tests/firmware/recorded_lab.hpp"
 #include "tests/firmware/recorded_run.hpp"
 #include "tools/cli/plant_image_text.hpp"
 #include "tools/files/record.hpp"
@@ -144,6 +145,23 @@ TEST(RecordingAsRecord, CommandsTakeARecordingWhereTheyTakeARecord) {
   drop([](std::uint64_t cycle) { return cycle == 100; });
   LONGS_EQUAL(1, status_of("replay " + path));
   LONGS_EQUAL(6, status_of("check " + path));
+}
+
+TEST(RecordingAsRecord, LabIsARecordOfCommandAndPistonAndReplaysByTheCommand) {
+  const std::uint64_t cycles = firmware::test_lab::record_lab(path);
+  const Record record = load_recording(path);
+  UNSIGNED_LONGS_EQUAL(2, record.channels.size());
+  UNSIGNED_LONGS_EQUAL(cycles + 1, record.rows);
+  hal::RecordingReader reader(path);
+  hal::RecordedCycle cycle;
+  // The first row is before the first cycle, and the end of a cycle is where the next one begins.
+  for (std::size_t row = 1; reader.next(cycle); ++row) {
+    DOUBLES_EQUAL(cycle.commands[0], record.find("command")->values[row], 0.0);
+    CHECK(row + 1 == record.rows || cycle.readings[firmware::kPiston] == record.find("piston")->values[row + 1]);
+  }
+  LONGS_EQUAL(0, status_of("replay " + path));
+  LONGS_EQUAL(0, status_of("replay " + path + " --from 1 --csv " + scratch.path("lab.csv").string()));
+  LONGS_EQUAL(0, status_of("check " + scratch.path("lab.csv").string()));
 }
 
 }  // namespace hotfire
