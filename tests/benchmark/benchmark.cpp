@@ -1,4 +1,5 @@
-// Prints docs/performance.md: hotfire-benchmark --benchmark_repetitions=5 > docs/performance.md
+// Prints docs/performance.md: hotfire-benchmark --benchmark_min_time=0.2 >
+// docs/performance.md
 
 #include <benchmark/benchmark.h>
 
@@ -6,7 +7,8 @@
 #include <iostream>
 
 #include "tests/benchmark/page.hpp"
-#include "tests/model/taos_comparison.hpp"
+#include "tests/model/axis_comparison.hpp"
+#include "tests/model/vehicle_comparison.hpp"
 
 namespace hotfire::test {
 namespace {
@@ -15,20 +17,11 @@ using Axis = model::Simplex<double>;
 
 constexpr double kStep = 5e-4;
 
-/// One axis with the effects that an axis of the vehicle and its bearing have.
-Axis::Parameters one_axis() {
-  Axis::Parameters parameters;
-  activate<model::GimbalFriction, Axis>(parameters, {2, 15e3, 1e8, 1.2, 0.01, 3e3});
-  activate<model::SoftStiffness, Axis>(parameters, {0, 4e7, 8e3, {}});
-  activate<model::ValveDeadband, Axis>(parameters, {0, 0.02});
-  return parameters;
-}
-
 /// A command that goes on moving the engine, cheap beside a step.
 double command_at(long step) { return (step / 400) % 2 == 0 ? 0.01 : -0.01; }
 
 void step_axis(benchmark::State& run) {
-  const Axis plant(one_axis(), kStep);
+  const Axis plant(hot_fire_axis().parameters, kStep);
   Axis::State state = plant.steady(0.0);
   long step = 0;
   for (auto _ : run) {
@@ -57,52 +50,99 @@ void step_vehicle(benchmark::State& run, int modes) {
 void step_taos(benchmark::State& run) { step_vehicle<Taos>(run, 4); }
 void step_masv(benchmark::State& run) { step_vehicle<Masv>(run, static_cast<int>(run.range(0))); }
 
-Taos::Parameters every_effect() {
-  Taos::Parameters parameters = hot_fire<Taos>();
-  parameters.modes = four_modes();
+/// The largest error of piston and engine of one axis, rms over the signal's
+/// rms.
+double axis_error(const study::ReferenceRows& rows) {
+  static const study::ReferenceRows reference =
+      study::integrate_reference(hot_fire_axis().reference, axis_commands(), kAxisSample, 0.0);
+  return std::max(relative_rms(rows, reference, 0), relative_rms(rows, reference, 1));
+}
+
+// Argument of ours: steps a millisecond. Of CVODE: digits of the relative
+// tolerance. Starts are worked out before.
+
+void ours_axis(benchmark::State& run) {
+  const AxisCase axis = hot_fire_axis();
+  study::ReferenceRows rows;
+  for (auto _ : run) {
+    rows = run_axis(axis.parameters, static_cast<int>(run.range(0)));
+  }
+  run.counters["error"] = axis_error(rows);
+}
+
+void cvode_axis(benchmark::State& run) {
+  const AxisCase axis = hot_fire_axis();
+  study::ReferenceRows rows;
+  long evaluations = 0;
+  for (auto _ : run) {
+    rows = study::integrate_reference(axis.reference, axis_commands(), kAxisSample, 0.0,
+                                      std::pow(10.0, -static_cast<double>(run.range(0))), &evaluations);
+  }
+  run.counters["error"] = axis_error(rows);
+  run.counters["evaluations"] = static_cast<double>(evaluations) / static_cast<double>(run.iterations());
+}
+
+/// Hot fire with every effect: one engine with four modes, four engines with
+/// twelve that couple them.
+template <class Vehicle>
+typename Vehicle::Parameters every_effect() {
+  typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
+  if constexpr (Vehicle::kEngines == 1) {
+    parameters.modes = four_modes();
+  } else {
+    parameters.modes = random_modes<typename Vehicle::Modes>(12, 0.1 / 1.05e8, 7);
+  }
   return parameters;
 }
 
-double largest_error(const Rows& rows) {
-  static const Rows reference = run_reference(every_effect());
-  double largest = 0.0;
-  for (std::size_t channel = 0; channel < 4; ++channel) {
-    largest = std::max(largest, relative_rms(rows, reference, channel));
-  }
-  return largest;
+template <class Vehicle>
+double vehicle_error(const VehicleRows& rows) {
+  static const VehicleRows reference = run_reference<Vehicle>(every_effect<Vehicle>());
+  return largest_error(rows, reference);
 }
 
-/// Argument: steps a millisecond. The start is worked out before.
-void work_hotfire(benchmark::State& run) {
+template <class Vehicle>
+void ours_vehicle(benchmark::State& run) {
   const auto parts = static_cast<int>(run.range(0));
-  const Taos plant(every_effect(), kSample / parts);
-  const Taos::State start = plant.steady({});
-  Rows rows;
+  const Vehicle plant(every_effect<Vehicle>(), kSample / parts);
+  const typename Vehicle::State start = plant.steady({});
+  VehicleRows rows;
   for (auto _ : run) {
     rows = run_model(plant, start, parts);
   }
-  run.counters["error"] = largest_error(rows);
+  run.counters["error"] = vehicle_error<Vehicle>(rows);
 }
 
-/// Argument: digits of the relative tolerance. The start is worked out before.
-void work_cvode(benchmark::State& run) {
-  const Taos::Parameters parameters = every_effect();
-  const Taos plant(parameters, kSample);
-  const ReferenceTaos reference = reference_of(parameters, plant);
-  const ReferenceTaos::Start start = start_of(plant.steady({}), parameters.modes.modes);
-  Rows rows;
+template <class Vehicle>
+void cvode_vehicle(benchmark::State& run) {
+  const typename Vehicle::Parameters parameters = every_effect<Vehicle>();
+  const Vehicle plant(parameters, kSample);
+  const ReferenceVehicle reference = reference_of(parameters, plant);
+  const ReferenceVehicle::Start start = start_of(plant.steady({}), parameters.modes.modes);
+  VehicleRows rows;
+  long evaluations = 0;
   for (auto _ : run) {
-    rows = integrate_reference(reference, start, command_profile(), kSample,
-                               std::pow(10.0, -static_cast<double>(run.range(0))));
+    rows = integrate_reference(reference, start, command_profile<Vehicle>(), kSample,
+                               std::pow(10.0, -static_cast<double>(run.range(0))), &evaluations);
   }
-  run.counters["error"] = largest_error(rows);
+  run.counters["error"] = vehicle_error<Vehicle>(rows);
+  run.counters["evaluations"] = static_cast<double>(evaluations) / static_cast<double>(run.iterations());
 }
+
+void ours_taos(benchmark::State& run) { ours_vehicle<Taos>(run); }
+void ours_masv(benchmark::State& run) { ours_vehicle<Masv>(run); }
+void cvode_taos(benchmark::State& run) { cvode_vehicle<Taos>(run); }
+void cvode_masv(benchmark::State& run) { cvode_vehicle<Masv>(run); }
 
 BENCHMARK(step_axis);
 BENCHMARK(step_taos);
 BENCHMARK(step_masv)->Arg(0)->Arg(16)->Arg(32)->Arg(48)->Arg(64);
-BENCHMARK(work_hotfire)->RangeMultiplier(2)->Range(1, 16);
-BENCHMARK(work_cvode)->DenseRange(2, 7)->Iterations(1);
+BENCHMARK(ours_axis)->RangeMultiplier(2)->Range(1, 16);
+BENCHMARK(cvode_axis)->DenseRange(2, 7)->Iterations(1);
+BENCHMARK(ours_taos)->RangeMultiplier(2)->Range(1, 16);
+BENCHMARK(cvode_taos)->DenseRange(2, 7)->Iterations(1);
+BENCHMARK(ours_masv)->RangeMultiplier(2)->Range(1, 16);
+BENCHMARK(cvode_masv)->DenseRange(2, 7)->Iterations(1);
 
 }  // namespace
 }  // namespace hotfire::test

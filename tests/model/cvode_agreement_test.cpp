@@ -3,84 +3,29 @@
 #include <cstdio>
 #include <numbers>
 
-#include "tests/model/plants.hpp"
-#include "tools/study/reference_axis.hpp"
+#include "tests/model/axis_comparison.hpp"
 
 namespace hotfire::test {
 namespace {
 
 using Plant = model::Simplex<double>;
-using Rows = study::ReferenceRows;
+using Case = AxisCase;
 using study::ReferenceAxis;
 
-constexpr double kSample = 1e-3;
 // The figure asked for: half a percent of the signal's rms, in piston and engine.
 constexpr double kLimit = 5e-3;
 
-/// The same axis told twice.
-struct Case {
-  const char* name = "";
-  ReferenceAxis reference{};
-  Plant::Parameters parameters{};
-  double settling = 0.0;
-};
-
-/// 1.5 s of command: sines from 1 to 9 Hz and two steps, 0.3 deg each, so that friction sticks, breaks away and turns round.
-std::vector<double> command_profile() {
-  constexpr double degree = std::numbers::pi / 180.0;
-  std::vector<double> commands;
-  for (int i = 0; i < 1500; ++i) {
-    const double t = i * kSample;
-    const double sines = 0.5 * std::sin(2.0 * std::numbers::pi * t) + 0.25 * std::sin(2.0 * std::numbers::pi * 4.0 * t) +
-                         0.15 * std::sin(2.0 * std::numbers::pi * 9.0 * t);
-    commands.push_back(degree * (sines + (t >= 0.5 ? 0.3 : 0.0) - (t >= 1.1 ? 0.3 : 0.0)));
-  }
-  return commands;
-}
-
-Rows run_model(const Plant::Parameters& parameters, int parts) {
-  const Plant plant(parameters, kSample / parts);
-  Plant::State state = plant.steady(0.0);
-  Rows rows;
-  for (const double command : command_profile()) {
-    for (int part = 0; part < parts; ++part) {
-      plant.step(state, command);
-    }
-    rows.push_back({state.y(Plant::kPiston), state.y(Plant::kAngle), state.y(Plant::kPressure)});
-  }
-  return rows;
-}
-
 /// Checks the error at the two steps a sample that the tools take, and prints it beside that of one step a sample.
 void check_agreement(const Case& test) {
-  const Rows reference = study::integrate_reference(test.reference, command_profile(), kSample, test.settling);
-  const Rows fine = run_model(test.parameters, 2);
-  const Rows coarse = run_model(test.parameters, 1);
+  const study::ReferenceRows reference =
+      study::integrate_reference(test.reference, axis_commands(), kAxisSample, test.settling);
+  const study::ReferenceRows fine = run_axis(test.parameters, 2);
+  const study::ReferenceRows coarse = run_axis(test.parameters, 1);
   std::printf("\n%-28s 0.5 ms: piston %.4f %% engine %.4f %%   1 ms: piston %.4f %% engine %.4f %%", test.name,
               100.0 * relative_rms(fine, reference, 0), 100.0 * relative_rms(fine, reference, 1),
               100.0 * relative_rms(coarse, reference, 0), 100.0 * relative_rms(coarse, reference, 1));
   CHECK_TRUE_TEXT(relative_rms(fine, reference, 0) < kLimit, test.name);
   CHECK_TRUE_TEXT(relative_rms(fine, reference, 1) < kLimit, test.name);
-}
-
-/// LuGre at the gimbal on both sides. v_d is half of the bound in physics.md section 3.
-void add_lugre(Case& test, double level, double stiffness, double ratio, double stribeck, double damping) {
-  activate<model::GimbalFriction, Plant>(
-      test.parameters, {option_named<model::GimbalFriction>("lugre"), level, stiffness, ratio, stribeck, damping});
-  const double dies_at = damping > 0.0 ? 2.0 * std::sqrt(2.0 * std::numbers::e) * level / damping : 1.0;
-  test.reference.bristle = {level, stiffness, ratio, stribeck, damping, dies_at};
-}
-
-void add_soft(Case& test, double low, double scale) {
-  activate<model::SoftStiffness, Plant>(test.parameters, {option_named<model::SoftStiffness>("compliance"), low, scale, {}});
-  test.reference.soft = ReferenceAxis::Soft::compliance;
-  test.reference.low_stiffness = low;
-  test.reference.load_scale = scale;
-}
-
-void add_deadband(Case& test, double half_width) {
-  activate<model::ValveDeadband, Plant>(test.parameters, {0, half_width});
-  test.reference.deadband = half_width;
 }
 
 }  // namespace

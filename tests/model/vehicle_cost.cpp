@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/model/axis_comparison.hpp"
 #include "tests/model/vehicles.hpp"
 
 namespace hotfire::test {
@@ -14,15 +15,6 @@ using Axis = model::Simplex<double>;
 
 constexpr int kSteps = 200;
 constexpr double kStep = 5e-4;
-
-/// One axis with the effects that an axis of the vehicle and its bearing have.
-Axis::Parameters one_axis() {
-  Axis::Parameters parameters;
-  activate<model::GimbalFriction, Axis>(parameters, {2, 15e3, 1e8, 1.2, 0.01, 3e3});
-  activate<model::SoftStiffness, Axis>(parameters, {0, 4e7, 8e3, {}});
-  activate<model::ValveDeadband, Axis>(parameters, {0, 0.02});
-  return parameters;
-}
 
 /// Moves one axis anywhere it can be. Half of them are all but at rest, so that the bristle sticks.
 template <class State>
@@ -52,7 +44,7 @@ void hotfire_measured_masv(const Masv& plant, Masv::State& state, const Masv::In
 namespace {
 
 void step_axis() {
-  const Axis plant(one_axis(), kStep);
+  const Axis plant(hot_fire_axis().parameters, kStep);
   constexpr std::size_t friction = index_in<model::GimbalFriction>(Axis::Effects{});
   Random random(11);
   for (int i = 0; i < kSteps; ++i) {

@@ -1,29 +1,17 @@
 #include "tools/study/reference_axis.hpp"
 
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
+#include "tools/study/cvode_integrator.hpp"
 #include "tools/study/reference_equations.hpp"
 
 namespace hotfire::study {
 namespace {
 
-void require(int flag, const char* what) {
-  if (flag < 0) {
-    throw std::runtime_error(std::string("CVODE: ").append(what).append(" failed with ").append(std::to_string(flag)));
-  }
-}
-
-StateVector unpacked(const std::vector<ReferenceState>& states, N_Vector packed) {
+StateVector unpacked(const std::vector<ReferenceState>& states, const double* values) {
   StateVector y{};
-  const double* values = N_VGetArrayPointer(packed);
   for (std::size_t i = 0; i < states.size(); ++i) {
     y[states[i]] = values[i];
   }
@@ -32,7 +20,7 @@ StateVector unpacked(const std::vector<ReferenceState>& states, N_Vector packed)
 
 int right_hand_side(double t, N_Vector state, N_Vector result, void* user) {
   const ReferenceProblem& problem = *static_cast<const ReferenceProblem*>(user);
-  const StateVector d = derivative(problem, t, unpacked(problem.states, state));
+  const StateVector d = derivative(problem, t, unpacked(problem.states, N_VGetArrayPointer(state)));
   double* values = N_VGetArrayPointer(result);
   for (std::size_t i = 0; i < problem.states.size(); ++i) {
     values[i] = d[problem.states[i]];
@@ -40,76 +28,38 @@ int right_hand_side(double t, N_Vector state, N_Vector result, void* user) {
   return 0;
 }
 
-/// CVODE's objects, released together.
+/// The axis' states within CVODE's.
 class Integrator {
  public:
-  Integrator(ReferenceProblem& problem, double relative) : problem_(problem) {
-    const auto size = static_cast<sunindextype>(problem.states.size());
-    SUNContext_Create(nullptr, &context_);
-    state_ = N_VNew_Serial(size, context_);
-    tolerance_ = N_VNew_Serial(size, context_);
-    N_VConst(0.0, state_);
-    for (std::size_t i = 0; i < problem.states.size(); ++i) {
-      N_VGetArrayPointer(tolerance_)[i] = 0.1 * relative * kStateScale[problem.states[i]];
-    }
-    matrix_ = SUNDenseMatrix(size, size, context_);
-    solver_ = SUNLinSol_Dense(state_, matrix_, context_);
-    memory_ = CVodeCreate(CV_BDF, context_);
-    require(CVodeInit(memory_, right_hand_side, 0.0, state_), "CVodeInit");
-    require(CVodeSVtolerances(memory_, relative, tolerance_), "CVodeSVtolerances");
-    require(CVodeSetUserData(memory_, &problem_), "CVodeSetUserData");
-    require(CVodeSetLinearSolver(memory_, solver_, matrix_), "CVodeSetLinearSolver");
-    require(CVodeSetMaxNumSteps(memory_, 1'000'000), "CVodeSetMaxNumSteps");
-    // A failure is answered in advance(), and told by an exception if that is no help.
-    require(CVodeSetErrFile(memory_, nullptr), "CVodeSetErrFile");
-  }
-  Integrator(const Integrator&) = delete;
-  Integrator& operator=(const Integrator&) = delete;
-  ~Integrator() {
-    CVodeFree(&memory_);
-    SUNLinSolFree(solver_);
-    SUNMatDestroy(matrix_);
-    N_VDestroy(tolerance_);
-    N_VDestroy(state_);
-    SUNContext_Free(&context_);
-  }
+  Integrator(ReferenceProblem& problem, double relative)
+      : problem_(problem), cvode_(right_hand_side, &problem, scales_of(problem.states), relative) {}
 
-  StateVector state() const { return unpacked(problem_.states, state_); }
+  StateVector state() { return unpacked(problem_.states, cvode_.state()); }
 
   /// Sets one of the states the axis has.
   void set(ReferenceState state, double value) {
     const auto at = std::find(problem_.states.begin(), problem_.states.end(), state);
-    N_VGetArrayPointer(state_)[at - problem_.states.begin()] = value;
+    cvode_.state()[at - problem_.states.begin()] = value;
   }
 
   /// Goes on to `end` with the command of the problem, started afresh.
-  void advance(double end) {
-    require(CVodeReInit(memory_, time_, state_), "CVodeReInit");
-    require(CVodeSetStopTime(memory_, end), "CVodeSetStopTime");
-    int restarts = 0;
-    while (time_ < end) {
-      const int flag = CVode(memory_, end, state_, &time_, CV_NORMAL);
-      // A corner can defeat the error test; from the corner itself it goes on.
-      if ((flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) && ++restarts <= 20) {
-        require(CVodeReInit(memory_, time_, state_), "CVodeReInit");
-        require(CVodeSetStopTime(memory_, end), "CVodeSetStopTime");
-      } else {
-        require(flag, "CVode");
-      }
-    }
-  }
+  void advance(double end) { cvode_.advance(end); }
 
-  double time() const { return time_; }
+  double time() const { return cvode_.time(); }
+  long evaluations() const { return cvode_.evaluations(); }
 
  private:
+  static std::vector<double> scales_of(const std::vector<ReferenceState>& states) {
+    std::vector<double> scales;
+    scales.reserve(states.size());
+    for (const ReferenceState state : states) {
+      scales.push_back(kStateScale[state]);
+    }
+    return scales;
+  }
+
   ReferenceProblem& problem_;
-  SUNContext context_ = nullptr;
-  N_Vector state_ = nullptr;
-  N_Vector tolerance_ = nullptr;
-  SUNMatrix matrix_ = nullptr;
-  SUNLinearSolver solver_ = nullptr;
-  void* memory_ = nullptr;
-  double time_ = 0.0;
+  CvodeIntegrator cvode_;
 };
 
 /// Changes the command at the present time. A jump moves the torque motor at once, and with it the play.
@@ -127,7 +77,7 @@ void set_command(ReferenceProblem& problem, Integrator& integrator, double comma
 }  // namespace
 
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
-                                  double settling, double tolerance) {
+                                  double settling, double tolerance, long* evaluations) {
   if (axis.play > 0.0 && !std::isinf(axis.rate_limit)) {
     throw std::invalid_argument("the reference axis has no play behind a rate limit: its play follows jumps of the command");
   }
@@ -152,6 +102,9 @@ ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<d
     set_command(problem, integrator, earlier(i - late));
     integrator.advance(settling + static_cast<double>(i + 1) * sample);
     rows.push_back(readings(axis, integrator.state()));
+  }
+  if (evaluations != nullptr) {
+    *evaluations += integrator.evaluations();
   }
   return rows;
 }

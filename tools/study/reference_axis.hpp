@@ -138,9 +138,9 @@ using ReferenceRows = std::vector<std::array<double, 3>>;
 
 /// Piston, engine and load pressure under `commands` [rad], each held for `sample` seconds. Starts at rest under a zero
 /// command, and waits `settling` seconds before the first command. Row i is read at the *end* of the time in which command i
-/// is held. CVODE (BDF) with relative tolerance `tolerance`, started afresh at every edge of the command. Throws
-/// std::runtime_error if CVODE gives up.
+/// is held. CVODE (BDF) with relative tolerance `tolerance`, started afresh at every edge of the command. What it
+/// took is added to `evaluations`, without those for CVODE's Jacobian. Throws std::runtime_error if CVODE gives up.
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
-                                  double settling, double tolerance = 1e-10);
+                                  double settling, double tolerance = 1e-10, long* evaluations = nullptr);
 
 }  // namespace hotfire::study

@@ -1,4 +1,4 @@
-#include "tests/model/cvode_integrator.hpp"
+#include "tools/study/cvode_integrator.hpp"
 
 #include <cvode/cvode.h>
 #include <sunlinsol/sunlinsol_dense.h>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace hotfire::test {
+namespace hotfire::study {
 namespace {
 
 void require(int flag, const char* what) {
@@ -35,6 +35,8 @@ CvodeIntegrator::CvodeIntegrator(Derivative derivative, void* user, const std::v
   require(CVodeSetUserData(memory_, user), "CVodeSetUserData");
   require(CVodeSetLinearSolver(memory_, solver_, matrix_), "CVodeSetLinearSolver");
   require(CVodeSetMaxNumSteps(memory_, 1'000'000), "CVodeSetMaxNumSteps");
+  // A failure is answered in advance(), and told by an exception if that is no help.
+  require(CVodeSetErrFile(memory_, nullptr), "CVodeSetErrFile");
 }
 
 CvodeIntegrator::~CvodeIntegrator() {
@@ -46,20 +48,31 @@ CvodeIntegrator::~CvodeIntegrator() {
   SUNContext_Free(&context_);
 }
 
-void CvodeIntegrator::advance(double end) {
+void CvodeIntegrator::count() {
+  long since_start = 0;
+  require(CVodeGetNumRhsEvals(memory_, &since_start), "CVodeGetNumRhsEvals");
+  evaluations_ += since_start;
+}
+
+void CvodeIntegrator::start(double end) {
   require(CVodeReInit(memory_, time_, state_), "CVodeReInit");
   require(CVodeSetStopTime(memory_, end), "CVodeSetStopTime");
+}
+
+void CvodeIntegrator::advance(double end) {
+  start(end);
   int restarts = 0;
   while (time_ < end) {
     const int flag = CVode(memory_, end, state_, &time_, CV_NORMAL);
     // A corner can defeat the error test; from the corner itself it goes on.
     if ((flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) && ++restarts <= 20) {
-      require(CVodeReInit(memory_, time_, state_), "CVodeReInit");
-      require(CVodeSetStopTime(memory_, end), "CVodeSetStopTime");
+      count();
+      start(end);
     } else {
       require(flag, "CVode");
     }
   }
+  count();
 }
 
-}  // namespace hotfire::test
+}  // namespace hotfire::study

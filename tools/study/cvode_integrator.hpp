@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace hotfire::test {
+namespace hotfire::study {
 
 /// SUNDIALS CVODE (BDF, dense) with a relative tolerance and an absolute one of a tenth of it of each state's scale.
 class CvodeIntegrator {
@@ -27,7 +27,13 @@ class CvodeIntegrator {
   /// up.
   void advance(double end);
 
+  /// Evaluations of the derivative so far, without those for the Jacobian's differences.
+  long evaluations() const { return evaluations_; }
+
  private:
+  void start(double end);
+  void count();
+
   SUNContext context_ = nullptr;
   N_Vector state_ = nullptr;
   N_Vector tolerance_ = nullptr;
@@ -35,6 +41,7 @@ class CvodeIntegrator {
   SUNLinearSolver solver_ = nullptr;
   void* memory_ = nullptr;
   double time_ = 0.0;
+  long evaluations_ = 0;
 };
 
-}  // namespace hotfire::test
+}  // namespace hotfire::study

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <vector>
+
+#include "tools/study/reference_axis.hpp"
+
+namespace hotfire::test {
+
+using study::ReferenceAxis;
+
+/// Engines with two hydraulic axes each on compliant bearings and one modal structure, written from physics.md sections 1 to
+/// 3 alone, by vector mechanics: what the model is judged by. Nothing of model/ is used here.
+struct ReferenceVehicle {
+  using Vector = Eigen::Vector3d;
+
+  struct Engine {
+    std::array<ReferenceAxis, 2> axes;  ///< pitch, yaw: declared values, dead band and softness, and nothing else
+    std::array<Vector, 2> on_engine;    ///< attach points at zero angles, from the gimbal's centre
+    std::array<Vector, 2> on_vehicle;
+    double thrust = 0.0;
+    double loss_time = 1e-3;
+    Eigen::Matrix<double, 6, 6> bearing_compliance = Eigen::Matrix<double, 6, 6>::Zero();
+    ReferenceAxis::Bristle friction;  ///< one bristle vector over both angles; level zero: none
+    double vibration_ratio = 1.0;
+    double vibration_velocity = 1.0;
+  };
+  std::vector<Engine> engines;
+
+  /// Shapes of a mode, pitch and yaw of every engine.
+  struct Mode {
+    double frequency = 0.0;  ///< [Hz]
+    double damping = 0.0;
+    std::vector<double> attach;
+    std::vector<double> rotation;
+  };
+  std::vector<Mode> modes;
+
+  /// Where a run starts: of every engine the eight states of both axes and six displacements of the bearing; the modes.
+  struct Start {
+    struct Engine {
+      std::array<std::array<double, 8>, 2> axes{};
+      std::array<double, 6> bearing{};
+    };
+    std::vector<Engine> engines;
+    std::vector<double> modes;
+  };
+};
+
+/// Piston and engine of every axis at the end of each sample of `sample` seconds, the commands [rad] of all axes held
+/// between samples. As `study::integrate_reference`. What it took is added to `evaluations`: evaluations of the equations,
+/// without those for CVODE's Jacobian.
+std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& vehicle, const ReferenceVehicle::Start& start,
+                                                     const std::vector<std::vector<double>>& commands, double sample,
+                                                     double tolerance = 1e-10, long* evaluations = nullptr);
+
+}  // namespace hotfire::test
