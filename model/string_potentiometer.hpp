@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "model/effects/sensor_lag.hpp"
 #include "model/field.hpp"
 #include "model/geometry.hpp"
 
@@ -25,15 +26,16 @@ struct PotentiometerReadout {
                       Field<P>{"step", "m", 0.0, 0.1, 1e-5, "least difference of two readings; 0: none", &P::step}};
   }
 
-  /// Reading after a sampling period of `h` [s] at whose end the length is `length`; `held` is the lag's state. The lag is
-  /// exact for a length held over the period. `draw` is a sample of a distribution of variance 1, from whoever has random
-  /// numbers.
-  S read(S& held, const S& length, const S& draw, double h) const noexcept {
-    using std::exp;
+  using State = SensorLag::State<S>;
+
+  /// Brings the lag to rest at a length.
+  static void settle(State& state, const S& length) noexcept { state = {length, length}; }
+
+  /// Reading after a sampling period of `h` [s] at whose end the length is `length`: exact for a length that moves linearly
+  /// over the period (`SensorLag`). `draw` is a sample of a distribution of variance 1, from whoever has random numbers.
+  S read(State& state, const S& length, const S& draw, double h) const noexcept {
     using std::floor;
-    const S share = value_of(lag) > 0.0 ? 1.0 - exp(S(-h) / lag) : S(1.0);
-    held += share * (length - held);
-    const S noisy = held + noise * draw;
+    const S noisy = SensorLag::step(SensorLag::Params<S>{0, lag}, state, Signal<S>{length, h}) + noise * draw;
     return value_of(step) > 0.0 ? step * floor(noisy / step + 0.5) : noisy;
   }
 };
@@ -65,6 +67,32 @@ class StringPotentiometers {
     const Pose<S> second = second_.at(pitch, yaw);
     return {first.stroke[0] - dot<S>(first.direction[0], moved), first.stroke[1] - dot<S>(first.direction[1], moved),
             second.stroke[0] - dot<S>(second.direction[0], moved), second.stroke[1] - dot<S>(second.direction[1], moved)};
+  }
+
+  /// What is wrong with an engine's strings; empty if nothing.
+  static std::string_view broken_relation(const Anchors& anchors) {
+    for (const AttachPoints<S>& string : anchors) {
+      if (!(value_of(dot<S>(string.engine() - string.vehicle(), string.engine() - string.vehicle())) > 1e-6)) {
+        return "the two ends of a string coincide";
+      }
+    }
+    // What a length changes by under pitch and yaw: two strings must tell the two apart.
+    constexpr double kLeast = 1e-6;  // of the determinant, over what perpendicular arms of these sizes would give
+    const StringPotentiometers strings(anchors);
+    const Pose<S> first = strings.first_.at(S(0.0), S(0.0));
+    const Pose<S> second = strings.second_.at(S(0.0), S(0.0));
+    double pitch = 0.0;
+    double yaw = 0.0;
+    double both = 0.0;
+    for (const auto& arm : {first.arm[0], first.arm[1], second.arm[0], second.arm[1]}) {
+      pitch += value_of(arm[0] * arm[0]);
+      yaw += value_of(arm[1] * arm[1]);
+      both += value_of(arm[0] * arm[1]);
+    }
+    if (!(pitch * yaw - both * both > kLeast * pitch * yaw) || !(pitch > kLeast) || !(yaw > kLeast)) {
+      return "the strings cannot tell pitch from yaw";
+    }
+    return {};
   }
 
  private:

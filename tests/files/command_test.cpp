@@ -18,7 +18,8 @@ TEST_GROUP(Command) {
   std::string out;
   std::string err;
 
-  /// Runs `hotfire` with these arguments and keeps what it prints. Returns its exit status.
+  /// Runs `hotfire` with these arguments and keeps what it prints. Returns its
+  /// exit status.
   int status_of(const std::string& arguments) {
     const auto read = [](const std::filesystem::path& path) {
       std::ifstream file(path);
@@ -38,7 +39,8 @@ TEST_GROUP(Command) {
   std::string model() const {
     return scratch
         .write("good.toml",
-               "schema = 1\nname = \"bench\"\ntopology = \"simplex\"\n[effects.backlash]\nhalf_width = \"0.1 mm\"\n")
+               "schema = 1\nname = \"bench\"\ntopology = "
+               "\"simplex\"\n[effects.backlash]\nhalf_width = \"0.1 mm\"\n")
         .string();
   }
 };
@@ -81,7 +83,8 @@ TEST(Command, without_what_it_needs_is_wrong_use) {
 }
 
 TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
-  for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "hammer ", "quiescent ", "findings "}) {
+  for (const std::string command :
+       {"", "check ", "simulate ", "sweep ", "step ", "hammer ", "quiescent ", "strings ", "findings "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));
@@ -126,8 +129,11 @@ TEST(Command, a_model_of_two_axes_is_checked_and_run_on_the_axis_that_is_named) 
   expect_message(err, {"--axis"});
   LONGS_EQUAL(0, status_of("step --model " + taos + " --axis yaw --amplitudes 0.2 --hold 0.5"));
   expect_message(out, {"engine at 0.500 s, +0.00 to +0.20 deg"});
-  const std::string both =
-      scratch.write("both.csv", "time[s],command.pitch[deg],command.yaw[deg]\n0,0,0\n0.002,1,1\n0.004,1,1\n").string();
+  const std::string both = scratch
+                               .write("both.csv",
+                                      "time[s],command.pitch[deg],command.yaw[deg]\n0,0,"
+                                      "0\n0.002,1,1\n0.004,1,1\n")
+                               .string();
   LONGS_EQUAL(0, status_of("simulate --model " + taos + " --input " + both + " --output " + scratch.path("o.csv").string()));
   expect_message(out, {"o.csv: 3 rows"});
   LONGS_EQUAL(
@@ -135,19 +141,60 @@ TEST(Command, a_model_of_two_axes_is_checked_and_run_on_the_axis_that_is_named) 
   expect_message(err, {"no column command.pitch"});
 }
 
+TEST(Command, hammer_and_quiescent_take_the_axis_that_is_named) {
+  const std::string taos = scratch.write("taos.toml", "schema = 1\ntopology = \"taos\"\n").string();
+  LONGS_EQUAL(2, status_of("hammer --model " + taos));
+  expect_message(err, {"--axis"});
+  LONGS_EQUAL(0, status_of("hammer --model " + taos + " --axis yaw --picture " + scratch.path("decay.svg").string()));
+  expect_message(out, {"engine.yaw: ", " Hz, damping ratio"});
+  LONGS_EQUAL(2, status_of("quiescent --model " + taos + " --axis roll"));
+  expect_message(err, {"--axis roll", "pitch, yaw"});
+  LONGS_EQUAL(0, status_of("quiescent --model " + taos + " --axis pitch --seconds 20 --picture " +
+                           scratch.path("spectrum.svg").string()));
+  expect_message(out, {"piston.pitch: largest peak at"});
+  CHECK_TRUE(std::filesystem::exists(scratch.path("decay.svg")) && std::filesystem::exists(scratch.path("spectrum.svg")));
+}
+
+TEST(Command, strings_give_the_angles_of_a_test_from_the_poses_of_another) {
+  const std::string taos = scratch.write("taos.toml", "schema = 1\ntopology = \"taos\"\n[strings]\n").string();
+  std::string poses = "time[s],command.pitch[deg],command.yaw[deg]\n";
+  for (int row = 0; row < 600; ++row) {
+    const int pose = row / 100;
+    poses += std::to_string(0.01 * row) + "," + std::to_string(pose % 3 - 1) + "," + std::to_string(pose / 3) + "\n";
+  }
+  const std::string settled = scratch.path("settled.csv").string();
+  LONGS_EQUAL(0, status_of("simulate --model " + taos + " --input " + scratch.write("p.csv", poses).string() + " --output " +
+                           settled));
+  const std::string angles = scratch.path("angles.csv").string();
+  const std::string both = " --settled " + settled + " --record " + settled + " --output " + angles;
+  LONGS_EQUAL(0, status_of("strings --hold 0.9" + both));
+  expect_message(out, {"angles.csv: calibrated on 6 settled poses", "mdeg rms", "pitch"});
+  LONGS_EQUAL(0, status_of("strings --hold 0.9 --json" + both));
+  expect_message(out, {"\"poses\": 6", "pitch_error_rad"});
+  LONGS_EQUAL(0, status_of("check " + angles));
+  LONGS_EQUAL(6, status_of("strings" + both));
+  expect_message(err, {"settled.csv", "0 poses are held for 2 s", "at least five"});
+  LONGS_EQUAL(6, status_of("strings --settled " + record() + " --record " + settled + " --output " + angles));
+  expect_message(err, {"no column string1"});
+}
+
 TEST(Command, check_says_how_much_of_a_bus_a_schedule_takes_and_refuses_one_that_does_not_fit) {
   const std::string good =
       scratch.write("good.toml", "schema = 1\n[bus]\nbit_rate = 1e6\n[frames]\nSYNC = 0.001\n").string();
   const std::string bad = scratch.write("bad.toml", "schema = 1\n[bus]\nbit_rate = 1e5\n[frames]\nSYNC = 0.001\n").string();
   LONGS_EQUAL(0, status_of("check " + good));
-  expect_message(out, {"CAN schedule, 1 frames, worst-case bus load 7.5 % of 1 Mbit/s, allowed 70 %"});
+  expect_message(out, {"CAN schedule, 1 frames, worst-case bus load 7.5 % of 1 "
+                       "Mbit/s, allowed 70 %"});
   LONGS_EQUAL(6, status_of("check " + bad));
   expect_message(err, {"bad.toml: worst-case bus load 75.0 %"});
 }
 
 TEST(Command, candump_log_is_written_read_back_and_simulated) {
-  const std::string csv =
-      scratch.write("r.csv", "time[s],command[rad],piston[m]\n0,0,0\n0.002,0.01,0\n0.004,0.01,0\n").string();
+  const std::string csv = scratch
+                              .write("r.csv",
+                                     "time[s],command[rad],piston[m]\n0,0,0\n0.002,0.01,"
+                                     "0\n0.004,0.01,0\n")
+                              .string();
   const std::string log = scratch.path("r.log").string();
   LONGS_EQUAL(0, status_of("convert --command-per-current 5 " + csv + " " + log));
   LONGS_EQUAL(0, status_of("check " + log));

@@ -31,7 +31,9 @@ TEST_GROUP(Record) {
 };
 
 TEST(Record, has_its_channels_in_file_order_with_start_period_and_rows) {
-  const Record record = load("time[s],command[rad],piston[m]\n1.000,0,1e-3\n1.002,-0.5,2e-3\n1.004,+0.5,3e-3\n");
+  const Record record = load(
+      "time[s],command[rad],piston[m]\n1.000,0,1e-3\n1."
+      "002,-0.5,2e-3\n1.004,+0.5,3e-3\n");
   STRCMP_EQUAL("r.csv", record.name.c_str());
   LONGS_EQUAL(3, record.rows);
   DOUBLES_EQUAL(1.0, record.start, 0.0);
@@ -45,7 +47,9 @@ TEST(Record, has_its_channels_in_file_order_with_start_period_and_rows) {
 }
 
 TEST(Record, is_converted_to_si_by_the_units_of_its_header) {
-  const Record record = load("time[ms],command[deg],piston[mm],load_pressure[psi]\n0,180,1,1\n2,90,2,2\n");
+  const Record record = load(
+      "time[ms],command[deg],piston[mm],load_pressure["
+      "psi]\n0,180,1,1\n2,90,2,2\n");
   DOUBLES_EQUAL(0.002, record.period, 1e-15);
   DOUBLES_EQUAL(3.14159265358979, record.find("command")->values[0], 1e-12);
   DOUBLES_EQUAL(0.002, record.find("piston")->values[1], 1e-15);
@@ -61,7 +65,9 @@ TEST(Record, force_and_position_keep_their_own_unit) {
 }
 
 TEST(Record, may_have_comments_first_a_byte_order_mark_crlf_spaces_and_no_last_newline) {
-  LONGS_EQUAL(2, load("\xEF\xBB\xBF# stand 3\r\n# run 12\r\ntime[s], piston[m]\r\n0 , 1\r\n0.002,\t2").rows);
+  LONGS_EQUAL(2, load("\xEF\xBB\xBF# stand 3\r\n# run 12\r\ntime[s], "
+                      "piston[m]\r\n0 , 1\r\n0.002,\t2")
+                     .rows);
   LONGS_EQUAL(2, load("time[s],piston[m]\n0,1\n0.002,2\n\n\n").rows);
 }
 
@@ -115,9 +121,18 @@ TEST(Record, with_an_unknown_channel_is_refused_with_the_nearest_known_one) {
   expect_message(refused("hello world\n"), {"r.csv:1:", "column 1", "hello world", "unknown channel"});
 }
 
+TEST(Record, of_a_vibration_has_the_unit_of_a_slip_where_it_names_an_axis) {
+  STRCMP_EQUAL("m/s^2", load("time[s],vibration[m/s^2]\n0,1\n0.001,2\n0.002,3\n").channels[0].unit.c_str());
+  const Channel slip = load("time[s],vibration.yaw[deg/s]\n0,180\n0.001,2\n0.002,3\n").channels[0];
+  STRCMP_EQUAL("rad/s", slip.unit.c_str());
+  DOUBLES_EQUAL(3.14159265358979, slip.values[0], 1e-12);
+}
+
 TEST(Record, of_an_axis_that_there_is_not_is_refused) {
   expect_message(refused("time[s],command.roll[deg]\n0,0\n"), {"r.csv:1:", "column 2", "command.roll", "no axis", ".pitch"});
   expect_message(refused("time.pitch[s],command[deg]\n0,0\n"), {"r.csv:1:", "column 1", "time.pitch"});
+  expect_message(refused("time[s],string2.pitch[m]\n0,0\n"),
+                 {"r.csv:1:", "column 2", "string2.pitch", "no engine", ".engine1"});
 }
 
 TEST(Record, with_a_wrong_unit_is_refused_with_the_units_allowed) {

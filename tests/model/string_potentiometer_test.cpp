@@ -1,7 +1,7 @@
 #include "model/string_potentiometer.hpp"
 
 #include <cmath>
-#include <random>
+#include <string>
 
 #include <CppUTest/TestHarness.h>
 
@@ -52,25 +52,40 @@ TEST(StringPotentiometers, CannotTellTheStructuresMotionFromTheEngines) {
   }
 }
 
-TEST(StringPotentiometers, ReadWithALagThatIsExactForAHeldLength) {
-  const Readout readout{0.01, 0.0, 0.0};
-  double held = 0.0;
-  double reading = 0.0;
-  for (int k = 0; k < 10; ++k) {
-    reading = readout.read(held, 1.0, 0.0, 1e-3);
+TEST(StringPotentiometers, ReadWithALagThatIsExactForALengthThatMovesEvenly) {
+  constexpr double kLag = 0.01;
+  constexpr double kSpeed = 0.3;
+  const Readout readout{kLag, 0.0, 0.0};
+  Readout::State state;
+  Readout::settle(state, 0.0);
+  for (int k = 1; k <= 20; ++k) {
+    const double t = k * 1e-3;
+    // The solution of lag r' + r = speed t from rest.
+    const double exact = kSpeed * (t - kLag * -std::expm1(-t / kLag));
+    DOUBLES_EQUAL(exact, readout.read(state, kSpeed * t, 0.0, 1e-3), 1e-15);
   }
-  DOUBLES_EQUAL(1.0 - std::exp(-1.0), reading, 1e-12);
 }
 
 TEST(StringPotentiometers, ReadInStepsAndWithTheNoiseTheyAreGiven) {
-  double held = 0.0;
+  Readout::State state;
   const Readout coarse{0.0, 0.0, 1e-3};
-  DOUBLES_EQUAL(0.002, coarse.read(held, 0.00234, 0.0, 1e-3), 1e-12);
-  DOUBLES_EQUAL(-0.002, coarse.read(held, -0.00234, 0.0, 1e-3), 1e-12);
+  DOUBLES_EQUAL(0.002, coarse.read(state, 0.00234, 0.0, 1e-3), 1e-12);
+  DOUBLES_EQUAL(-0.002, coarse.read(state, -0.00234, 0.0, 1e-3), 1e-12);
   const Readout noisy{0.0, 1e-5, 0.0};
-  DOUBLES_EQUAL(0.5 + 3e-5, noisy.read(held, 0.5, 3.0, 1e-3), 1e-15);
+  DOUBLES_EQUAL(0.5 + 3e-5, noisy.read(state, 0.5, 3.0, 1e-3), 1e-15);
   const Readout ideal;
-  DOUBLES_EQUAL(0.123, ideal.read(held, 0.123, 5.0, 1e-3), 0.0);
+  DOUBLES_EQUAL(0.123, ideal.read(state, 0.123, 5.0, 1e-3), 0.0);
+}
+
+TEST(StringPotentiometers, MustTellPitchFromYaw) {
+  CHECK_TRUE(Strings::broken_relation(Strings::representative()).empty());
+  auto slack = Strings::representative();
+  slack[2] = {0.5, 0.1, 0.2, 0.5, 0.1, 0.2};
+  STRCMP_CONTAINS("coincide", std::string(Strings::broken_relation(slack)).c_str());
+  auto alike = Strings::representative();
+  alike[2] = alike[0];
+  alike[3] = alike[1];
+  STRCMP_CONTAINS("cannot tell", std::string(Strings::broken_relation(alike)).c_str());
 }
 
 }  // namespace hotfire::test

@@ -12,7 +12,9 @@
 namespace hotfire::test {
 namespace {
 
-const std::string kHeader = "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1\n";
+const std::string kHeader =
+    "mode,frequency[Hz],damping[1],attach.pitch1,"
+    "attach.yaw1,gimbal.pitch1,gimbal.yaw1\n";
 
 /// The message with which a table of this text is refused.
 std::string refused(const std::string& text) {
@@ -44,13 +46,33 @@ TEST(ModeTableFile, IsReadBackBitForBit) {
   CHECK_TRUE(again.engines == 4 && again.modes() == 12);
   CHECK_TRUE(again.frequency == modes.frequency && again.damping_ratio == modes.damping_ratio);
   CHECK_TRUE(again.shape == modes.shape && again.residual == modes.residual);
+  CHECK_TRUE(again.string_shape == modes.string_shape && again.string_shape.rows() == 16);
+}
+
+TEST(ModeTableFile, HasStringsOfAllEnginesOrNone) {
+  const std::string strings =
+      "mode,frequency[Hz],damping[1],attach.pitch1,"
+      "attach.yaw1,gimbal.pitch1,gimbal.yaw1,"
+      "string1.engine1,string2.engine1,string3.engine1";
+  check_says(refused(strings + "\n1,5,0.01,1,1,0,0,1,2,3\n"), {"1:", "no column string4.engine1"});
+  check_says(refused(strings + ",string5.engine1\n"), {"string5.engine1", "unknown"});
+  check_says(refused(strings + ",string4.engine1\n1,5,0.01,1,1,0,0,1,2,,4\n"), {"2:", "missing shape at string3.engine1"});
+  const Scratch scratch;
+  const ModeSet modes = load_modes(scratch.write("modes.csv", strings + ",string4.engine1\n1,5,0.01,1,1,0,0,1,2,3,"
+                                                                        "4\nresidual.attach.pitch1,,,1e-9,0,0,0,5,6,7,8\n"
+                                                                        "residual.attach.yaw1,,,0,0,0,0,0,0,0,0\nresidual."
+                                                                        "gimbal.pitch1,,,0,0,0,0,0,0,0,0\n"
+                                                                        "residual.gimbal.yaw1,,,0,0,0,0,0,0,0,9\n"));
+  DOUBLES_EQUAL(3.0, modes.string_shape(2, 0), 0.0);
+  DOUBLES_EQUAL(6.0, modes.string_residual(1, 0), 0.0);
+  DOUBLES_EQUAL(9.0, modes.string_residual(3, 3), 0.0);
 }
 
 TEST(ModeTableFile, TakesItsColumnsInAnyOrder) {
   const Scratch scratch;
-  const ModeSet modes = load_modes(scratch.write(
-      "modes.csv",
-      "gimbal.yaw1,attach.yaw1,mode,damping[1],gimbal.pitch1,frequency[Hz],attach.pitch1\n4,2,first,0.01,3,5.5,1\n"));
+  const ModeSet modes = load_modes(scratch.write("modes.csv",
+                                                 "gimbal.yaw1,attach.yaw1,mode,damping[1],gimbal.pitch1,"
+                                                 "frequency[Hz],attach.pitch1\n4,2,first,0.01,3,5.5,1\n"));
   CHECK_TRUE(modes.modes() == 1 && modes.engines == 1);
   DOUBLES_EQUAL(5.5, modes.frequency(0), 0.0);
   for (int port = 0; port < 4; ++port) {
@@ -65,7 +87,8 @@ TEST(ModeTableFile, HasThePortsOfTheModel) {
 
 TEST(ModeTableFile, RefusesAMissingShape) {
   check_says(refused(kHeader + "1,5,0.01,1e-3,,0,0\n"), {"2:", "mode 1", "missing shape at attach.yaw1"});
-  check_says(refused("mode,frequency[Hz],damping[1],attach.pitch1,gimbal.pitch1,gimbal.yaw1\n1,5,0.01,0,0,0\n"),
+  check_says(refused("mode,frequency[Hz],damping[1],attach.pitch1,gimbal."
+                     "pitch1,gimbal.yaw1\n1,5,0.01,0,0,0\n"),
              {"1:", "no column attach.yaw1"});
   check_says(refused(kHeader + "1,5,0.01,1e-3,0,0\n"), {"2:", "ragged row: 6 cells", "7"});
 }
@@ -84,7 +107,9 @@ TEST(ModeTableFile, RefusesMoreEnginesThanTheBuildHas) {
 }
 
 TEST(ModeTableFile, RefusesAResidualThatIsNoFlexibility) {
-  const std::string rows = "residual.attach.yaw1,,,0,1e-9,0,0\nresidual.gimbal.pitch1,,,0,0,1e-9,0\n";
+  const std::string rows =
+      "residual.attach.yaw1,,,0,1e-9,0,0\nresidual.gimbal."
+      "pitch1,,,0,0,1e-9,0\n";
   check_says(refused(kHeader + "residual.attach.pitch1,,,1e-9,0,0,0\n" + rows), {"no row residual.gimbal.yaw1"});
   const std::string last = "residual.gimbal.yaw1,,,0,0,0,1e-9\n";
   check_says(refused(kHeader + "residual.attach.pitch1,,,1e-9,5e-10,0,0\n" + rows + last), {"not symmetric"});

@@ -37,7 +37,8 @@ TEST(Reduction, KeepsAtMostFortyOfAHundredAndTwentyModesWithinOnePercent) {
   const Reduction reduction = reduce(full, goal);
   CHECK_TRUE(reduction.reaches(goal));
   CHECK_TRUE(reduction.modes.modes() <= 40);
-  // What it says of itself, found again on a plain grid of 2 mHz, a fifth of the narrowest half-power width.
+  // What it says of itself, found again on a plain grid of 2 mHz, a fifth of
+  // the narrowest half-power width.
   for (int port = 0; port < 8; ++port) {
     double difference = 0.0;
     double size = 0.0;
@@ -78,6 +79,17 @@ TEST(Reduction, KeepsNoMoreModesThanTheGoalNeedsAndSaysWhenItIsMissed) {
   CHECK_FALSE(missed.reaches(starved));
 }
 
+// What a cut mode moved of a string at rest stays, as a share of the force on
+// each port.
+TEST(Reduction, LeavesTheMotionOfTheStringsAtRestAsItWas) {
+  const ModeSet full = load_modes(kShipped);
+  const ModeSet reduced = reduce(full, {}).modes;
+  const Eigen::MatrixXd wanted = static_string_motion(full);
+  CHECK_TRUE(wanted.rows() == 16 && wanted.cwiseAbs().maxCoeff() > 1e-10);
+  CHECK_TRUE((static_string_motion(reduced) - wanted).cwiseAbs().maxCoeff() < 1e-13 * wanted.cwiseAbs().maxCoeff());
+  CHECK_TRUE(reduced.string_residual.cwiseAbs().maxCoeff() > 0.01 * wanted.cwiseAbs().maxCoeff());
+}
+
 TEST(Reduction, NeedsNoModeForAnAttachPointThatNoneMoves) {
   ModeSet full = synthetic_vehicle(3, 9);
   full.shape.row(2).setZero();
@@ -99,6 +111,7 @@ TEST(SyntheticVehicle, IsShippedAsItsGeneratorMakesIt) {
   const ModeSet shipped = load_modes(kShipped);
   const ModeSet made = synthetic_vehicle(20230203, 120);
   CHECK_TRUE(shipped.shape == made.shape && shipped.frequency == made.frequency);
+  CHECK_TRUE(shipped.string_shape == made.string_shape);
 }
 
 TEST(SyntheticVehicle, HasManyModesInBandAndNoneThatDominates) {

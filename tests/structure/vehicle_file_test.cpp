@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/files/expect.hpp"
@@ -56,11 +57,12 @@ TEST_GROUP(VehicleFile) {
 };
 
 TEST(VehicleFile, GivesEveryAxisWhatIsSaidOfAllAndThenWhatIsSaidOfIt) {
-  const auto masv = std::get<MasvParameters>(
-      load(kMasv +
-           "[actuator]\nstiffness = 9e7\nleakage = 1e-12\n[actuator.pitch]\nleakage = 3e-12\n[actuator.yaw2]\nleakage = "
-           "5e-12\n[effects.soft_stiffness]\nlaw = \"compliance\"\nlow_stiffness = 5e7\n")
-          .parameters);
+  const auto masv = std::get<MasvParameters>(load(kMasv + "[actuator]\nstiffness = 9e7\nleakage = "
+                                                          "1e-12\n[actuator.pitch]\nleakage = "
+                                                          "3e-12\n[actuator.yaw2]\nleakage = "
+                                                          "5e-12\n[effects.soft_stiffness]\nlaw = "
+                                                          "\"compliance\"\nlow_stiffness = 5e7\n")
+                                                 .parameters);
   for (std::size_t i = 0; i < 8; ++i) {
     DOUBLES_EQUAL(9e7, masv.axes[i].actuator.stiffness, 0.0);
     DOUBLES_EQUAL(i % 2 == 0 ? 3e-12 : i == 3 ? 5e-12 : 1e-12, masv.axes[i].actuator.leakage, 0.0);
@@ -68,10 +70,12 @@ TEST(VehicleFile, GivesEveryAxisWhatIsSaidOfAllAndThenWhatIsSaidOfIt) {
 }
 
 TEST(VehicleFile, ReadsTheBearingAndItsAttachPoints) {
-  const auto taos = std::get<TaosParameters>(
-      load(kTaos + "[attach.pitch]\nengine_z = -0.8\nvehicle_z = -0.8\n[gimbal]\nthrust = 1.86e6\n" + matrix(2e7, 1e6, 1e6) +
-           "[gimbal.friction]\nlaw = \"lugre\"\ncoulomb_torque = 2e4\n")
-          .parameters);
+  const auto taos =
+      std::get<TaosParameters>(load(kTaos +
+                                    "[attach.pitch]\nengine_z = -0.8\nvehicle_z = "
+                                    "-0.8\n[gimbal]\nthrust = 1.86e6\n" +
+                                    matrix(2e7, 1e6, 1e6) + "[gimbal.friction]\nlaw = \"lugre\"\ncoulomb_torque = 2e4\n")
+                                   .parameters);
   CHECK_TRUE(taos.gimbals[0].compliant);
   DOUBLES_EQUAL(1e6, taos.gimbals[0].stiffness(5, 1), 0.0);
   DOUBLES_EQUAL(1.86e6, taos.gimbals[0].bearing.thrust, 0.0);
@@ -87,6 +91,14 @@ TEST(VehicleFile, ReadsItsModesFromTheTableBesideIt) {
   CHECK_TRUE(masv.modes.frequency[0] > 0.0 && masv.modes.frequency[20] == 0.0);
 }
 
+TEST(VehicleFile, IsShippedAsAnExampleThatRuns) {
+  const VehicleFile shipped = load_vehicle(HOTFIRE_SOURCE_DIR "/docs/taos.toml");
+  const Record run = simulate(shipped, commands({"command.pitch"}, 0.01));
+  // Held by friction and ducts at its start, and by nothing else.
+  DOUBLES_EQUAL(0.01, run.find("engine.pitch")->values.back(), 2e-3);
+  CHECK_TRUE(run.find("string4") != nullptr);
+}
+
 TEST(VehicleFile, IsRefusedWithWhatAndWhere) {
   expect_message(refused(kTaos + "[gimbal]\n" + matrix(2e7, 1e6, 2e6)),
                  {"v.toml:4:13:", "gimbal.stiffness", "not symmetric"});
@@ -94,14 +106,16 @@ TEST(VehicleFile, IsRefusedWithWhatAndWhere) {
                  {"v.toml:4:", "gimbal.stiffness", "positive definite"});
   expect_message(refused(kTaos + "[gimbal]\nstiffness = [[1, 2], [2, 1]]\n"), {"v.toml:4:", "gimbal.stiffness", "six rows"});
   expect_message(refused(kTaos + "[attach.pitch]\nengine_x = 0.9\n"), {"v.toml:", "attach", "coincide"});
-  expect_message(refused(kTaos + "[attach.yaw]\nengine_y = \"-0.7544 m\"\nvehicle_y = \"-0.7544 m\"\n"),
+  expect_message(refused(kTaos + "[attach.yaw]\nengine_y = \"-0.7544 "
+                                 "m\"\nvehicle_y = \"-0.7544 m\"\n"),
                  {"v.toml:", "attach", "no arm"});
   expect_message(refused(kTaos + "[actuator.roll]\nleakage = 1\n"), {"v.toml:3:", "actuator.roll", "pitch"});
   expect_message(refused(kTaos + "[actuator.pitch2]\nleakage = 1\n"), {"v.toml:3:", "actuator.pitch2", "unknown key"});
   expect_message(refused(kTaos + "[actuator.pitch]\nleakage = -1\n"),
                  {"v.toml:4:", "actuator.pitch.leakage", "allowed: 0 to"});
   expect_message(refused(kTaos + "[gimbal.friction]\nlaw = \"lugra\"\n"), {"v.toml:4:", "gimbal.friction.law", "lugre"});
-  expect_message(refused(kTaos + "[gimbal.vibration]\npitch_velocity = 0.1\n[gimbal.friction]\nlaw = \"vibrated_lugre\"\n"
+  expect_message(refused(kTaos + "[gimbal.vibration]\npitch_velocity = "
+                                 "0.1\n[gimbal.friction]\nlaw = \"vibrated_lugre\"\n"
                                  "coulomb_torque = 1e4\n"),
                  {"v.toml:", "gimbal", "two ways to the same physics"});
   expect_message(refused(kTaos + "[engines]\n"), {"v.toml:3:", "engines", "unknown key"});
@@ -113,7 +127,8 @@ TEST(VehicleFile, RefusesModesThatItHasNoRoomFor) {
   expect_message(refused(kTaos + "[modes]\ntable = \"many.csv\"\n"), {"v.toml:4:", "4 engines", "allowed: 1"});
   expect_message(refused(kMasv + "[modes]\ntable = \"none.csv\"\n"), {"none.csv"});
   scratch.write("short.csv",
-                "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1\n1,-4,0.01,1,1,0,0\n");
+                "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,"
+                "gimbal.pitch1,gimbal.yaw1\n1,-4,0.01,1,1,0,0\n");
   expect_message(refused(kTaos + "[modes]\ntable = \"short.csv\"\n"), {"short.csv:2:", "-4"});
   expect_message(refused(kTaos + "[modes]\n"), {"v.toml:3:", "modes.table", "missing"});
 }
@@ -122,13 +137,36 @@ TEST(VehicleFile, RunsOnTheCommandsOfItsAxes) {
   const VehicleFile taos = load(kTaos);
   const Record run = simulate(taos, commands({"command.pitch"}, 0.01));
   LONGS_EQUAL(8, run.channels.size());
-  // In the steady state under the first row: pitch stands where it is commanded, but for the ducts' load, and yaw at zero.
+  // In the steady state under the first row: pitch stands where it is
+  // commanded, but for the ducts' load, and yaw at zero.
   DOUBLES_EQUAL(0.01, run.find("engine.pitch")->values.back(), 3e-4);
   DOUBLES_EQUAL(0.0, run.find("engine.yaw")->values.back(), 1e-4);
   CHECK_TRUE(run.find("command.yaw")->values == std::vector<double>(200, 0.0));
   DOUBLES_EQUAL(0.7544, moment_arm_of(taos, "pitch"), 1e-9);
   expect_message(refusal([&] { simulate(taos, commands({"command.pitch3"}, 0.0)); }), {"command.pitch3", "pitch, yaw"});
   expect_message(refusal([&] { simulate(taos, commands({"vibration"}, 0.0)); }), {"no column command.pitch"});
+}
+
+// Vibration takes friction away, so that a small step gets further; a law that
+// has that already does not take it twice.
+TEST(VehicleFile, AddsARecordedVibrationToTheSlipOfItsBearing) {
+  const std::string friction = kTaos + "[gimbal.friction]\ncoulomb_torque = 15e3\nstiffness = 1e8\nlaw = ";
+  const VehicleFile taos = load(friction + "\"lugre\"\n");
+  Record inputs = commands({"command.pitch", "vibration.pitch"}, 0.004);
+  std::vector<double>& command = inputs.channels[0].values;
+  std::fill(command.begin(), command.begin() + 20, 0.0);
+  std::vector<double>& vibration = inputs.channels[1].values;
+  const auto reached = [&](double amplitude) {
+    for (std::size_t row = 0; row < inputs.rows; ++row) {
+      vibration[row] = amplitude * std::sin(600.0 * static_cast<double>(row) * inputs.period);
+    }
+    return simulate(taos, inputs).find("engine.pitch")->values.back();
+  };
+  CHECK_TRUE(reached(0.05) > 1.02 * reached(0.0));
+  const VehicleFile lowered = load(friction + "\"vibrated_lugre\"\n");
+  expect_message(refusal([&] { simulate(lowered, inputs); }), {"vibration.pitch", "two ways to the same physics"});
+  inputs.channels[1].name = "vibration.yaw3";
+  expect_message(refusal([&] { simulate(taos, inputs); }), {"vibration.yaw3", "no such axis"});
 }
 
 }  // namespace hotfire::test

@@ -5,8 +5,10 @@
 #include "tools/analysis/free_decay.hpp"
 #include "tools/files/error.hpp"
 #include "tools/simulate/simulate.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/disturbed.hpp"
 #include "tools/trials/profiles.hpp"
+#include "tools/trials/string_angles.hpp"
 #include "tools/trials/sweep.hpp"
 
 #include <CppUTest/TestHarness.h>
@@ -21,7 +23,8 @@ ModelFile linear() {
   return model;
 }
 
-/// Frequency of the engine's pendulum on a locked actuator [SD eq. 10], and of the piston's zeros.
+/// Frequency of the engine's pendulum on a locked actuator [SD eq. 10], and of
+/// the piston's zeros.
 double pendulum(const SimplexParameters& p) {
   const double total = 1.0 / (1.0 / p.actuator.stiffness + 1.0 / p.structure.stiffness);
   return std::sqrt((p.engine.duct_stiffness + total * p.actuator.moment_arm * p.actuator.moment_arm) / p.engine.inertia) /
@@ -35,7 +38,8 @@ TEST_GROUP(Trials){};
 TEST(Trials, SinesAndMultisineGiveTheSameResponseOfALinearAxis) {
   const ModelFile model = linear();
   const SweepGoal goal{.moment_arm = moment_arm_of(model)};
-  // Small enough for the root of the flow law, whose share falls with the load pressure.
+  // Small enough for the root of the flow law, whose share falls with the load
+  // pressure.
   const auto by_sines =
       analyse_sweep(simulate(model, command_record(stepped_sines({{1e-5, {1.0, 2.0, 4.0, 6.0, 9.0}}}))), goal);
   const auto broadband = analyse_sweep(simulate(model, command_record(multisine(1e-4, 0.5, 14.0, 8.0, 6, 2))), goal);
@@ -45,7 +49,8 @@ TEST(Trials, SinesAndMultisineGiveTheSameResponseOfALinearAxis) {
     for (const auto& sine : by_sines[channel].response) {
       for (const auto& point : broadband[channel].response) {
         if (std::abs(point.frequency - sine.frequency) < 0.01) {
-          // Hann's window reaches two bins of 1/8 Hz to either side, over which the response bends.
+          // Hann's window reaches two bins of 1/8 Hz to either side, over which
+          // the response bends.
           CHECK_TRUE(std::abs(point.gain - sine.gain) < 0.03 * std::abs(sine.gain));
           CHECK_TRUE(point.coherence > 0.99);
         }
@@ -105,6 +110,72 @@ TEST(Trials, AQuiescentAxisIsTheSameForTheSameSeedAndStillWithoutTorque) {
   for (const double value : quiescent(linear(), ambient).find("engine")->values) {
     DOUBLES_EQUAL(0.0, value, 1e-12);
   }
+}
+
+// Straight arms and no modes: each axis of the vehicle is the single axis.
+TEST(Trials, TheHammerFindsThePendulumOfEveryAxisOfAVehicle) {
+  VehicleFile vehicle;
+  MasvParameters parameters;
+  parameters.axes[5].structure.stiffness = 9e7;
+  vehicle.parameters = parameters;
+  for (const std::string axis : {"pitch1", "yaw3"}) {
+    SimplexParameters single;
+    single.structure = parameters.axes[axis == "yaw3" ? 5 : 0].structure;
+    const Record record = hammer(vehicle, axis, {.impulse = 20.0, .seconds = 2.0});
+    const auto decay = analysis::free_decay(record.find("engine." + axis)->values, record.period, 2.0);
+    DOUBLES_EQUAL(pendulum(single), decay->frequency, 2e-3 * decay->frequency);
+    DOUBLES_EQUAL(0.0, record.find("engine.pitch2")->values.back(), 1e-9);
+  }
+  CHECK_THROWS(UsageError, hammer(vehicle, "pitch5", {}));
+}
+
+TEST(Trials, AQuiescentVehicleMovesOnAllAxesAndIsTheSameForTheSameSeed) {
+  VehicleFile vehicle;
+  vehicle.parameters = TaosParameters{};
+  const Quiescence ambient{100.0, 2.0, 7};
+  const Record one = quiescent(vehicle, "pitch", ambient);
+  CHECK_TRUE(one.find("piston.yaw")->values == quiescent(vehicle, "yaw", ambient).find("piston.yaw")->values);
+  CHECK_FALSE(one.find("piston.yaw")->values == one.find("piston.pitch")->values);
+  const auto rms = [](const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) {
+      sum += value * value;
+    }
+    return std::sqrt(sum);
+  };
+  // Of one strength on both: two seconds of a lightly damped axis vary by less
+  // than a factor of three.
+  const double ratio = rms(one.find("engine.yaw")->values) / rms(one.find("engine.pitch")->values);
+  CHECK_TRUE(ratio > 1.0 / 3.0 && ratio < 3.0);
+  CHECK_THROWS(UsageError, quiescent(vehicle, "yaw2", ambient));
+}
+
+TEST(Trials, StringsGiveTheAnglesThatTheirSettledPosesTaught) {
+  VehicleFile vehicle;
+  vehicle.parameters = TaosParameters{};
+  vehicle.sensors.strings = {VehicleSensors::Strings::representative()};
+  Record poses = command_record({}, "command.pitch");
+  poses.channels.push_back({"command.yaw", "rad", {}});
+  for (const double pitch : {-0.02, 0.0, 0.02}) {
+    for (const double yaw : {-0.02, 0.0, 0.02}) {
+      poses.channels[0].values.insert(poses.channels[0].values.end(), 3000, pitch);
+      poses.channels[1].values.insert(poses.channels[1].values.end(), 3000, yaw);
+    }
+  }
+  poses.rows = poses.channels[0].values.size();
+  const auto settled = settled_poses(simulate(vehicle, poses), "", 2.0);
+  LONGS_EQUAL(9, settled.size());
+  DOUBLES_EQUAL(-0.02, settled[0].yaw, 0.0);
+  LONGS_EQUAL(0, settled_poses(simulate(vehicle, poses), "", 3.5).size());
+  const analysis::AngleCalibration calibration(settled);
+  const Record test = simulate(vehicle, command_record(multisine(0.01, 0.5, 2.0, 2.0, 2, 4), "command.pitch"));
+  const StringAngles angles = string_angles(test, calibration, "");
+  CHECK_TRUE(angles.known);
+  // Calibrated on commands, which the engine misses by what its ducts take from
+  // the load spring: K_n / (K_T R^2), 2 %.
+  CHECK_TRUE(angles.pitch < 0.02 * 0.01);
+  CHECK_TRUE(angles.yaw < 1e-4);
+  CHECK_THROWS(FileError, settled_poses(test, "2", 2.0));
 }
 
 TEST(Trials, TheGreenRunProfileIsThatOfThePaperInEitherOrder) {

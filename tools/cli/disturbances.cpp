@@ -24,8 +24,11 @@ struct HammerOptions {
 };
 
 void run_hammer(const HammerOptions& options) {
-  const Record record =
-      record_of_trial(options.trial, [&] { return trials::hammer(load_model(options.trial.model), options.blow); });
+  const Record record = record_of_trial(options.trial, [&] {
+    const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
+    return vehicle ? trials::hammer(*vehicle, options.trial.axis, options.blow)
+                   : trials::hammer(load_model(options.trial.model), options.blow);
+  });
   const std::string name = record.find("position") != nullptr ? "position" : "engine";
   const Channel& channel = trials::required_channel(record, name, options.trial.axis);
   const auto decay = analysis::free_decay(channel.values, record.period, options.blow.seconds);
@@ -53,8 +56,11 @@ struct QuiescentOptions {
 };
 
 void run_quiescent(const QuiescentOptions& options) {
-  const Record record =
-      record_of_trial(options.trial, [&] { return trials::quiescent(load_model(options.trial.model), options.ambient); });
+  const Record record = record_of_trial(options.trial, [&] {
+    const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
+    return vehicle ? trials::quiescent(*vehicle, options.trial.axis, options.ambient)
+                   : trials::quiescent(load_model(options.trial.model), options.ambient);
+  });
   const Channel& piston = trials::required_channel(record, "piston", options.trial.axis);
   const auto rows = static_cast<std::size_t>(std::lround(options.segment / record.period));
   if (rows < 8 || rows > record.rows) {

@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
   add_step(program);
   add_hammer(program);
   add_quiescent(program);
+  add_strings(program);
   add_findings(program);
   add_reduce(program);
   add_plant(program);

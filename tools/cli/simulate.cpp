@@ -23,6 +23,7 @@ struct SimulateOptions {
   std::string input;
   std::string output;
   std::size_t fit_start = 0;
+  unsigned seed = 1;
   bool json = false;
   CandumpOptions candump;
 };
@@ -38,7 +39,9 @@ std::function<Record(const Record&)> simulation_of(const SimulateOptions& option
     throw UsageError(
         "--fit-start is for a direct model; hydraulic axes start in the steady state under their first commands");
   }
-  return [model = load_vehicle(options.model)](const Record& inputs) { return simulate(model, inputs); };
+  return [model = load_vehicle(options.model), seed = options.seed](const Record& inputs) {
+    return simulate(model, inputs, {.seed = seed});
+  };
 }
 
 void run_simulation(const SimulateOptions& options) {
@@ -79,6 +82,10 @@ void add_simulate(CLI::App& program) {
       ->add_option("--fit-start", options->fit_start,
                    "fit the initial state of a direct mass on this many rows (0: start at rest)")
       ->check(CLI::Range(std::size_t{0}, kMostRows));
+  command
+      ->add_option("--seed", options->seed,
+                   "of what sensors and strings of a model of several axes have of noise and placement errors")
+      ->capture_default_str();
   add_candump_options(*command, options->candump);
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer("Example: hotfire simulate --model declared.toml --input steps.csv --output model.csv");

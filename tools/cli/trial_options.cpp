@@ -29,14 +29,21 @@ Record record_of_trial(const TrialOptions& options, const std::function<Record()
   return record;
 }
 
-Record simulate_command(const TrialOptions& options, std::vector<double> command) {
-  const bool several = is_vehicle(options.model);
-  if (several && options.axis.empty()) {
-    throw UsageError(
-        "the model has several axes; --axis says which one is commanded, pitch or yaw, pitch1 of several engines");
+std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options) {
+  if (!is_vehicle(options.model)) {
+    return {};
   }
+  if (options.axis.empty()) {
+    throw UsageError(
+        "the model has several axes; --axis says which one the test is of, pitch or yaw, pitch1 of several engines");
+  }
+  return load_vehicle(options.model);
+}
+
+Record simulate_command(const TrialOptions& options, std::vector<double> command) {
+  const std::optional<VehicleFile> vehicle = vehicle_of_trial(options);
   const Record inputs = trials::command_record(std::move(command), trials::channel_of("command", options.axis));
-  return several ? simulate(load_vehicle(options.model), inputs) : simulate(load_model(options.model), inputs);
+  return vehicle ? simulate(*vehicle, inputs) : simulate(load_model(options.model), inputs);
 }
 
 double moment_arm_of_trial(const TrialOptions& options) {

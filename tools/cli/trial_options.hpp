@@ -2,11 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/analysis/chart.hpp"
 #include "tools/files/record.hpp"
+#include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {
 
@@ -25,6 +27,9 @@ void add_trial_options(CLI::App& command, TrialOptions& options);
 /// The record to analyse: the one that is given, or what `run` makes of the model that is given. It is written where it is
 /// wanted. Throws UsageError unless exactly one of the two is given.
 Record record_of_trial(const TrialOptions& options, const std::function<Record()>& run);
+
+/// The options' model if it is of several axes, nothing otherwise. Throws UsageError for one and no axis that is named.
+std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options);
 
 /// Runs the model of the options, of one axis or several, on a command to its axis. Throws UsageError for a model of several
 /// axes and none that is named.

@@ -44,34 +44,60 @@ std::string_view trimmed(std::string_view text) {
   return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// A header of a file that is not CSV can be long and strange: a message shows its beginning.
+/// A header of a file that is not CSV can be long and strange: a message shows
+/// its beginning.
 std::string shown(std::string_view text) {
   constexpr std::size_t kMost = 60;
   return text.size() <= kMost ? std::string{text} : std::string{text.substr(0, kMost)} + "...";
 }
 
-/// What follows the point in `piston.pitch`, `piston.yaw3`: an axis, of an engine where there are several.
+/// The number of an engine, where there are several.
+bool is_engine(std::string_view text) { return text.size() == 1 && text[0] >= '1' && text[0] <= '9'; }
+
+/// What follows the point in `piston.pitch`, `piston.yaw3`: an axis, of an
+/// engine where there are several.
 bool is_axis(std::string_view text) {
   for (const std::string_view axis : {"pitch", "yaw"}) {
     if (text.starts_with(axis)) {
-      const std::string_view engine = text.substr(axis.size());
-      return engine.empty() || (engine.size() == 1 && engine[0] >= '1' && engine[0] <= '9');
+      return text.size() == axis.size() || is_engine(text.substr(axis.size()));
     }
   }
   return false;
 }
 
-const KnownChannel& known_channel(const CsvLines& lines, std::size_t column, std::string_view name) {
+/// Refuses what follows the point in a channel's name if it is neither an axis
+/// nor, of a string, an engine.
+void require_place(const CsvLines& lines, std::size_t column, std::string_view name, std::size_t point) {
+  constexpr std::string_view kEngine = "engine";
+  const std::string_view own = name.substr(0, point);
+  const std::string_view place = name.substr(point + 1);
+  if (own.starts_with("string")) {
+    if (!place.starts_with(kEngine) || !is_engine(place.substr(kEngine.size()))) {
+      lines.refuse(
+          fmt::format("column {} \"{}\": no engine; allowed after {}: "
+                      ".engine1, .engine2 ... of several engines",
+                      column, shown(name), own));
+    }
+  } else if (own == "time" || !is_axis(place)) {
+    lines.refuse(
+        fmt::format("column {} \"{}\": no axis; allowed after {}: .pitch, "
+                    ".yaw, or .pitch1, .yaw1, .pitch2 ... of several "
+                    "engines",
+                    column, shown(name), own));
+  }
+}
+
+KnownChannel known_channel(const CsvLines& lines, std::size_t column, std::string_view name) {
   const std::size_t point = name.find('.');
   const std::string_view own = name.substr(0, point);
   const auto* found =
       std::find_if(kKnownChannels.begin(), kKnownChannels.end(), [own](const auto& c) { return c.name == own; });
-  if (found != kKnownChannels.end() && point != std::string_view::npos &&
-      (own == "time" || !is_axis(name.substr(point + 1)))) {
-    lines.refuse(
-        fmt::format("column {} \"{}\": no axis; allowed after {}: .pitch, .yaw, or .pitch1, .yaw1, .pitch2 ... of several "
-                    "engines",
-                    column, shown(name), own));
+  if (found != kKnownChannels.end() && point != std::string_view::npos) {
+    require_place(lines, column, name, point);
+  }
+  // Of an axis it is the slip of a bearing.
+  if (found != kKnownChannels.end() && own == "vibration" && point != std::string_view::npos) {
+    return {"vibration", "rad/s"};
   }
   if (found != kKnownChannels.end()) {
     return *found;
@@ -83,7 +109,7 @@ const KnownChannel& known_channel(const CsvLines& lines, std::size_t column, std
 Column read_column(const CsvLines& lines, std::size_t number, std::string_view cell) {
   const std::size_t open = cell.find('[');
   const std::string_view name = trimmed(cell.substr(0, open));
-  const KnownChannel& known = known_channel(lines, number, name);
+  const KnownChannel known = known_channel(lines, number, name);
   if (open == std::string_view::npos || !cell.ends_with(']')) {
     lines.refuse(fmt::format("column {} \"{}\": its unit is missing; write {}[{}]", number, shown(cell), name,
                              known.unit.empty() ? "unit" : known.unit));
@@ -123,7 +149,9 @@ std::vector<Column> read_header(const CsvLines& lines, std::string_view header) 
     header.remove_prefix(more ? comma + 1 : header.size());
   }
   if (!has("time")) {
-    lines.refuse("no time column; a record begins with a line like time[s],command[rad],piston[m]");
+    lines.refuse(
+        "no time column; a record begins with a line like "
+        "time[s],command[rad],piston[m]");
   }
   if (columns.size() < 2) {
     lines.refuse("no channel beside time; allowed: " + fmt::format("{}", suggestion("", known_names())));

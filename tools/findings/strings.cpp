@@ -2,13 +2,13 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include "model/string_potentiometer.hpp"
 #include "tools/analysis/angle_calibration.hpp"
 #include "tools/findings/one_axis.hpp"
 #include "tools/findings/rows.hpp"
+#include "tools/simulate/normal.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/profiles.hpp"
 
@@ -70,15 +70,7 @@ Anchors displaced(Anchors anchors, double distance) {
 /// Rms error of both angles over the dynamic test [rad].
 double error_of(const Test& test, const Disturbance& disturbance) {
   const model::PotentiometerReadout<double> readout{2e-3, 2e-5, 1e-5};
-  std::mt19937 random(11);
-  const auto draw = [&random] {
-    // Of variance 1 from uniform numbers, the same on every machine.
-    double sum = -6.0;
-    for (int k = 0; k < 12; ++k) {
-      sum += static_cast<double>(random()) / 4294967296.0;
-    }
-    return sum;
-  };
+  Normal draw(11);
   const Strings assumed(Strings::representative());
   std::vector<analysis::SettledAngles> settled;
   for (const auto& [pitch, yaw] : test.settled) {
@@ -89,7 +81,11 @@ double error_of(const Test& test, const Disturbance& disturbance) {
   const Strings real(displaced(Strings::representative(), disturbance.placement));
   const std::vector<double>& pitch = test.dynamic.find("engine.pitch")->values;
   const std::vector<double>& yaw = test.dynamic.find("engine.yaw")->values;
-  std::array<double, 4> held = real.lengths(pitch[0], yaw[0], {0.0, 0.0, 0.0});
+  std::array<model::PotentiometerReadout<double>::State, 4> held;
+  const std::array<double, 4> start = real.lengths(pitch[0], yaw[0], {0.0, 0.0, 0.0});
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    model::PotentiometerReadout<double>::settle(held[k], start[k]);
+  }
   double sum = 0.0;
   for (std::size_t row = 0; row < pitch.size(); ++row) {
     const double swing =

@@ -11,8 +11,9 @@ namespace hotfire {
 /// A reading beyond this is a simulation that ran away, in any unit.
 inline constexpr double kRunaway = 1e12;
 
-/// Steps a plant through an input, `steps` plant steps a row, and hands every row's readings to `sink(row, readings)`: row 0
-/// is the state as given. Returns false at the first reading that is not finite or ran away.
+/// Steps a plant through an input, `steps` plant steps a row, and hands every
+/// row's readings to `sink(row, readings)`: row 0 is the state as given.
+/// Returns false at the first reading that is not finite or ran away.
 template <class Plant, class Sink>
 bool run(const Plant& plant, std::span<const double> input, typename Plant::State& state, int steps, Sink&& sink) {
   using S = typename Plant::Scalar;

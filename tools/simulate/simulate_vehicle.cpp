@@ -8,38 +8,83 @@
 
 #include "model/step_size.hpp"
 #include "tools/files/error.hpp"
+#include "tools/simulate/excitation.hpp"
 #include "tools/simulate/run.hpp"
+#include "tools/simulate/vehicle_readings.hpp"
 
 namespace hotfire {
 
 namespace {
 
 constexpr std::string_view kCommand = "command.";
+constexpr std::string_view kVibration = "vibration.";
 
-/// The command channel of every axis; null where the record has none.
-std::vector<const Channel*> command_channels(const Record& inputs, const std::vector<std::string>& axes) {
+/// The channel `kind` of every axis; null where the record has none. Refuses
+/// one of an axis that the model has not.
+std::vector<const Channel*> channels_of(const Record& inputs, std::string_view kind, const std::vector<std::string>& axes) {
   std::vector<const Channel*> channels;
   channels.reserve(axes.size());
   for (const std::string& axis : axes) {
-    channels.push_back(inputs.find(std::string(kCommand) + axis));
+    channels.push_back(inputs.find(std::string(kind) + axis));
   }
   for (const Channel& channel : inputs.channels) {
     const std::string_view name = channel.name;
-    if (name.starts_with(kCommand) && std::find(axes.begin(), axes.end(), name.substr(kCommand.size())) == axes.end()) {
+    if (name.starts_with(kind) && std::find(axes.begin(), axes.end(), name.substr(kind.size())) == axes.end()) {
       throw FileError(fmt::format("{}:1: {}: the model has no such axis; allowed: {}", inputs.path.string(), name,
                                   fmt::join(axes, ", ")));
     }
   }
+  return channels;
+}
+
+/// The command channel of every axis; null where the record has none.
+std::vector<const Channel*> command_channels(const Record& inputs, const std::vector<std::string>& axes) {
+  std::vector<const Channel*> channels = channels_of(inputs, kCommand, axes);
   if (std::all_of(channels.begin(), channels.end(), [](const Channel* channel) { return channel == nullptr; })) {
     require_channel(inputs, std::string(kCommand) + axes.front(), "the model is driven by it and its like");
   }
   return channels;
 }
 
+/// The slip velocity that a recorded vibration adds to the bearings: a sampled
+/// signal, interpolated between rows.
+class RecordedVibration {
+ public:
+  /// Refuses a record of a vibration for a bearing whose law has it already.
+  template <class Parameters>
+  RecordedVibration(const Record& inputs, const std::vector<std::string>& axes, const Parameters& parameters, int steps) {
+    const std::vector<const Channel*> channels = channels_of(inputs, kVibration, axes);
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      if (channels[i] == nullptr) {
+        continue;
+      }
+      if (parameters.gimbals[i / 2].friction.option == model::BearingFriction<double>::kVibrated) {
+        throw FileError(
+            fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a "
+                        "recorded vibration are two ways "
+                        "to the same physics; give one of them",
+                        inputs.path.string(), channels[i]->name));
+      }
+      axes_.emplace_back(i, Excitation(channels[i]->values, steps, Excitation::Between::interpolated));
+    }
+  }
+
+  /// Its mean over plant step `step` of a row, by axis.
+  template <class Velocities>
+  void put(std::size_t row, int step, Velocities& velocities) const {
+    for (const auto& [axis, velocity] : axes_) {
+      velocities[axis] = velocity(row, step);
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::size_t, Excitation>> axes_;
+};
+
+/// A record with a channel for all that a run gives, and the commands filled
+/// in.
 template <class Plant>
-Record run_vehicle(const typename Plant::Parameters& parameters, const Record& inputs) {
-  const int steps = model::steps_per_period(inputs.period);
-  const Plant plant(parameters, inputs.period / steps);
+Record empty_outputs(const VehicleFile& model, const Record& inputs) {
   const std::vector<std::string> axes = axis_names(Plant::kEngines);
   const std::vector<const Channel*> commands = command_channels(inputs, axes);
   Record outputs;
@@ -54,10 +99,26 @@ Record run_vehicle(const typename Plant::Parameters& parameters, const Record& i
                                   std::string(Plant::AxisModel::channel_units[c]), std::vector<double>(inputs.rows)});
     }
   }
+  for (std::size_t e = 1; e <= model.sensors.strings.size(); ++e) {
+    for (std::size_t k = 1; k <= VehicleSensors::Strings::kStrings; ++k) {
+      outputs.channels.push_back({Plant::kEngines == 1 ? fmt::format("string{}", k) : fmt::format("string{}.engine{}", k, e),
+                                  "m", std::vector<double>(inputs.rows)});
+    }
+  }
+  return outputs;
+}
+
+template <class Plant>
+Record run_vehicle(const typename Plant::Parameters& parameters, const VehicleFile& model, const Record& inputs,
+                   const VehicleRun& run) {
+  const int steps = model::steps_per_period(inputs.period);
+  const Plant plant(parameters, inputs.period / steps);
+  Record outputs = empty_outputs<Plant>(model, inputs);
   constexpr std::size_t kColumns = Plant::kChannels + 1;
+  constexpr std::size_t kStrings = Plant::kAxes * kColumns;
   typename Plant::Inputs driven;
   const auto command_at = [&](std::size_t row) {
-    for (std::size_t i = 0; i < axes.size(); ++i) {
+    for (std::size_t i = 0; i < Plant::kAxes; ++i) {
       driven.commands[i] = outputs.channels[i * kColumns].values[row];
     }
   };
@@ -66,51 +127,71 @@ Record run_vehicle(const typename Plant::Parameters& parameters, const Record& i
   for (auto& axis : state.axes) {
     axis.clock = inputs.start;
   }
+  const RecordedVibration vibration(inputs, axis_names(Plant::kEngines), parameters, steps);
+  VehicleReadings<Plant> readings(model.sensors, state, run.seed);
   for (std::size_t row = 0; row < inputs.rows; ++row) {
-    const auto& readings = Plant::measured(state);
-    for (std::size_t r = 0; r < readings.size(); ++r) {
-      if (!(std::abs(readings[r]) < kRunaway)) {
+    const auto& measured = Plant::measured(state);
+    readings.read(state, inputs.period);
+    for (std::size_t r = 0; r < measured.size(); ++r) {
+      if (!(std::abs(measured[r]) < kRunaway)) {
         throw FileError(
-            fmt::format("{}: the model runs away at {:.6g} s: its parameters make it unstable for these commands",
+            fmt::format("{}: the model runs away at {:.6g} s: its parameters make it "
+                        "unstable for these commands",
                         inputs.path.string(), inputs.start + static_cast<double>(row) * inputs.period));
       }
-      outputs.channels[r / Plant::kChannels * kColumns + 1 + r % Plant::kChannels].values[row] = readings[r];
+      const std::size_t axis = r / Plant::kChannels;
+      const std::size_t channel = r % Plant::kChannels;
+      outputs.channels[axis * kColumns + 1 + channel].values[row] = channel == 0 ? readings.pistons()[axis] : measured[r];
+    }
+    for (std::size_t k = 0; k < readings.strings().size(); ++k) {
+      outputs.channels[kStrings + k].values[row] = readings.strings()[k];
     }
     command_at(row);
+    for (std::size_t i = 0; i < run.impulses.size(); ++i) {
+      state.axes[i].y(Plant::AxisModel::kAngleRate) += run.impulses[i][row] / parameters.axes[i].engine.inertia;
+    }
     for (int k = 0; k < steps; ++k) {
+      vibration.put(row, k, driven.vibration);
       plant.step(state, driven);
     }
   }
   return outputs;
 }
 
-template <class Plant>
-double arm_of(const typename Plant::Parameters& parameters, const std::string& axis) {
-  const std::vector<std::string> axes = axis_names(Plant::kEngines);
-  const auto found = std::find(axes.begin(), axes.end(), axis);
-  if (found == axes.end()) {
-    throw UsageError(fmt::format("--axis {}: the model has no such axis; allowed: {}", axis, fmt::join(axes, ", ")));
+/// What `f.template operator()<Plant>(parameters)` says of the model's plant.
+template <class F>
+auto with_plant(const VehicleFile& model, F&& f) {
+  if (const auto* taos = std::get_if<TaosParameters>(&model.parameters)) {
+    return f.template operator()<model::Taos<double>>(*taos);
   }
-  const auto index = static_cast<std::size_t>(found - axes.begin());
-  const std::size_t pitch = index - index % 2;
-  const model::EngineGeometry<double> geometry(parameters.attach[pitch], parameters.attach[pitch + 1]);
-  return geometry.at(0.0, 0.0).arm[index % 2][index % 2];
+  return f.template operator()<model::Masv<double>>(std::get<MasvParameters>(model.parameters));
 }
 
 }  // namespace
 
-Record simulate(const VehicleFile& model, const Record& inputs) {
-  if (const auto* taos = std::get_if<TaosParameters>(&model.parameters)) {
-    return run_vehicle<model::Taos<double>>(*taos, inputs);
+Record simulate(const VehicleFile& model, const Record& inputs, const VehicleRun& run) {
+  return with_plant(model, [&]<class Plant>(const typename Plant::Parameters& parameters) {
+    return run_vehicle<Plant>(parameters, model, inputs, run);
+  });
+}
+
+std::size_t axis_index(const VehicleFile& model, const std::string& axis) {
+  const std::vector<std::string> axes =
+      with_plant(model, []<class Plant>(const typename Plant::Parameters&) { return axis_names(Plant::kEngines); });
+  const auto found = std::find(axes.begin(), axes.end(), axis);
+  if (found == axes.end()) {
+    throw UsageError(fmt::format("--axis {}: the model has no such axis; allowed: {}", axis, fmt::join(axes, ", ")));
   }
-  return run_vehicle<model::Masv<double>>(std::get<MasvParameters>(model.parameters), inputs);
+  return static_cast<std::size_t>(found - axes.begin());
 }
 
 double moment_arm_of(const VehicleFile& model, const std::string& axis) {
-  if (const auto* taos = std::get_if<TaosParameters>(&model.parameters)) {
-    return arm_of<model::Taos<double>>(*taos, axis);
-  }
-  return arm_of<model::Masv<double>>(std::get<MasvParameters>(model.parameters), axis);
+  const std::size_t index = axis_index(model, axis);
+  const std::size_t pitch = index - index % 2;
+  return with_plant(model, [&]<class Plant>(const typename Plant::Parameters& parameters) {
+    const model::EngineGeometry<double> geometry(parameters.attach[pitch], parameters.attach[pitch + 1]);
+    return geometry.at(0.0, 0.0).arm[index % 2][index % 2];
+  });
 }
 
 }  // namespace hotfire

@@ -53,9 +53,10 @@ bool next_row(CsvLines& lines, std::string_view& line) {
   return false;
 }
 
-/// Engine number at the end of a port's name; 0 if the name is no port's.
+/// Engine number at the end of the name of a port or a string; 0 if the name is neither's.
 int engine_of(std::string_view name) {
-  for (const std::string_view kind : {"attach.pitch", "attach.yaw", "gimbal.pitch", "gimbal.yaw"}) {
+  for (const std::string_view kind : {"attach.pitch", "attach.yaw", "gimbal.pitch", "gimbal.yaw", "string1.engine",
+                                      "string2.engine", "string3.engine", "string4.engine"}) {
     int engine = 0;
     if (name.starts_with(kind)) {
       const auto [end, error] = std::from_chars(name.data() + kind.size(), name.data() + name.size(), engine);
@@ -71,7 +72,8 @@ struct Columns {
   std::size_t mode = 0;
   std::size_t frequency = 0;
   std::size_t damping = 0;
-  std::vector<std::size_t> ports;
+  std::vector<std::string> shapes;  ///< ports, then strings if the table has them
+  std::vector<std::size_t> shape_at;
   std::size_t count = 0;
 };
 
@@ -83,6 +85,8 @@ void refuse_unknown_column(const CsvLines& lines, std::string_view name) {
   const std::vector<std::string> ports = port_names(kMostEngines);
   std::vector<std::string_view> known{kMode, kFrequency, kDamping};
   known.insert(known.end(), ports.begin(), ports.end());
+  const std::vector<std::string> strings = string_names(kMostEngines);
+  known.insert(known.end(), strings.begin(), strings.end());
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     lines.refuse(fmt::format("column \"{}\": unknown; {}", name, suggestion(name, known)));
   }
@@ -116,20 +120,26 @@ Columns read_columns(CsvLines& lines) {
   if (columns.engines == 0) {
     column("attach.pitch1", "a mode has a shape at every attach point and gimbal");
   }
-  for (const std::string& port : port_names(columns.engines)) {
-    columns.ports.push_back(
-        column(port, fmt::format("the table has {} engine{}, and a mode a shape at every attach point and gimbal of each",
-                                 columns.engines, columns.engines == 1 ? "" : "s")));
+  columns.shapes = port_names(columns.engines);
+  if (std::any_of(at.begin(), at.end(), [](const auto& own) { return own.first.starts_with("string"); })) {
+    const std::vector<std::string> strings = string_names(columns.engines);
+    columns.shapes.insert(columns.shapes.end(), strings.begin(), strings.end());
+  }
+  for (const std::string& shape : columns.shapes) {
+    columns.shape_at.push_back(column(
+        shape, fmt::format("the table has {} engine{}, and a mode a shape at every attach point and gimbal of each, and at "
+                           "all of their strings or none",
+                           columns.engines, columns.engines == 1 ? "" : "s")));
   }
   return columns;
 }
 
 /// Reads the shapes, or a row of the residual.
-Eigen::VectorXd read_ports(const CsvLines& lines, const Columns& columns, const std::vector<std::string_view>& cells) {
-  const std::vector<std::string> names = port_names(columns.engines);
+Eigen::VectorXd read_shapes(const CsvLines& lines, const Columns& columns, const std::vector<std::string_view>& cells) {
+  const std::vector<std::string>& names = columns.shapes;
   Eigen::VectorXd values(static_cast<Eigen::Index>(names.size()));
   for (std::size_t port = 0; port < names.size(); ++port) {
-    const std::string_view cell = cells[columns.ports[port]];
+    const std::string_view cell = cells[columns.shape_at[port]];
     if (cell.empty()) {
       lines.refuse(fmt::format("{} {}: missing shape at {}; allowed: a number, 0 where the mode does not move it", kMode,
                                cells[columns.mode], names[port]));
@@ -183,13 +193,25 @@ std::vector<std::string> port_names(int engines) {
   return names;
 }
 
+std::vector<std::string> string_names(int engines) {
+  std::vector<std::string> names;
+  for (int engine = 1; engine <= engines; ++engine) {
+    for (int string = 1; string <= 4; ++string) {
+      names.push_back(fmt::format("string{}.engine{}", string, engine));
+    }
+  }
+  return names;
+}
+
 ModeSet load_modes(const std::filesystem::path& path) {
   CsvLines lines(path);
   const Columns columns = read_columns(lines);
   const std::vector<std::string> names = port_names(columns.engines);
   ModeSet set;
   set.engines = columns.engines;
+  const Eigen::Index strings = std::ssize(columns.shapes) - set.ports();
   set.residual = Eigen::MatrixXd::Zero(set.ports(), set.ports());
+  set.string_residual = Eigen::MatrixXd::Zero(strings, set.ports());
   std::vector<double> frequency;
   std::vector<double> damping;
   std::vector<Eigen::VectorXd> shapes;
@@ -207,14 +229,15 @@ ModeSet load_modes(const std::filesystem::path& path) {
       lines.refuse(fmt::format("mode = \"{}\": {}; allowed: a name of its own for each row", label,
                                label.empty() ? "missing" : "given twice"));
     }
-    const Eigen::VectorXd ports = read_ports(lines, columns, cells);
+    const Eigen::VectorXd shape = read_shapes(lines, columns, cells);
     if (label.starts_with(kResidual)) {
       const auto port = std::find(names.begin(), names.end(), label.substr(kResidual.size()));
       if (port == names.end()) {
         lines.refuse(fmt::format("{}: no such port; {}", label,
                                  suggestion(label.substr(kResidual.size()), {names.begin(), names.end()})));
       }
-      set.residual.row(port - names.begin()) = ports.transpose();
+      set.residual.row(port - names.begin()) = shape.head(set.ports()).transpose();
+      set.string_residual.col(port - names.begin()) = shape.tail(strings);
       residual_rows.insert(*port);
       continue;
     }
@@ -226,15 +249,17 @@ ModeSet load_modes(const std::filesystem::path& path) {
         "above 0: motion as a rigid body is not part of a mode table"));
     damping.push_back(read_bounded(
         lines, kDamping, cells[columns.damping], [](double z) { return z >= 0.0 && z < 1.0; }, "0 to below 1"));
-    shapes.push_back(ports);
+    shapes.push_back(shape);
   }
   require_residual(lines, columns, residual_rows, set.residual);
   const auto count = static_cast<Eigen::Index>(shapes.size());
   set.frequency = Eigen::Map<const Eigen::VectorXd>(frequency.data(), count);
   set.damping_ratio = Eigen::Map<const Eigen::VectorXd>(damping.data(), count);
   set.shape.resize(set.ports(), count);
+  set.string_shape.resize(strings, count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    set.shape.col(k) = shapes[static_cast<std::size_t>(k)];
+    set.shape.col(k) = shapes[static_cast<std::size_t>(k)].head(set.ports());
+    set.string_shape.col(k) = shapes[static_cast<std::size_t>(k)].tail(strings);
   }
   return set;
 }
@@ -246,24 +271,32 @@ std::string mode_table_text(const ModeSet& modes, const std::vector<std::string>
   }
   text += fmt::format("{},{},{}", kMode, kFrequency, kDamping);
   const std::vector<std::string> names = port_names(modes.engines);
-  for (const std::string& port : names) {
-    text += fmt::format(",{}", port);
+  std::vector<std::string> columns = names;
+  if (modes.string_shape.rows() > 0) {
+    const std::vector<std::string> strings = string_names(modes.engines);
+    columns.insert(columns.end(), strings.begin(), strings.end());
   }
+  for (const std::string& column : columns) {
+    text += fmt::format(",{}", column);
+  }
+  const auto append = [&text](const Eigen::VectorXd& ports, const Eigen::VectorXd& strings) {
+    for (const Eigen::VectorXd* part : {&ports, &strings}) {
+      for (const double value : *part) {
+        text += fmt::format(",{}", value);
+      }
+    }
+    text += '\n';
+  };
   text += '\n';
   for (int k = 0; k < modes.modes(); ++k) {
     text += fmt::format("{},{},{}", k + 1, modes.frequency(k), modes.damping_ratio(k));
-    for (int port = 0; port < modes.ports(); ++port) {
-      text += fmt::format(",{}", modes.shape(port, k));
-    }
-    text += '\n';
+    append(modes.shape.col(k), modes.string_shape.col(k));
   }
-  if (modes.residual.cwiseAbs().maxCoeff() > 0.0) {
+  const bool moves_strings = modes.string_residual.size() > 0 && modes.string_residual.cwiseAbs().maxCoeff() > 0.0;
+  if (modes.residual.cwiseAbs().maxCoeff() > 0.0 || moves_strings) {
     for (int row = 0; row < modes.ports(); ++row) {
       text += fmt::format("{}{},,", kResidual, names[static_cast<std::size_t>(row)]);
-      for (int port = 0; port < modes.ports(); ++port) {
-        text += fmt::format(",{}", modes.residual(row, port));
-      }
-      text += '\n';
+      append(modes.residual.row(row), modes.string_residual.col(row));
     }
   }
   return text;

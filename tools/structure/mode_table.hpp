@@ -21,6 +21,10 @@ struct ModeSet {
   Eigen::VectorXd damping_ratio;  ///< one a mode
   Eigen::MatrixXd shape;          ///< a row a port, a column a mode [kg^-0.5], rotations [rad/(m kg^0.5)]
   Eigen::MatrixXd residual;       ///< a row and a column a port [m/N], [rad/N], [rad/(N m)]
+  /// How far a mode pulls the two ends of a string potentiometer towards each other along its line [kg^-0.5]: four rows an
+  /// engine, a column a mode; and what no mode has of it, a column a port. Both are empty for a table without strings.
+  Eigen::MatrixXd string_shape;
+  Eigen::MatrixXd string_residual;
 
   int ports() const { return 4 * engines; }
   int modes() const { return static_cast<int>(frequency.size()); }
@@ -29,10 +33,14 @@ struct ModeSet {
 /// Names of the ports of `engines` engines in order: attach.pitch1, attach.yaw1, attach.pitch2 ..., gimbal.pitch1 ...
 std::vector<std::string> port_names(int engines);
 
+/// Names of the strings: string1.engine1, string2.engine1 ..., string1.engine2 ...
+std::vector<std::string> string_names(int engines);
+
 /// Reads and checks a mode table. CSV; lines that begin with # are comments. The first other line names the columns:
 ///   mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,...,gimbal.pitch1,gimbal.yaw1,...
-/// in any order, with all four shapes of every engine from 1 up. A row is a mode, numbered, or `residual.PORT`: a row of the
-/// residual flexibility, its frequency and damping left empty. Without such rows the residual is zero.
+/// in any order, with all four shapes of every engine from 1 up, and for all engines or none string1.engine1, ... A row is a
+/// mode, numbered, or `residual.PORT`: what a unit of force on that port moves beyond the modes, its frequency and damping
+/// left empty. Without such rows the residual is zero.
 ///
 /// Throws FileError naming file, line, value and what is allowed: a missing or unknown column, a missing shape, a frequency
 /// that is not above 0, a damping ratio outside [0, 1), a mode given twice, a number that is not finite, a residual that is

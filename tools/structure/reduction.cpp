@@ -124,11 +124,14 @@ ModeSet with_modes(const ModeSet& full, const std::vector<int>& kept) {
   set.damping_ratio.resize(count);
   set.shape.resize(full.ports(), count);
   set.residual = Eigen::MatrixXd::Zero(full.ports(), full.ports());
+  set.string_shape.resize(full.string_shape.rows(), count);
+  set.string_residual = Eigen::MatrixXd::Zero(full.string_shape.rows(), full.ports());
   for (Eigen::Index i = 0; i < count; ++i) {
     const int k = kept[static_cast<std::size_t>(i)];
     set.frequency(i) = full.frequency(k);
     set.damping_ratio(i) = full.damping_ratio(k);
     set.shape.col(i) = full.shape.col(k);
+    set.string_shape.col(i) = full.string_shape.col(k);
   }
   return set;
 }
@@ -139,13 +142,24 @@ bool Reduction::reaches(const ReductionGoal& goal) const {
   return modes.modes() <= goal.most && *std::max_element(error.begin(), error.end()) <= goal.error;
 }
 
-Eigen::MatrixXd static_flexibility(const ModeSet& modes) {
-  Eigen::MatrixXd sum = modes.residual;
+namespace {
+
+/// Motion at rest of what moves by `shape` under unit forces on the ports, beyond `residual`.
+Eigen::MatrixXd at_rest(const ModeSet& modes, const Eigen::MatrixXd& shape, const Eigen::MatrixXd& residual) {
+  Eigen::MatrixXd sum = residual;
   for (int k = 0; k < modes.modes(); ++k) {
     const double w = 2.0 * std::numbers::pi * modes.frequency(k);
-    sum += modes.shape.col(k) * modes.shape.col(k).transpose() / (w * w);
+    sum += shape.col(k) * modes.shape.col(k).transpose() / (w * w);
   }
   return sum;
+}
+
+}  // namespace
+
+Eigen::MatrixXd static_flexibility(const ModeSet& modes) { return at_rest(modes, modes.shape, modes.residual); }
+
+Eigen::MatrixXd static_string_motion(const ModeSet& modes) {
+  return at_rest(modes, modes.string_shape, modes.string_residual);
 }
 
 Reduction reduce(const ModeSet& full, const ReductionGoal& goal) {
@@ -177,6 +191,7 @@ Reduction reduce(const ModeSet& full, const ReductionGoal& goal) {
   const Eigen::MatrixXd missing = wanted - static_flexibility(result.modes);
   // Symmetric to the last bit, as a flexibility is.
   result.modes.residual = 0.5 * (missing + missing.transpose());
+  result.modes.string_residual = static_string_motion(full) - static_string_motion(result.modes);
   result.static_error = (static_flexibility(result.modes) - wanted).cwiseAbs().maxCoeff() / wanted.cwiseAbs().maxCoeff();
   return result;
 }

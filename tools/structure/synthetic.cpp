@@ -17,6 +17,11 @@ class Uniform {
   double operator()(double low, double high) {
     return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
   }
+  /// Of either sign, sizes within a factor of three.
+  double shape() {
+    const double size = (*this)(0.5, 1.5);
+    return size * ((*this)(0.0, 1.0) < 0.5 ? -1.0 : 1.0);
+  }
 
  private:
   std::mt19937_64 engine_;
@@ -31,6 +36,8 @@ ModeSet synthetic_vehicle(unsigned seed, int count) {
   // Of what an actuator hardly feels: a thousandth of the shapes, a millionth of the flexibility.
   constexpr double kRemote = 1e-3;
   constexpr double kRotation = 0.3;  // rad/m: a mount turns by less than its attach points move
+  constexpr double kString = 0.5;    // the floor that carries the anchors moves by less than the attach points
+  const auto size_of = [](const ModeSet& set, int k) { return set.frequency(k) * (k % 3 == 1 ? 1.0 : kRemote); };
   Uniform uniform(seed);
   ModeSet set;
   set.engines = kMostEngines;
@@ -41,20 +48,31 @@ ModeSet synthetic_vehicle(unsigned seed, int count) {
   for (int k = 0; k < count; ++k) {
     set.frequency(k) = kLowest + (kHighest - kLowest) * (k + uniform(0.1, 0.9)) / count;
     set.damping_ratio(k) = uniform(0.005, 0.015);
-    const bool local = k % 3 == 1;
     // Equal shares of the static flexibility: a shape that grows with the frequency.
-    const double size = set.frequency(k) * (local ? 1.0 : kRemote);
+    const double size = size_of(set, k);
     for (int port = 0; port < set.ports(); ++port) {
-      const double shape = size * uniform(0.5, 1.5) * (uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0);
+      const double shape = size * uniform.shape();
       set.shape(port, k) = port < set.ports() / 2 ? shape : kRotation * shape;
     }
   }
   const Eigen::MatrixXd flexibility = static_flexibility(set);
   const int attach_points = set.ports() / 2;
+  std::vector<double> scales;
   for (int port = 0; port < attach_points; ++port) {
     const double scale = std::sqrt(uniform(0.9, 1.1) * kFlexibility / flexibility(port, port));
     set.shape.row(port) *= scale;
     set.shape.row(attach_points + port) *= scale;
+    scales.push_back(scale);
+  }
+  // Two strings along each of an engine's angles, from numbers of their own.
+  Uniform of_strings(seed + 1);
+  set.string_shape.resize(2 * attach_points, count);
+  set.string_residual = Eigen::MatrixXd::Zero(2 * attach_points, set.ports());
+  for (int string = 0; string < 2 * attach_points; ++string) {
+    for (int k = 0; k < count; ++k) {
+      set.string_shape(string, k) =
+          kString * scales[static_cast<std::size_t>(string) / 2] * size_of(set, k) * of_strings.shape();
+    }
   }
   return set;
 }

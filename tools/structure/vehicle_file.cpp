@@ -51,15 +51,18 @@ class Reader {
   typename Plant::Parameters read() {
     refuse_unknown_keys(source_, source_.root(), "",
                         {"schema", "name", "topology", "servovalve", "actuator", "structure", "engine", "effects", "attach",
-                         "gimbal", "modes"});
+                         "gimbal", "modes", "sensors", "strings"});
     for (int axis = 0; axis < Plant::kAxes; ++axis) {
       read_axis(axis);
     }
     read_attach_points();
     read_gimbals();
+    sensors_ = read_vehicle_sensors(source_, Plant::kEngines);
     read_modes();
     return parameters_;
   }
+
+  const VehicleSensors& sensors() const { return sensors_; }
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -205,13 +208,23 @@ class Reader {
       parameters_.modes.shape.col(k) = modes.shape.col(k);
     }
     parameters_.modes.residual = modes.residual;
+    sensors_.string_shape = modes.string_shape;
+    sensors_.string_residual = modes.string_residual;
   }
 
   const TomlSource& source_;
   std::filesystem::path folder_;
   std::vector<std::string> axis_tables_;
   typename Plant::Parameters parameters_{};
+  VehicleSensors sensors_;
 };
+
+template <class Plant>
+void read_plant(const TomlSource& source, VehicleFile& vehicle) {
+  Reader<Plant> reader(source, vehicle.path.parent_path());
+  vehicle.parameters = reader.read();
+  vehicle.sensors = reader.sensors();
+}
 
 std::string topology_of(const TomlSource& source) {
   const toml::node* node = source.root().get("topology");
@@ -238,14 +251,14 @@ VehicleFile load_vehicle(const std::filesystem::path& path) {
   const TomlSource source(path);
   source.require_schema();
   const std::string topology = topology_of(source);
-  VehicleFile vehicle{path, path.stem().string(), {}};
+  VehicleFile vehicle{path, path.stem().string(), {}, {}};
   if (const toml::node* name = source.root().get("name")) {
     vehicle.name = source.text(*name, "name");
   }
   if (topology == kTaos) {
-    vehicle.parameters = Reader<model::Taos<double>>(source, path.parent_path()).read();
+    read_plant<model::Taos<double>>(source, vehicle);
   } else if (topology == kMasv) {
-    vehicle.parameters = Reader<model::Masv<double>>(source, path.parent_path()).read();
+    read_plant<model::Masv<double>>(source, vehicle);
   } else {
     source.refuse_missing(source.root(), "topology",
                           fmt::format("\"{}\" is not one of several axes; allowed: \"{}\", \"{}\"", topology, kTaos, kMasv));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/vehicle.hpp"
+#include "tools/structure/vehicle_sensors.hpp"
 
 namespace hotfire {
 
@@ -17,6 +18,7 @@ struct VehicleFile {
   std::filesystem::path path;
   std::string name;
   std::variant<TaosParameters, MasvParameters> parameters;
+  VehicleSensors sensors;
 };
 
 /// True for a TOML file whose topology is that of several axes, "taos" or "masv". Throws FileError if it cannot be read.
@@ -30,7 +32,8 @@ std::vector<std::string> axis_names(int engines);
 /// axes and
 /// `[actuator.pitch2]` on that of engine 2. `[attach.pitch]` and `[attach.pitch2]` are attach points, `[gimbal]` with
 /// `[gimbal.friction]`, `[gimbal.vibration]` and `stiffness`, a 6x6 matrix, the bearing of every engine, and `[modes]` names
-/// a mode table beside the file. Without it the structure is the springs of the axes.
+/// a mode table beside the file. Without it the structure is the springs of the axes. `[sensors]` and `[strings]`:
+/// vehicle_sensors.hpp.
 ///
 /// Throws FileError naming file, line, key, value and what is allowed: what load_model and load_modes refuse, a stiffness
 /// matrix that is not 6x6, symmetric and positive definite, attach points that coincide or have no arm, a mode table of

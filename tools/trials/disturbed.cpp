@@ -1,13 +1,16 @@
 #include "tools/trials/disturbed.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <random>
+#include <functional>
 
 #include "model/step_size.hpp"
 #include "tools/files/error.hpp"
+#include "tools/simulate/normal.hpp"
 #include "tools/simulate/run.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/profiles.hpp"
+#include "tools/trials/sweep.hpp"
 
 namespace hotfire::trials {
 
@@ -37,7 +40,9 @@ Record run_disturbed(const SimplexParameters& parameters, double seconds, Impuls
   return record;
 }
 
-SimplexParameters locked(SimplexParameters parameters) {
+/// Locks the actuator of an axis: a piston of the largest mass and damping on a valve without flow.
+template <class Parameters>
+Parameters locked(Parameters parameters) {
   for (const auto& field : model::Actuator<double>::fields()) {
     if (field.name == "piston_mass" || field.name == "piston_damping") {
       parameters.actuator.*field.member = field.upper;
@@ -46,6 +51,24 @@ SimplexParameters locked(SimplexParameters parameters) {
   parameters.servovalve.rated_flow = 1e-6;
   return parameters;
 }
+
+/// Uncommanded rows of a model of several axes.
+Record silence(const std::string& axis, double seconds) {
+  return command_record(std::vector<double>(static_cast<std::size_t>(seconds / kPeriod), 0.0), channel_of("command", axis));
+}
+
+/// Angular momentum of a white torque after each row [N m s]: of one-sided density D the variance is D / 2 * period.
+class RandomTorque {
+ public:
+  explicit RandomTorque(const Quiescence& ambient)
+      : size_(std::sqrt(0.5 * ambient.torque_density * kPeriod)), normal_(ambient.seed) {}
+
+  double operator()() { return size_ * normal_(); }
+
+ private:
+  double size_;
+  Normal normal_;
+};
 
 Record hammer_direct(const DirectParameters& parameters, const Hammer& blow) {
   using Mass = model::Direct<double>;
@@ -81,15 +104,39 @@ Record quiescent(const ModelFile& model, const Quiescence& ambient) {
   if (simplex == nullptr) {
     throw UsageError("a quiescent test is for a hydraulic axis, topology simplex");
   }
-  // A white torque of one-sided density D has impulses of variance D / 2 * period.
-  const double size = std::sqrt(0.5 * ambient.torque_density * kPeriod);
-  std::mt19937 random(ambient.seed);
-  const auto uniform = [&random] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
-  return run_disturbed(*simplex, ambient.seconds, [&](std::size_t) {
-    // Box and Muller, so that every machine has the same impulses.
-    const double radius = std::sqrt(-2.0 * std::log(uniform()));
-    return size * radius * std::cos(2.0 * std::numbers::pi * uniform());
-  });
+  RandomTorque torque(ambient);
+  return run_disturbed(*simplex, ambient.seconds, [&](std::size_t) { return torque(); });
+}
+
+Record hammer(const VehicleFile& model, const std::string& axis, const Hammer& blow) {
+  const std::size_t hit = axis_index(model, axis);
+  VehicleFile held = model;
+  std::visit(
+      [](auto& parameters) {
+        for (auto& own : parameters.axes) {
+          own = locked(own);
+        }
+      },
+      held.parameters);
+  const Record inputs = silence(axis, blow.seconds);
+  VehicleRun run;
+  run.impulses.assign(hit + 1, std::vector<double>(inputs.rows, 0.0));
+  run.impulses[hit][0] = blow.impulse;
+  return simulate(held, inputs, run);
+}
+
+Record quiescent(const VehicleFile& model, const std::string& axis, const Quiescence& ambient) {
+  axis_index(model, axis);
+  const Record inputs = silence(axis, ambient.seconds);
+  const std::size_t axes = std::visit([](const auto& parameters) { return parameters.axes.size(); }, model.parameters);
+  VehicleRun run;
+  run.seed = ambient.seed;
+  run.impulses.assign(axes, std::vector<double>(inputs.rows));
+  RandomTorque torque(ambient);
+  for (std::vector<double>& own : run.impulses) {
+    std::generate(own.begin(), own.end(), std::ref(torque));
+  }
+  return simulate(model, inputs, run);
 }
 
 }  // namespace hotfire::trials

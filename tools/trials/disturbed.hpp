@@ -2,6 +2,7 @@
 
 #include "tools/files/model_file.hpp"
 #include "tools/files/record.hpp"
+#include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire::trials {
 
@@ -16,6 +17,10 @@ struct Hammer {
 /// mass is hit as it is, and its channel is `position`. Throws UsageError for a topology without one axis.
 Record hammer(const ModelFile& model, const Hammer& blow);
 
+/// The same on a model of several axes: every actuator is locked, the engine is hit about `axis`. Returns the channels of
+/// all axes. Throws UsageError for an axis the model has not.
+Record hammer(const VehicleFile& model, const std::string& axis, const Hammer& blow);
+
 /// A powered actuator that nobody commands, on a vehicle that is not quite still [SD 2.2, fig. 7].
 struct Quiescence {
   double torque_density = 1.0;  ///< of the random torque on the engine, one-sided [(N m)^2 / Hz]
@@ -26,5 +31,9 @@ struct Quiescence {
 /// Piston and engine under a white torque, as independent impulses between rows. Throws UsageError for a topology other than
 /// `simplex`.
 Record quiescent(const ModelFile& model, const Quiescence& ambient);
+
+/// The same on a model of several axes: a torque of its own, of one density, on every axis. Returns the channels of all
+/// axes, and has `axis` only to refuse one that the model has not.
+Record quiescent(const VehicleFile& model, const std::string& axis, const Quiescence& ambient);
 
 }  // namespace hotfire::trials
