@@ -1,11 +1,13 @@
 #include "tools/explain/explain.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <glog/logging.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -115,6 +117,7 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   options.watch.interrupted = [] { return interrupted != 0; };
   explain::Explanation explanation = explain::explain(model, records, options);
   explanation.report["hotfire"] = HOTFIRE_VERSION;
+  explanation.report["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
   explanation.report["command_line"] = command_line;
   explanation.report["seconds"] = progress.seconds();
 

@@ -23,6 +23,7 @@ function fillHeader(report, series) {
     ["residual", report.residual?.white === true ? "white: only noise is left" : report.residual?.white === false ? "not white" : ""],
     ["held out", heldOut > 0 ? `${number(heldOut, 3)} s` : ""],
     ["records", isFilled(report.records) ? `${report.records.length}, together ${number(length, 3)} s` : ""],
+    ["made", [report.date, report.hotfire && `Hotfire ${report.hotfire}`].filter(Boolean).join(", ")],
   ];
   document.getElementById("facts").append(...facts.filter(([, value]) => value).map(([name, value]) =>
     element("div", {}, element("dt", {}, name), element("dd", {}, value))));
@@ -30,10 +31,11 @@ function fillHeader(report, series) {
 
 function timeSection(report, series) {
   if (!series.records.length) return null;
-  const host = element("div");
+  const host = element("div", { class: "on-screen" });
+  const paper = element("div", { class: "print-only" });
   const thinned = series.kept < series.rows ? `Of ${fixed(series.rows, 0)} rows a channel the page holds ${fixed(series.kept, 0)}: ` +
     "those at which input, measurement or residual is smallest or largest in a short stretch of time, so no peak is lost. " : "";
-  return { host, node: section("Measured against model", host, element("p", { class: "note" }, thinned,
+  return { host, paper, node: section("Measured against model", host, paper, element("p", { class: "note" }, thinned,
     element("span", { class: "screen-only" }, "Drag to zoom, shift-drag to move, double-click for the whole record."))) };
 }
 
@@ -44,9 +46,14 @@ function fillPage({ report, series }) {
   const sections = [
     (report.warnings ?? []).map((warning) => paragraph(warning, "warning")),
     errorTable(report), isFilled(next) ? element("p", { class: "next" }, element("strong", {}, "Next experiment: "), next) : null,
-    time?.node, trace(report), effects(report), residual(report), calibration(report), search(report), data(report)];
+    time?.node, trace(report), effects(report), residual(report), calibration(report), evidence(report), data(report),
+    signatures()];
   document.getElementById("main").append(...sections.flat().filter(Boolean));
-  if (time) window.traces = new Traces(time.host, series.records, viewOf(window.location.hash));
+  if (time) {
+    window.traces = new Traces(time.host, series.records, viewOf(window.location.hash));
+    printAllRecords(time.paper, series.records);
+  }
+  runningFoot(report);
   document.getElementById("footer").append(...[
     [`Hotfire ${report.hotfire ?? ""}`.trim(), Number.isFinite(report.seconds) && `${number(report.seconds, 3)} s`].filter(Boolean).join(", "),
     report.command_line].filter(isFilled).map((text) => element("p", {}, text)));

@@ -121,10 +121,10 @@ function trace(report) {
   if (!isFilled(report.trace)) return null;
   const drawn = (report.effects ?? []).find((effect) => belongs(report.trace, effect));
   const points = report.trace.points;
-  return section("Where the declared model falls short",
+  return section("Where the declared model falls short", element("div", { class: "together" },
     paragraph(report.trace.text), isFilled(report.trace.site) ? element("p", { class: "note" }, "It enters at ",
       code(report.trace.site), drawn ? `; its points are drawn under the curve of ${words(drawn.name)}.` : ".") : null,
-    isFilled(points) && !drawn ? element("figure", {}, curveChart(null, points)) : null);
+    isFilled(points) && !drawn ? element("figure", {}, curveChart(null, points)) : null));
 }
 
 function residual(report) {
@@ -174,23 +174,6 @@ function calibration(report) {
     { title: "moved, in tolerances", number: true, cell: (row) => (Number.isFinite(row.moved) ? fixed(row.moved, 1) : "") },
     { title: "", type: "strip", cell: (row) => (Number.isFinite(row.moved) ? movedBar(row.moved) : "") },
   ], rows), paragraph("Shaded: one tolerance (one sigma) to either side.", "note"));
-}
-
-function search(report) {
-  if (!isFilled(report.search)) return null;
-  const rowClass = (row, previous) => [row.decision === "kept" && "kept", previous && row.round !== previous.round && "round"]
-    .filter(Boolean).join(" ") || null;
-  return section("What was tried", table([
-    { title: "round", number: true, cell: (row) => String(row.round ?? "") },
-    { title: "candidate", cell: withLaw },
-    { title: "started from", cell: (row) => String(row.start ?? ""), text: true },
-    { title: "held-out error, ratio", number: true, cell: (row) => (Number.isFinite(row.held_out_rms_ratio)
-      ? fixed(row.held_out_rms_ratio, 3) : "") },
-    { title: "BIC change", number: true, cell: (row) => (Number.isFinite(row.delta_bic) ? number(row.delta_bic, 3) : "") },
-    { title: "time [s]", number: true, cell: (row) => (Number.isFinite(row.seconds) ? number(row.seconds, 2) : "") },
-    { title: "decision", cell: (row) => words(row.decision ?? "") },
-    { title: "why", text: true, cell: (row) => row.reason ?? "" },
-  ], report.search, rowClass), paragraph("In this order. Ratio: held-out error with the candidate over the error without it.", "note"));
 }
 
 function data(report) {

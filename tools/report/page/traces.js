@@ -37,9 +37,13 @@ const rowsOf = (times, columns) => Array.from(times, (time, row) =>
 const tickText = (value, digits) => String(Number(value.toPrecision(digits))).replace("-", "−");
 
 class Traces {
-  /** `host` gets the charts; `view` {record, channel, from, to} says what to open with. */
-  constructor(host, records, view) {
+  /**
+   * `host` gets the charts; `view` {record, channel, from, to} says what to open with. On paper, `sheet` {height, pixelRatio}
+   * says how tall a strip is against the screen and how finely it is drawn.
+   */
+  constructor(host, records, view, sheet = { height: 1 }) {
     this.host = host;
+    this.sheet = sheet;
     this.records = records;
     this.graphs = [];
     this.hidden = new Set();
@@ -69,8 +73,12 @@ class Traces {
     this.zoom([this.times[worst] - half, this.times[worst] + half]);
   }
 
-  draw() {
+  destroy() {
     for (const graph of this.graphs) graph.destroy();
+  }
+
+  draw() {
+    this.destroy();
     const record = this.records[this.record];
     const channel = record.channels.find((each) => each.name === this.channel) ?? record.channels[0];
     this.channel = channel.name;
@@ -121,7 +129,7 @@ class Traces {
   /** One strip: title, read-out under the cursor, canvas. */
   strip(title, unit, height, columns, lines, record) {
     const readout = element("span", { class: "readout" });
-    const canvas = element("div", { class: "traces", style: `height:${height}px` });
+    const canvas = element("div", { class: "traces", style: `height:${Math.round(height * this.sheet.height)}px` });
     this.strips.append(element("div", { class: "together" },
       element("p", { class: "strip-title" }, axisTitle(title, unit), readout), canvas));
     return new Dygraph(canvas, rowsOf(this.times, columns), {
@@ -131,6 +139,7 @@ class Traces {
       series: Object.fromEntries(lines.map((line) => [line.title,
         { strokeWidth: line.width, strokePattern: line.dashes ?? null, stepPlot: Boolean(line.steps) }])),
       labelsDiv: readout,
+      pixelRatio: this.sheet.pixelRatio ?? null,
       legend: "onmouseover",
       legendFormatter: (legend) => (legend.x === undefined ? "" : [`${number(legend.x, 6)} s`, ...legend.series
         .filter((line) => line.isVisible && Number.isFinite(line.y)).map((line) => `${line.label} ${number(line.y, 4)}`)].join(" · ")),
