@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/files/scratch.hpp"
+#include "tools/files/error.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/simulate/simulate.hpp"
+#include "tools/study/candidate_fit.hpp"
 
 namespace hotfire::study {
 namespace {
@@ -61,6 +63,14 @@ TEST(StudyCases, ACaseWithAnEffectIsTheModelWithThatEffect) {
   CHECK_TRUE(rms(simulate(declared, made.unseen).find("piston")->values, made.unseen.find("piston")->values) >
              kSmallestEffect * kSensorGrades[0].noise);
   check_truth(load_model(scratch.path("valve_deadband-1") / "kept/true.toml"), made);
+}
+
+TEST(StudyCases, TheMissingEffectFittedByItselfMeetsTheUnseenRecordAndAnUnknownOneIsRefused) {
+  write_case(make_case({"valve_deadband-1", {"valve_deadband"}, 1}), scratch.path("valve_deadband-1"));
+  const CandidateFit fit = fit_candidate(scratch.path("valve_deadband-1"), "valve_deadband", "", 1);
+  STRCMP_EQUAL("valve_deadband", fit.candidate.c_str());
+  CHECK_TRUE(fit.after.at("piston") < 1.0 && fit.after.at("engine") < 1.0);
+  CHECK_THROWS(UsageError, fit_candidate(scratch.path("valve_deadband-1"), "gimbal_friction", "", 1));
 }
 
 TEST(StudyCases, TheSameOrderGivesTheSameBytesAndAnotherSeedDoesNot) {

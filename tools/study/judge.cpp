@@ -14,11 +14,9 @@
 #include "tools/simulate/simulate.hpp"
 
 namespace hotfire::study {
-namespace {
 
 using Errors = std::map<std::string, double>;
 
-/// Rms against the noise-free record in sensor noise; load pressure is not scored.
 Errors errors_of(const ModelFile& model, const Record& truth, const std::map<std::string, double>& noise) {
   const Record modelled = simulate(model, truth);
   Errors errors;
@@ -51,6 +49,8 @@ std::vector<Record> given_records(const std::filesystem::path& folder) {
   }
   return records;
 }
+
+namespace {
 
 nlohmann::json truth_of(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "kept/truth.json";

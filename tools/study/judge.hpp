@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "tools/files/model_file.hpp"
+#include "tools/files/record.hpp"
+
 namespace hotfire::study {
 
 /// What the finder made of one case.
@@ -38,6 +41,13 @@ struct Judgement {
 /// Explains the case in a folder (case.hpp) from its files and compares with what was kept from the finder. Errors of the
 /// finder are part of the judgement; throws FileError if the folder is no case.
 Judgement judge(const std::filesystem::path& folder, unsigned threads);
+
+/// All records (.csv) of a folder, in the order of their names. Throws FileError if one is bad.
+std::vector<Record> given_records(const std::filesystem::path& folder);
+
+/// Rms of a model against a noise-free record by channel, in units of the sensor noise. Load pressure is not scored.
+std::map<std::string, double> errors_of(const ModelFile& model, const Record& truth,
+                                        const std::map<std::string, double>& noise);
 
 /// One line for a person.
 std::string line_of(const Judgement& judgement);

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "tools/files/error.hpp"
+#include "tools/study/candidate_fit.hpp"
 #include "tools/study/case.hpp"
 #include "tools/study/judge.hpp"
 #include "tools/study/orders.hpp"
@@ -120,6 +121,43 @@ ExitStatus judge_folders(const Options& options) {
   return court.close();
 }
 
+/// What `fit` fits.
+struct FitArguments {
+  std::string folder;
+  std::string effect;
+  std::string law;
+  unsigned threads = 1;
+  bool json = false;
+};
+
+ExitStatus fit_one(const FitArguments& arguments) {
+  google::SetCommandLineOption("minloglevel", "3");
+  const CandidateFit fit = fit_candidate(std::filesystem::path(arguments.folder).lexically_normal(), arguments.effect,
+                                         arguments.law, arguments.threads);
+  if (arguments.json) {
+    std::cout << json_of(fit).dump() << '\n';
+    return ExitStatus::good;
+  }
+  std::cout << fmt::format("{}: {} fitted in {:.2f} s ({:.2f} s of processor); on the unseen record, in sensor noise:",
+                           fit.name, fit.candidate, fit.seconds, fit.processor_seconds);
+  for (const auto& [channel, error] : fit.after) {
+    std::cout << fmt::format(" {} {:.3f}", channel, error);
+  }
+  std::cout << '\n';
+  return ExitStatus::good;
+}
+
+void add_fit(CLI::App& program, FitArguments& arguments) {
+  CLI::App* command = program.add_subcommand("fit", "Fit one candidate to a case, without a search");
+  command->add_option("folder", arguments.folder, "folder with given/ and kept/")->required();
+  command->add_option("--effect", arguments.effect, "the candidate, as in physics.md section 5")->required();
+  command->add_option("--law", arguments.law, "its law, if it has several");
+  command->add_option("--threads", arguments.threads, "threads of the fit")
+      ->check(CLI::Range(1U, 256U))
+      ->capture_default_str();
+  command->add_flag("--json", arguments.json, "one JSON object");
+}
+
 void add_judging(CLI::App& command, Options& options) {
   command.add_option("--threads", options.threads, "threads of the finder")
       ->check(CLI::Range(1U, 256U))
@@ -157,6 +195,8 @@ int run(int argc, char** argv) {
   add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
   add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
   add_study(program, "null", "Records in which nothing is missing", 40, null);
+  FitArguments candidate;
+  add_fit(program, candidate);
   CLI::App* judging = program.add_subcommand("judge", "Explain cases that are there");
   judging->add_option("folders", folders.folders, "folders with given/ and kept/")->required();
   add_judging(*judging, folders);
@@ -174,6 +214,8 @@ int run(int argc, char** argv) {
     status = study(unlisted_orders(unlisted.selection), unlisted);
   } else if (program.got_subcommand("null")) {
     status = study(null_orders(null.selection), null);
+  } else if (program.got_subcommand("fit")) {
+    status = fit_one(candidate);
   } else {
     status = judge_folders(folders);
   }

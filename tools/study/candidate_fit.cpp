@@ -1,0 +1,86 @@
+#include "tools/study/candidate_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include "tools/explain/search.hpp"
+#include "tools/files/error.hpp"
+#include "tools/study/judge.hpp"
+
+namespace hotfire::study {
+
+namespace {
+
+using Family = explain::SimplexFamily;
+
+explain::Candidate candidate_named(const explain::Dataset& data, const std::string& name, const std::string& law) {
+  const std::vector<explain::Candidate> all = explain::all_candidates<Family>(data);
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.name == name && c.option_name == law; });
+  if (found != all.end()) {
+    return *found;
+  }
+  std::string known;
+  for (const explain::Candidate& candidate : all) {
+    known += (known.empty() ? "" : ", ") + explain::label(candidate);
+  }
+  throw UsageError(fmt::format("no candidate is called {} (law \"{}\"); there are {}", name, law, known));
+}
+
+}  // namespace
+
+CandidateFit fit_candidate(const std::filesystem::path& folder, const std::string& name, const std::string& law,
+                           unsigned threads) {
+  ModelFile model = load_model(folder / "given/declared.toml");
+  if (!std::holds_alternative<SimplexParameters>(model.parameters)) {
+    throw FileError(fmt::format("{}: topology is not simplex; give a case of one axis", model.path.string()));
+  }
+  explain::Dataset data = explain::make_dataset(model, given_records(folder / "given"));
+  for (explain::Experiment& experiment : data.experiments) {
+    experiment.fitted = experiment.scored();
+    experiment.held_out.clear();
+  }
+  const explain::Candidate candidate = candidate_named(data, name, law);
+
+  const auto began = std::chrono::steady_clock::now();
+  const std::clock_t processor_began = std::clock();
+  explain::Fitted<Family> start;
+  start.base = std::get<SimplexParameters>(model.parameters);
+  explain::activate<Family>(start.base, candidate);
+  start.free = explain::declared_parameters<Family>(start.base, model.tolerance);
+  start.u.assign(start.free.size(), 0.0);
+  for (const explain::FreeParameter& own : explain::effect_parameters<Family>(start.base, candidate, {})) {
+    start.free.push_back(own);
+    start.u.push_back(own.coordinate(own.unit_size));
+  }
+  // As the search does: first with half as many steps.
+  const explain::Evaluator<Family> coarse(data, explain::Resolution::coarse);
+  const explain::Evaluator<Family> fine(data, explain::Resolution::fine);
+  const explain::Assessed<Family> ranked = explain::refined(coarse, fine, threads, start, explain::kRanking);
+  const explain::Assessed<Family> fitted =
+      ranked.good() ? explain::refined(fine, fine, threads, ranked.model, explain::kFinal) : ranked;
+  if (!fitted.good()) {
+    throw FileError(fmt::format("{}: the model with {} can't be simulated", folder.string(), explain::label(candidate)));
+  }
+  CandidateFit result;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  result.processor_seconds = static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
+  result.name = folder.filename().string();
+  result.candidate = explain::label(candidate);
+  model.parameters = explain::Evaluator<Family>::with_values(fitted.model.base, fitted.model.free, fitted.model.u);
+  result.after = errors_of(model, load_record(folder / "kept/score_noisefree.csv"), model.noise);
+  return result;
+}
+
+nlohmann::json json_of(const CandidateFit& fit) {
+  return {{"case", fit.name},
+          {"candidate", fit.candidate},
+          {"seconds", fit.seconds},
+          {"processor_seconds", fit.processor_seconds},
+          {"after", fit.after}};
+}
+
+}  // namespace hotfire::study
