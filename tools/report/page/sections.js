@@ -140,9 +140,11 @@ function residual(report) {
       size: SMALL,
       yRange: [Math.min(-0.25, lowest * 1.1), 1.05], titles: { x: axisTitle("lag", lag.label), y: "autocorrelation" } }));
   };
-  return section("What is left: autocorrelation of the residual",
+  const node = section("What is left: autocorrelation of the residual",
     paragraph("A residual that holds nothing but noise stays inside the grey band at 99 % of the lags.", "note"),
     element("div", { class: "figures small" }, correlation.map(figure)));
+  node.classList.add("together");
+  return node;
 }
 
 /** How many tolerances a value has moved: a bar from the middle, one tolerance shaded, clipped at four. */
