@@ -11,6 +11,8 @@ from scipy_rival.axis import OutOfTime, simulate
 STEP = 0.02
 # Relative change of the cost, or of the parameters, at which a fit has converged.
 TOLERANCE = 1e-4
+# Residual of a point at which the model cannot be simulated: the step is taken back.
+DIVERGED = 1e4
 
 
 class Fit:
@@ -30,6 +32,7 @@ class Fit:
         self.began = time.monotonic()
         self.processor_began = time.process_time()
         self.limit = limit
+        self.rows = sum(record["measured"].size for record in case.records)
         self.simulations = 0
         self.jacobians = {}
         self.best = (numpy.inf, self.start())
@@ -71,7 +74,10 @@ class Fit:
     def residual(self, x):
         """Side by side the Jacobian costs next to nothing more: it is had with every residual."""
         points = numpy.vstack([x, x + STEP * numpy.eye(len(x))]) if self.side_by_side else x[None]
-        residuals = self.residuals_of(points)
+        try:
+            residuals = self.residuals_of(points)
+        except (RuntimeError, OverflowError):
+            return numpy.full(self.rows + len(self.keys), DIVERGED)
         if self.side_by_side:
             self.jacobians = {x.tobytes(): (residuals[1:] - residuals[0]).T / STEP}
         cost = 0.5 * residuals[0] @ residuals[0]

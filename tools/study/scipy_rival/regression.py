@@ -140,11 +140,11 @@ def thresholded_least_squares(columns, target, threshold):
 
 
 def fit_sparse(case, effect_name, bases, progress):
-    """`bases`: names and values of the models to build on. Returns the terms that simulate the shortest record best."""
+    """`bases`: names and values of the models to build on. Returns what could simulate the shortest record, best first."""
     began, processor_began = time.monotonic(), time.process_time()
     site = SITES[effect_name]
     shortest = min(case.records, key=lambda record: len(record["command"]))
-    best = None
+    models = []
     trials = list(itertools.product(bases.items(), WINDOWS, THRESHOLDS))
     for count, ((base, values), window, threshold) in enumerate(trials, 1):
         data = missing_term(values, site, case.records, window)
@@ -163,8 +163,9 @@ def fit_sparse(case, effect_name, bases, progress):
         except (OutOfTime, RuntimeError, OverflowError, ValueError):
             continue
         cost = float(numpy.mean(((modelled - shortest["measured"]) / case.noise[:, None]) ** 2))
-        if best is None or cost < best["cost"]:
-            best = {"cost": cost, "terms": sparse, "values": values, "base": base, "window": window, "threshold": threshold}
-        progress(f"{count} of {len(trials)} libraries, best so far {best['cost'] ** 0.5:.3g} times the noise")
+        models.append({"cost": cost, "terms": sparse, "values": values, "base": base, "window": window,
+                       "threshold": threshold})
+        models.sort(key=lambda model: model["cost"])
+        progress(f"{count} of {len(trials)} libraries, best so far {models[0]['cost'] ** 0.5:.3g} times the noise")
     took = {"wall_seconds": time.monotonic() - began, "processor_seconds": time.process_time() - processor_began}
-    return best, took
+    return models, took
