@@ -5,6 +5,7 @@ parameter sets and records side by side in one integration.
 """
 
 import math
+import time
 
 import numpy
 from scipy.integrate import solve_ivp
@@ -97,6 +98,17 @@ class Command:
 
 class OutOfTime(Exception):
     """The time that a rival was given is over."""
+
+
+class Limit:
+    """Called, raises OutOfTime once this process has used so many seconds of processor since the limit was made."""
+
+    def __init__(self, seconds):
+        self.end = time.process_time() + seconds
+
+    def __call__(self):
+        if time.process_time() > self.end:
+            raise OutOfTime
 
 
 def simulate(p, effect, records, copies=None, method=METHOD, tolerance=RELATIVE_TOLERANCE, watch=lambda: None):

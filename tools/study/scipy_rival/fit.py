@@ -5,7 +5,7 @@ import time
 import numpy
 from scipy.optimize import least_squares
 
-from scipy_rival.axis import OutOfTime, simulate
+from scipy_rival.axis import Limit, OutOfTime, simulate
 
 # Forward differences over so much of a parameter's scale: far above the integrator's own error, far below any curvature.
 STEP = 0.02
@@ -31,7 +31,7 @@ class Fit:
         self.keys = [key for key in case.tolerance if case.declared.get(key)]
         self.began = time.monotonic()
         self.processor_began = time.process_time()
-        self.limit = limit
+        self.watch = Limit(limit)
         self.rows = sum(record["measured"].size for record in case.records)
         self.simulations = 0
         self.last = (b"", None)
@@ -53,10 +53,6 @@ class Fit:
         for (name, start, low), u in zip(self.effect.fields, x[len(self.keys):]):
             p[f"{self.effect.name}.{name}"] = start * (numpy.exp(u) if low > 0.0 else u)
         return p
-
-    def watch(self):
-        if time.process_time() - self.processor_began > self.limit:
-            raise OutOfTime
 
     def residuals_of(self, points):
         """One row a point: all records, both channels; then the prior."""

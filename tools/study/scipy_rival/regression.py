@@ -11,13 +11,13 @@ import time
 import numpy
 from scipy.signal import cont2discrete, lfilter, savgol_filter
 
-from scipy_rival.axis import OutOfTime, simulate, with_products
+from scipy_rival.axis import Limit, OutOfTime, simulate, with_products
 from scipy_rival.effects import NoEffect
 
 WINDOWS = (11, 21, 41, 81)
 ORDER = 4
 THRESHOLDS = (0.005, 0.02, 0.05, 0.15)
-# Of the time that one trial simulation may take: a term that makes the model ring with tiny steps is no good one.
+# Of processor that a simulation of a trial may take: a term that makes the model ring with tiny steps is no good one.
 TRIAL_SECONDS = 60.0
 PASSES = 10
 
@@ -152,14 +152,8 @@ def fit_sparse(case, effect_name, bases, progress):
         columns = numpy.array([numpy.broadcast_to(f(Numpy, data["first"], data["second"]), data["missing"].shape)
                                for _, f in terms]).T
         sparse = SparseTerms(site, terms, thresholded_least_squares(columns, data["missing"], threshold))
-        deadline = time.monotonic() + TRIAL_SECONDS
-
-        def watch(deadline=deadline):
-            if time.monotonic() > deadline:
-                raise OutOfTime
-
         try:
-            modelled = simulate(values, sparse, [shortest], watch=watch)[0][:, 0]
+            modelled = simulate(values, sparse, [shortest], watch=Limit(TRIAL_SECONDS))[0][:, 0]
         except (OutOfTime, RuntimeError, OverflowError, ValueError):
             continue
         cost = float(numpy.mean(((modelled - shortest["measured"]) / case.noise[:, None]) ** 2))
