@@ -120,10 +120,12 @@ class SimulationError : public ceres::CostFunction {
       std::copy(options_.frozen->u.begin(), options_.frozen->u.end(), at.begin());
     }
     if (want_jacobian) {
-      if (!differentiate<Family>(evaluator_, fitted_.base, fitted_.free, at, simulated_, options_.threads, options_.slopes,
-                                 residual, jacobian)) {
+      const auto taken = differentiate<Family>(evaluator_, fitted_.base, fitted_.free, at, simulated_, options_.threads,
+                                               options_.slopes, residual, jacobian);
+      if (!taken) {
         return false;
       }
+      fitted_.chaotic = options_.slopes == Slopes::exact && *taken == Slopes::wide;
     } else {
       Prediction prediction;
       if (!evaluator_.predict(fitted_.base, fitted_.free, at, options_.threads, prediction)) {

@@ -23,6 +23,7 @@ struct Fitted {
   Temper temper;
   Eigen::MatrixXd normal;  ///< J^T J of the last derivative, priors included
   bool converged = false;
+  bool chaotic = false;  ///< exact derivatives ran away where it ended
   bool stalled = false;  ///< ended on a step that was refused: what the derivatives promise is not kept
 };
 

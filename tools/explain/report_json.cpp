@@ -197,7 +197,7 @@ std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
   if (!found.kept.empty() && is_unlisted<Family>(found.kept.front().trial.candidate)) {
     return "unlisted-effect";
   }
-  if (reaches_noise(data, found.explained.prediction)) {
+  if (reaches_noise(data, found.explained)) {
     return found.kept.empty() ? "nothing-missing" : "explained";
   }
   return found.kept.empty() ? "unlisted-effect" : "partly-explained";

@@ -20,6 +20,9 @@ namespace {
 constexpr double kImmaterialExcess = 0.5;
 /// ... and the held-out error by at least this share of it.
 constexpr double kLeastHeldOutDrop = 0.01;
+/// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
+/// is left then is of the noise's own size, and there is nothing in it to be named.
+constexpr double kImmaterialWhereChaotic = 1.5;
 /// How many unlisted terms are fitted jointly, and what share of the listed effects' held-out error a term of unknown law
 /// has to stay below to take their place: it has more freedom than any of them.
 constexpr std::size_t kUnlistedFinalists = 4;
@@ -39,8 +42,10 @@ double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_
 
 }  // namespace
 
-bool reaches_noise(const Dataset& data, const Prediction& prediction) {
-  return excess_over_noise(data, prediction) <= kImmaterialExcess;
+template <class Family>
+bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
+  return excess_over_noise(data, assessed.prediction) <=
+         (assessed.model.chaotic ? kImmaterialWhereChaotic : kImmaterialExcess);
 }
 
 namespace {
@@ -77,12 +82,12 @@ class Search {
     result_.calibrated = calibrated(start);
     result_.explained = result_.calibrated;
     for (int round = 1; round <= options_.most_effects && !options_.watch.interrupted(); ++round) {
-      if (reaches_noise(data_, result_.explained.prediction) || !add_effect(round)) {
+      if (reaches_noise(data_, result_.explained) || !add_effect(round)) {
         break;
       }
       take_out_superfluous(round);
     }
-    if (!reaches_noise(data_, result_.explained.prediction) && !options_.watch.interrupted()) {
+    if (!reaches_noise(data_, result_.explained) && !options_.watch.interrupted()) {
       look_for_unlisted();
     }
     result_.interrupted = options_.watch.interrupted();
@@ -281,7 +286,7 @@ class Search {
 
   /// A winner that does not reach the noise may sit in a local minimum: its effect is fitted again from other starts.
   Assessed<Family> polished(int round, Assessed<Family> winner, const Candidate& candidate) const {
-    if (reaches_noise(data_, winner.prediction) || options_.watch.interrupted()) {
+    if (reaches_noise(data_, winner) || options_.watch.interrupted()) {
       return winner;
     }
     options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
@@ -289,7 +294,7 @@ class Search {
     if (winner.model.stalled) {
       winner = better_of(std::move(winner), ranked(winner.model, kRanking, Slopes::wide));
     }
-    if (reaches_noise(data_, winner.prediction)) {
+    if (reaches_noise(data_, winner)) {
       return winner;
     }
     Fitted<Family> anchor = without_effect(winner.model, candidate);
@@ -381,6 +386,8 @@ SearchResult<Family> search(const Dataset& data, const ModelFile& model, const S
   return Search<Family>(data, model, options).run();
 }
 
+template bool reaches_noise(const Dataset&, const Assessed<SimplexFamily>&);
+template bool reaches_noise(const Dataset&, const Assessed<DirectFamily>&);
 template SearchResult<SimplexFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
 template SearchResult<DirectFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
 

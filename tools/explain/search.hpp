@@ -28,7 +28,8 @@ struct SearchOptions {
 };
 
 /// True if every channel's residual is noise but for a part that the sensor could not show.
-bool reaches_noise(const Dataset& data, const Prediction& prediction);
+template <class Family>
+bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed);
 
 /// Calibrates the declared model within its tolerances, then adds effects one by one while the data support them: every
 /// candidate is screened, the best are fitted jointly with everything else, and one is kept if it lowers the BIC and the

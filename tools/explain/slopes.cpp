@@ -53,21 +53,25 @@ bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Famil
 }  // namespace
 
 template <class Family>
-bool differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
-                   std::span<const FreeParameter> free, std::span<const double> u, std::span<const std::size_t> wanted,
-                   unsigned threads, Slopes slopes, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
+std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
+                                    std::span<const FreeParameter> free, std::span<const double> u,
+                                    std::span<const std::size_t> wanted, unsigned threads, Slopes slopes,
+                                    Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
   if (slopes == Slopes::exact && evaluator.differentiate(base, free, u, wanted, threads, residual, jacobian) &&
       (jacobian.size() == 0 || jacobian.cwiseAbs().maxCoeff() < kRunawaySlope)) {
-    return true;
+    return Slopes::exact;
   }
-  return differences(evaluator, base, free, u, wanted, threads, residual, jacobian);
+  return differences(evaluator, base, free, u, wanted, threads, residual, jacobian) ? std::optional(Slopes::wide)
+                                                                                    : std::nullopt;
 }
 
-template bool differentiate(const Evaluator<SimplexFamily>&, const PlainParameters<SimplexFamily>&,
-                            std::span<const FreeParameter>, std::span<const double>, std::span<const std::size_t>, unsigned,
-                            Slopes, Eigen::VectorXd&, Eigen::MatrixXd&);
-template bool differentiate(const Evaluator<DirectFamily>&, const PlainParameters<DirectFamily>&,
-                            std::span<const FreeParameter>, std::span<const double>, std::span<const std::size_t>, unsigned,
-                            Slopes, Eigen::VectorXd&, Eigen::MatrixXd&);
+template std::optional<Slopes> differentiate(const Evaluator<SimplexFamily>&, const PlainParameters<SimplexFamily>&,
+                                             std::span<const FreeParameter>, std::span<const double>,
+                                             std::span<const std::size_t>, unsigned, Slopes, Eigen::VectorXd&,
+                                             Eigen::MatrixXd&);
+template std::optional<Slopes> differentiate(const Evaluator<DirectFamily>&, const PlainParameters<DirectFamily>&,
+                                             std::span<const FreeParameter>, std::span<const double>,
+                                             std::span<const std::size_t>, unsigned, Slopes, Eigen::VectorXd&,
+                                             Eigen::MatrixXd&);
 
 }  // namespace hotfire::explain
