@@ -184,9 +184,10 @@ TEST(CanPlant, AnswersAControllerAndNoFrameIsLostOrOutOfOrder) {
   UNSIGNED_LONGS_EQUAL(0, plant.bus().refused);
   UNSIGNED_LONGS_EQUAL(0, plant.bus().repeated);
   UNSIGNED_LONGS_EQUAL(0, plant.bus().backward);
-  // What the controller sent after the last cycle has nobody to take it.
-  UNSIGNED_LONGS_EQUAL(plant.bus().skipped, plant.socket().superseded);
-  CHECK(controller.commands - plant.bus().taken - plant.bus().skipped <= 1);
+  // A number is missed only where a newer frame took its place; before the first frame taken there is no number to miss one
+  // from. What the controller sent after the last cycle has nobody to take it.
+  CHECK(plant.bus().skipped <= plant.socket().superseded);
+  CHECK(controller.commands - plant.bus().taken - plant.socket().superseded <= 1);
   // The piston went where the controller wanted it: what it sent arrived, and what it read was the plant.
   CHECK(controller.pistons[0] > 0.005);
 }

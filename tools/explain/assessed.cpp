@@ -27,7 +27,7 @@ Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const F
 
 template <class Family>
 Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
-                         Fitted<Family> fitted, const Effort& effort, Slopes slopes) {
+                         Fitted<Family> fitted, const Effort& effort) {
   Prediction prediction;
   if (!evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
     return {};
@@ -35,7 +35,7 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
   fitted.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
   double left = Goodness::combined(goodness(evaluator.data(), prediction).fitted);
   for (int pass = 0; pass < effort.passes; ++pass) {
-    if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, nullptr, slopes}) ||
+    if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, nullptr}) ||
         !evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
       return {};
     }
@@ -146,7 +146,7 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
 #define HOTFIRE_INSTANTIATE(Family)                                                                                   \
   template Assessed<Family> assess(const Evaluator<Family>&, unsigned, const Fitted<Family>&);                        \
   template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
-                                    const Effort&, Slopes);                                                           \
+                                    const Effort&);                                                                   \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
   template Fitted<Family> with_declared_values(Fitted<Family>);                                                       \
   template Assessed<Family> better_of(Assessed<Family>, Assessed<Family>);                                            \

@@ -24,7 +24,7 @@ struct Effort {
   double tolerance;
 };
 inline constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
-inline constexpr Effort kRanking{8, 5, 1e-4};  ///< which finalist is best
+inline constexpr Effort kRanking{8, 3, 1e-4};  ///< which finalist is best
 inline constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
 inline constexpr Effort kAllRows{8, 1, 1e-5};  ///< a small move: to the rows that were held out
 
@@ -36,7 +36,7 @@ Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const F
 /// under fine steps on every row. Not good() if the start or the end can't be simulated.
 template <class Family>
 Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
-                         Fitted<Family> fitted, const Effort& effort, Slopes slopes = Slopes::exact);
+                         Fitted<Family> fitted, const Effort& effort);
 
 /// A model without one of its effects, the other parameters where they are.
 template <class Family>

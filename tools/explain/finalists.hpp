@@ -15,6 +15,12 @@ inline constexpr std::size_t kFinalists = 3;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
 inline constexpr double kCloseVariant = 0.9;
 
+/// A further effect has to leave less than this share of the mean square beyond noise, once that is below the noise's.
+inline constexpr double kClearsUp = 2.0 / 3.0;
+/// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise
+/// itself is told to one or two percent, which is as much.
+inline constexpr double kNothingLeft = 0.2;
+
 /// The screened candidates that are fitted jointly: the best names, each with its close variants.
 template <class Family>
 std::vector<std::size_t> finalists_of(const std::vector<Screened<Family>>& screened) {

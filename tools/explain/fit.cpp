@@ -121,11 +121,11 @@ class SimulationError : public ceres::CostFunction {
     }
     if (want_jacobian) {
       const auto taken = differentiate<Family>(evaluator_, fitted_.base, fitted_.free, at, simulated_, options_.threads,
-                                               options_.slopes, residual, jacobian);
+                                               residual, jacobian);
       if (!taken) {
         return false;
       }
-      fitted_.chaotic = options_.slopes == Slopes::exact && *taken == Slopes::wide;
+      fitted_.chaotic = *taken == Slopes::wide;
     } else {
       Prediction prediction;
       if (!evaluator_.predict(fitted_.base, fitted_.free, at, options_.threads, prediction)) {
@@ -179,7 +179,6 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
   fitted.converged = summary.termination_type == ceres::CONVERGENCE;
-  fitted.stalled = !summary.iterations.empty() && !summary.iterations.back().step_is_successful;
   return summary.IsSolutionUsable();
 }
 

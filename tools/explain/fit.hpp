@@ -24,7 +24,6 @@ struct Fitted {
   Eigen::MatrixXd normal;  ///< J^T J of the last derivative, priors included
   bool converged = false;
   bool chaotic = false;  ///< exact derivatives ran away where it ended
-  bool stalled = false;  ///< ended on a step that was refused: what the derivatives promise is not kept
 };
 
 /// Derivatives of the declared parameters, frozen at a calibrated model: while candidates are screened, the declared
@@ -39,7 +38,6 @@ struct FitOptions {
   unsigned threads = 1;
   double tolerance = 1e-5;         ///< relative change of the cost at which a fit has converged
   const Frozen* frozen = nullptr;  ///< for the first frozen->u.size() parameters
-  Slopes slopes = Slopes::exact;
 };
 
 /// Minimises the weighted simulation error plus the priors of the declared tolerances from `fitted.u` (Levenberg-Marquardt

@@ -49,8 +49,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   std::vector<std::size_t> all(current.free.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   Eigen::VectorXd residual;
-  differentiate<Family>(evaluator, current.base, current.free, current.u, all, threads, Slopes::exact, residual,
-                        frozen_.jacobian);
+  differentiate<Family>(evaluator, current.base, current.free, current.u, all, threads, residual, frozen_.jacobian);
   Prediction prediction;
   evaluator.predict(current.base, current.free, current.u, threads, prediction);
   current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));

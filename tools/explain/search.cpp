@@ -18,20 +18,18 @@ namespace {
 /// A residual whose part beyond noise is below this share of the noise rms is left alone: the model is then twice as close
 /// to the truth as the sensor is, and two friction laws of the same family differ by as much.
 constexpr double kImmaterialExcess = 0.5;
-/// ... and the held-out error by at least this share of it.
+/// An effect is kept only if it lowers the held-out error by this share of it.
 constexpr double kLeastHeldOutDrop = 0.01;
 /// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
 /// is left then is of the noise's own size, and there is nothing in it to be named.
 constexpr double kImmaterialWhereChaotic = 1.5;
+/// A table of unknown law is looked for only where what is left is larger than the noise.
+constexpr double kWorthATable = 1.0;
 /// How many unlisted terms are fitted jointly, and what share of the listed effects' held-out error a term of unknown law
 /// has to stay below to take their place: it has more freedom than any of them.
 constexpr std::size_t kUnlistedFinalists = 4;
 constexpr double kUnlistedAdvantage = 0.7;
-/// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise
-/// itself is told to one or two percent, which is as much.
-constexpr double kNothingLeft = 0.2;
-/// Rows no closer than this tell candidates apart [s]: the fastest that a hydraulic axis does in its sensors is tens of
-/// hertz.
+/// Rows no closer than this tell candidates apart [s]: the fastest that an axis does in its sensors is tens of hertz.
 constexpr double kRankingPeriod = 2e-3;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
 /// were thinned by.
@@ -87,7 +85,8 @@ class Search {
       }
       take_out_superfluous(round);
     }
-    if (!reaches_noise(data_, result_.explained) && !options_.watch.interrupted()) {
+    if (!reaches_noise(data_, result_.explained) && !options_.watch.interrupted() &&
+        excess_over_noise(data_, result_.explained.prediction) > kWorthATable) {
       look_for_unlisted();
     }
     result_.interrupted = options_.watch.interrupted();
@@ -108,8 +107,8 @@ class Search {
   }
 
   /// Fitted as its rank needs it.
-  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort, Slopes slopes = Slopes::exact) const {
-    return refined(coarse_, fine_, options_.threads, fitted, effort, slopes);
+  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const {
+    return refined(coarse_, fine_, options_.threads, fitted, effort);
   }
   /// Fitted as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted) const {
@@ -122,6 +121,14 @@ class Search {
     }
     const Assessed<Family> near = ranked(declared, kRanking);
     return settled(near.good() ? near.model : declared);
+  }
+
+  /// False where what is left is of the noise's size already and a further effect takes away little of it: it then imitates
+  /// how the laws that were found differ from the truth's.
+  bool clears_up(const Assessed<Family>& with) const {
+    const double before = excess_over_noise(data_, result_.explained.prediction);
+    const double after = excess_over_noise(data_, with.prediction);
+    return before > 1.0 || after * after < kClearsUp * before * before;
   }
 
   /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
@@ -161,7 +168,7 @@ class Search {
     }
     const std::optional<std::size_t> best = rank(trials, finalists, order);
     Assessed<Family> winner;
-    if (best) {
+    if (best && clears_up(finalists[*best])) {
       winner = polished(round, std::move(finalists[*best]), trials[*best].candidate);
       options_.watch.progress(fmt::format("round {}: fitting {} with fine steps", round, label(trials[*best].candidate)));
       winner = simplest_law(fine_, scales_, options_.threads, settled(winner.model), trials[*best].candidate);
@@ -291,9 +298,6 @@ class Search {
     }
     options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
     winner = better_of(std::move(winner), ranked(with_declared_values(winner.model), kRanking));
-    if (winner.model.stalled) {
-      winner = better_of(std::move(winner), ranked(winner.model, kRanking, Slopes::wide));
-    }
     if (reaches_noise(data_, winner)) {
       return winner;
     }
