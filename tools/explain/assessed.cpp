@@ -82,7 +82,7 @@ template <class Family>
 Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second) {
   const bool better =
       second.good() && Goodness::combined(second.goodness.fitted) < Goodness::combined(first.goodness.fitted);
-  return better ? second : first;
+  return better ? std::move(second) : std::move(first);
 }
 
 template <class Family>

@@ -297,7 +297,8 @@ class Search {
       return winner;
     }
     options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
-    winner = better_of(std::move(winner), ranked(with_declared_values(winner.model), kRanking));
+    Assessed<Family> afresh = ranked(with_declared_values(winner.model), kRanking);
+    winner = better_of(std::move(winner), std::move(afresh));
     if (reaches_noise(data_, winner)) {
       return winner;
     }
