@@ -1,10 +1,10 @@
 #include "firmware/lab_replay.hpp"
 
-#include <fstream>
-#include <iterator>
+#include <cstring>
 
 #include "tests/files/scratch.hpp"
 #include "tests/firmware/recorded_lab.hpp"
+#include "tests/firmware/rewritten_recording.hpp"
 
 namespace hotfire::firmware {
 
@@ -14,34 +14,23 @@ TEST_GROUP(LabReplay) {
 
   std::uint64_t record() const { return test_lab::record_lab(path); }
 
-  Replay replayed() const {
-    hal::RecordingReader reader(path);
-    STRCMP_EQUAL("", reader.error().c_str());
-    return replay(reader);
-  }
+  Replay replayed() const { return test_recording::replayed(path); }
 
-  /// Writes the recording again with the bytes of cycle 20 changed.
+  /// Writes the recording again with `change(head, values)` made to cycle 20.
   template <class Change>
   void rewrite(Change && change) const {
-    hal::RecordingReader reader(path);
-    std::ifstream file(path, std::ios::binary);
-    const std::string old{std::istreambuf_iterator<char>(file), {}};
-    std::string blocks;
-    hal::RecordedCycle cycle;
-    while (reader.next(cycle)) {
-      std::vector<double> values(cycle.commands.begin(), cycle.commands.end());
-      values.insert(values.end(), cycle.readings.begin(), cycle.readings.end());
-      if (cycle.head.cycle == 20) {
-        change(cycle.head, values);
-      }
-      std::string one(reinterpret_cast<const char*>(&cycle.head), sizeof cycle.head);
-      one.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
-      hal::BlockHead head;
-      head.cycles = 1;
-      head.checksum = head.checksum_with(std::as_bytes(std::span(one)));
-      blocks.append(reinterpret_cast<const char*>(&head), sizeof head).append(one);
-    }
-    scratch.write("lab.hfr", old.substr(0, old.find("\ncycles\n") + 8) + blocks);
+    scratch.write("lab.hfr", test_recording::rewritten(path, [&](std::uint64_t cycle, std::string& bytes) {
+                    if (cycle == 20) {
+                      hal::CycleHead head;
+                      std::vector<double> values((bytes.size() - sizeof head) / sizeof(double));
+                      std::memcpy(&head, bytes.data(), sizeof head);
+                      std::memcpy(values.data(), bytes.data() + sizeof head, values.size() * sizeof(double));
+                      change(head, values);
+                      std::memcpy(bytes.data(), &head, sizeof head);
+                      std::memcpy(bytes.data() + sizeof head, values.data(), values.size() * sizeof(double));
+                    }
+                    return true;
+                  }));
   }
 
   template <class Change>

@@ -3,12 +3,11 @@
 #include <CppUTest/TestHarness.h>
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "firmware/reference_plant.hpp"
 #include "tests/files/scratch.hpp"
 #include "tests/firmware/recorded_run.hpp"
+#include "tests/firmware/rewritten_recording.hpp"
 
 namespace hotfire::firmware {
 
@@ -19,37 +18,12 @@ TEST_GROUP(Replay) {
   test::Scratch scratch;
   const std::string path = scratch.path("run.hfr").string();
 
-  std::string content() const {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string content() const { return test_recording::content_of(path); }
+  Replay replayed() const { return test_recording::replayed(path); }
 
-  Replay replayed() const {
-    hal::RecordingReader reader(path);
-    STRCMP_EQUAL("", reader.error().c_str());
-    return replay(reader);
-  }
-
-  /// Writes the recording again as one block, changed by `change(cycle, bytes)`; false leaves a cycle out.
   template <class Change>
   void rewrite(Change && change) const {
-    hal::RecordingReader reader(path);
-    std::string blocks;
-    hal::RecordedCycle cycle;
-    while (reader.next(cycle)) {
-      std::string one(reinterpret_cast<const char*>(&cycle.head), sizeof cycle.head);
-      one.append(reinterpret_cast<const char*>(cycle.commands.data()), cycle.commands.size_bytes());
-      one.append(reinterpret_cast<const char*>(cycle.readings.data()), cycle.readings.size_bytes());
-      if (!change(cycle.head.cycle, one)) {
-        continue;
-      }
-      hal::BlockHead head;
-      head.cycles = 1;
-      head.checksum = head.checksum_with(std::as_bytes(std::span(one)));
-      blocks.append(reinterpret_cast<const char*>(&head), sizeof head).append(one);
-    }
-    const std::string old = content();
-    scratch.write("run.hfr", old.substr(0, old.find("\ncycles\n") + 8) + blocks);
+    scratch.write("run.hfr", test_recording::rewritten(path, change));
   }
 };
 

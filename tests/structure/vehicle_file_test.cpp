@@ -5,17 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/files/expect.hpp"
-#include "tests/files/scratch.hpp"
+#include "tests/structure/vehicle_texts.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/structure/mode_table.hpp"
 #include "tools/structure/synthetic.hpp"
 
 namespace hotfire::test {
 namespace {
-
-const std::string kTaos = "schema = 1\ntopology = \"taos\"\n";
-const std::string kMasv = "schema = 1\ntopology = \"masv\"\n";
 
 std::string matrix(double diagonal, double corner, double other_corner) {
   std::string text = "stiffness = [";
@@ -47,14 +43,7 @@ Record commands(const std::vector<std::string>& names, double value) {
 
 }  // namespace
 
-TEST_GROUP(VehicleFile) {
-  Scratch scratch;
-
-  VehicleFile load(const std::string& text) const { return load_vehicle(scratch.write("v.toml", text)); }
-  std::string refused(const std::string& text) const {
-    return refusal([&] { load(text); });
-  }
-};
+TEST_GROUP_BASE(VehicleFile, VehicleTexts){};
 
 TEST(VehicleFile, GivesEveryAxisWhatIsSaidOfAllAndThenWhatIsSaidOfIt) {
   const auto masv = std::get<MasvParameters>(load(kMasv + "[actuator]\nstiffness = 9e7\nleakage = "

@@ -3,8 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "tests/files/expect.hpp"
-#include "tests/files/scratch.hpp"
+#include "tests/structure/vehicle_texts.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/structure/mode_table.hpp"
 #include "tools/structure/synthetic.hpp"
@@ -13,9 +12,6 @@
 
 namespace hotfire::test {
 namespace {
-
-const std::string kTaos = "schema = 1\ntopology = \"taos\"\n";
-const std::string kMasv = "schema = 1\ntopology = \"masv\"\n";
 
 /// A pitch command that goes on moving the engine.
 Record swing(const std::string& axis, double size, std::size_t rows) {
@@ -42,14 +38,7 @@ double rms_between(const Record& a, const Record& b, const std::string& channel)
 
 }  // namespace
 
-TEST_GROUP(VehicleSensors) {
-  Scratch scratch;
-
-  VehicleFile load(const std::string& text) const { return load_vehicle(scratch.write("v.toml", text)); }
-  std::string refused(const std::string& text) const {
-    return refusal([&] { load(text); });
-  }
-};
+TEST_GROUP_BASE(VehicleSensors, VehicleTexts){};
 
 TEST(VehicleSensors, GiveEveryEngineFourStringsWhereTheyAreAsked) {
   POINTERS_EQUAL(nullptr, simulate(load(kTaos), swing("pitch", 0.01, 10)).find("string1"));

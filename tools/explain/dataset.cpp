@@ -209,6 +209,13 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   return data;
 }
 
+void fit_every_row(Dataset& data) {
+  for (Experiment& experiment : data.experiments) {
+    experiment.fitted = experiment.scored();
+    experiment.held_out.clear();
+  }
+}
+
 Dataset thinned(const Dataset& data, double period) {
   Dataset thin = data;
   for (Experiment& experiment : thin.experiments) {

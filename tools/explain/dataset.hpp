@@ -61,6 +61,9 @@ struct Dataset {
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
 
+/// Gives a fit every row that is scored: nothing is held out any more.
+void fit_every_row(Dataset& data);
+
 /// The records at a period of about `period` [s]: every k-th row, under the mean of the commands held from it to the next.
 /// The rows that a fit sees, are held out or excluded stay so. Records that are no faster are left as they are.
 Dataset thinned(const Dataset& data, double period);

@@ -66,10 +66,7 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
 template <class Family>
 void fit_to_all_rows(Dataset data, const ExplainOptions& options, SearchResult<Family>& found) {
   options.watch.progress("fitting what was found to all rows");
-  for (Experiment& experiment : data.experiments) {
-    experiment.fitted = experiment.scored();
-    experiment.held_out.clear();
-  }
+  fit_every_row(data);
   const Evaluator<Family> whole(data, Resolution::fine);
   const Assessed<Family> again = refined(whole, whole, options.threads, found.explained.model, kAllRows);
   if (again.good()) {

@@ -162,12 +162,11 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
   problem.AddResidualBlock(new SimulationError<Family>(evaluator, fitted, options), nullptr, fitted.u.data());
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
     const FreeParameter& parameter = fitted.free[k];
-    const double a = parameter.coordinate(parameter.lower);
-    const double b = parameter.coordinate(parameter.upper);
+    const auto [low, high] = parameter.range();
     const int position = static_cast<int>(k);
-    problem.SetParameterLowerBound(fitted.u.data(), position, std::min(a, b));
-    problem.SetParameterUpperBound(fitted.u.data(), position, std::max(a, b));
-    fitted.u[k] = std::clamp(fitted.u[k], std::min(a, b), std::max(a, b));
+    problem.SetParameterLowerBound(fitted.u.data(), position, low);
+    problem.SetParameterUpperBound(fitted.u.data(), position, high);
+    fitted.u[k] = std::clamp(fitted.u[k], low, high);
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hotfire::explain {
@@ -64,6 +66,9 @@ struct FreeParameter {
     }
     return p / unit_size;
   }
+
+  /// The bounds as coordinates, the lower first.
+  std::pair<double, double> range() const { return std::minmax({coordinate(lower), coordinate(upper)}); }
 
   bool has_prior() const { return prior_deviation > 0.0; }
   /// Distance from the prior in its deviations; 0 without one.

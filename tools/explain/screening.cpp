@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 #include "tools/explain/parallel.hpp"
+#include "tools/explain/stopwatch.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
@@ -29,8 +29,6 @@ constexpr int kFullFit = 6;
 constexpr double kRestartFactor = 5.0;
 /// Relative change of the cost at which a candidate is ranked well enough.
 constexpr double kRankingTolerance = 1e-4;
-
-double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 template <class Family>
 void sort_best_first(std::vector<Screened<Family>>& screened) {
@@ -181,7 +179,7 @@ std::vector<typename Screening<Family>::Start> Screening<Family>::scan(
 
 template <class Family>
 Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
-  const double began = seconds_now();
+  const Stopwatch stopwatch;
   Screened<Family> best;
   best.candidate = candidate;
   const Fitted<Family> fitted = with_candidate(candidate);
@@ -217,7 +215,7 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
       best = std::move(screened);
     }
   }
-  best.seconds = seconds_now() - began;
+  best.seconds = stopwatch.seconds();
   return best;
 }
 
@@ -300,7 +298,7 @@ void Screening<Family>::improve(Screened<Family>& screened, int iterations) cons
   if (!screened.good) {
     return;
   }
-  const double began = seconds_now();
+  const Stopwatch stopwatch;
   Fitted<Family>& fitted = screened.fitted;
   screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, &frozen_});
   Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
@@ -314,7 +312,7 @@ void Screening<Family>::improve(Screened<Family>& screened, int iterations) cons
   fitted.temper = temper_of<Family>(evaluator_, residual);
   screened.criterion = information_criterion(mean_squares(residual), goodness_.fitted, fitted.free.size()) -
                        information_criterion(goodness_.fitted, goodness_.fitted, current_.free.size());
-  screened.seconds += seconds_now() - began;
+  screened.seconds += stopwatch.seconds();
 }
 
 template <class Family>

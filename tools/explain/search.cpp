@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
 #include "tools/explain/channel_check.hpp"
 #include "tools/explain/finalists.hpp"
+#include "tools/explain/stopwatch.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
@@ -23,8 +23,8 @@ constexpr double kLeastHeldOutDrop = 0.01;
 /// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
 /// is left then is of the noise's own size, and there is nothing in it to be named.
 constexpr double kImmaterialWhereChaotic = 1.5;
-/// A table of unknown law is looked for only where what is left is larger than the noise.
-constexpr double kWorthATable = 1.0;
+/// What is left beyond the noise is larger than the noise: worth a table of unknown law, and any effect that is supported.
+constexpr double kLargerThanNoise = 1.0;
 /// How many unlisted terms are fitted jointly, and what share of the listed effects' held-out error a term of unknown law
 /// has to stay below to take their place: it has more freedom than any of them.
 constexpr std::size_t kUnlistedFinalists = 4;
@@ -35,8 +35,6 @@ constexpr double kRankingPeriod = 2e-3;
 /// were thinned by.
 template <class Family>
 constexpr bool kRankedCoarsely = !std::is_same_v<Family, DirectFamily>;
-
-double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
@@ -86,7 +84,7 @@ class Search {
       take_out_superfluous(round);
     }
     if (!reaches_noise(data_, result_.explained) && !options_.watch.interrupted() &&
-        excess_over_noise(data_, result_.explained.prediction) > kWorthATable) {
+        excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise) {
       look_for_unlisted();
     }
     result_.interrupted = options_.watch.interrupted();
@@ -128,7 +126,7 @@ class Search {
   bool clears_up(const Assessed<Family>& with) const {
     const double before = excess_over_noise(data_, result_.explained.prediction);
     const double after = excess_over_noise(data_, with.prediction);
-    return before > 1.0 || after * after < kClearsUp * before * before;
+    return before > kLargerThanNoise || after * after < kClearsUp * before * before;
   }
 
   /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
@@ -162,9 +160,9 @@ class Search {
         continue;
       }
       options_.watch.progress(fmt::format("round {}: fitting {} with everything else", round, label(screened[i].candidate)));
-      const double began = seconds_now();
+      const Stopwatch stopwatch;
       finalists[i] = ranked(screened[i].fitted, kRanking);
-      trials[i].seconds += seconds_now() - began;
+      trials[i].seconds += stopwatch.seconds();
     }
     const std::optional<std::size_t> best = rank(trials, finalists, order);
     Assessed<Family> winner;
@@ -358,12 +356,12 @@ class Search {
                   1.0,         0.0,
                   "taken out", "the model is as good without it since a later effect was added"};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
-      const double began = seconds_now();
+      const Stopwatch stopwatch;
       Assessed<Family> rest = ranked(without_effect(result_.explained.model, trial.candidate), kCheck);
       if (rest.good()) {
         compare(trial, rest, rest.goodness.fitted);
       }
-      trial.seconds = seconds_now() - began;
+      trial.seconds = stopwatch.seconds();
       if (rest.good() && trial.delta_criterion < kStrongEvidence) {
         result_.trials.push_back(trial);
         result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));

@@ -28,10 +28,9 @@ bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Famil
     if (i < 2 * count) {
       const FreeParameter& parameter = free[wanted[i / 2]];
       const double step = parameter.is_declared() ? kWideTolerance : kWideStep;
-      const double a = parameter.coordinate(parameter.lower);
-      const double b = parameter.coordinate(parameter.upper);
+      const auto [low, high] = parameter.range();
       double& moved = at[wanted[i / 2]];
-      moved = std::clamp(moved + (i % 2 == 0 ? -step : step), std::min(a, b), std::max(a, b));
+      moved = std::clamp(moved + (i % 2 == 0 ? -step : step), low, high);
       reached[i] = moved;
     }
     Prediction prediction;

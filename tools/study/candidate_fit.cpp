@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 
 #include "tools/explain/search.hpp"
+#include "tools/explain/stopwatch.hpp"
 #include "tools/files/error.hpp"
 #include "tools/study/judge.hpp"
 
@@ -39,14 +38,10 @@ CandidateFit fit_candidate(const std::filesystem::path& folder, const std::strin
     throw FileError(fmt::format("{}: topology is not simplex; give a case of one axis", model.path.string()));
   }
   explain::Dataset data = explain::make_dataset(model, given_records(folder / "given"));
-  for (explain::Experiment& experiment : data.experiments) {
-    experiment.fitted = experiment.scored();
-    experiment.held_out.clear();
-  }
+  explain::fit_every_row(data);
   const explain::Candidate candidate = candidate_named(data, name, law);
 
-  const auto began = std::chrono::steady_clock::now();
-  const std::clock_t processor_began = std::clock();
+  const explain::Stopwatch stopwatch;
   explain::Fitted<Family> start;
   start.base = std::get<SimplexParameters>(model.parameters);
   explain::activate<Family>(start.base, candidate);
@@ -66,8 +61,8 @@ CandidateFit fit_candidate(const std::filesystem::path& folder, const std::strin
     throw FileError(fmt::format("{}: the model with {} can't be simulated", folder.string(), explain::label(candidate)));
   }
   CandidateFit result;
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  result.processor_seconds = static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
+  result.seconds = stopwatch.seconds();
+  result.processor_seconds = stopwatch.processor_seconds();
   result.name = folder.filename().string();
   result.candidate = explain::label(candidate);
   model.parameters = explain::Evaluator<Family>::with_values(fitted.model.base, fitted.model.free, fitted.model.u);

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <set>
 
 #include "tools/explain/explain.hpp"
+#include "tools/explain/stopwatch.hpp"
 #include "tools/files/error.hpp"
 #include "tools/simulate/simulate.hpp"
 
@@ -124,8 +123,7 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
     }
   }
 
-  const auto began = std::chrono::steady_clock::now();
-  const std::clock_t processor_began = std::clock();
+  const explain::Stopwatch stopwatch;
   try {
     explain::ExplainOptions options;
     options.threads = threads;
@@ -142,8 +140,8 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
   } catch (const std::exception& error) {
     judgement.failure = error.what();
   }
-  judgement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  judgement.processor_seconds = static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
+  judgement.seconds = stopwatch.seconds();
+  judgement.processor_seconds = stopwatch.processor_seconds();
 
   judgement.below_noise = !judgement.after.empty() && std::all_of(judgement.after.begin(), judgement.after.end(),
                                                                   [](const auto& error) { return error.second < 1.0; });
