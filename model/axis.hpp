@@ -17,7 +17,9 @@ template <class S>
 struct Coupling {
   S motion;  ///< motion of the attach point, and stroke of the geometry beyond R beta [m]
   S arm;     ///< derivative of the stroke by the axis's own angle [m]
-  S torque;  ///< further torque against the engine [N m]; read by `evaluate_engine` only
+  S torque;  ///< further torque against the engine [N m]; read by `evaluate_engine` only, like the two below
+  S other_angle{0.0};  ///< of the engine about its other axis [rad]
+  S other_rate{0.0};   ///< its rate [rad/s]
 };
 
 /// An axis alone: its attach point stands on its own spring and its arm is the declared one.
@@ -232,9 +234,9 @@ class Axis {
   void evaluate_engine(State& state, const Advance& advance, const Spring<S>& spring, const Around& around,
                        Keep keep) const noexcept {
     const S angle_rate = advance.rate(kAngle, h_);
-    const S own = sum_over<Site::engine_torque>(
-        parameters_.effects, state.effects,
-        Motion<S>{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, mid_step(state)}, keep);
+    const Motion<S> motion{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, mid_step(state)};
+    const S own =
+        sum_over<Site::engine_torque>(parameters_.effects, state.effects, motion_around(around, motion), keep);
     state.inputs(kEngineTorque) =
         torque_around(around, own) - (spring.arm - parameters_.actuator.moment_arm) * state.spring_force;
   }
@@ -262,6 +264,12 @@ class Axis {
   static Spring<S> spring_around(const Coupling<S>& around, Spring<S> own) noexcept {
     own.deflection = own.deflection - around.motion;
     own.arm = around.arm;
+    return own;
+  }
+  static const Motion<S>& motion_around(const Uncoupled&, const Motion<S>& own) noexcept { return own; }
+  static Motion<S> motion_around(const Coupling<S>& around, Motion<S> own) noexcept {
+    own.other_angle = around.other_angle;
+    own.other_rate = around.other_rate;
     return own;
   }
   static S torque_around(const Uncoupled&, const S& own) noexcept { return own; }
@@ -292,8 +300,8 @@ class Axis {
                                         parameters_.actuator.stiffness, parameters_.structure.stiffness, h_});
     settle<Site::load_spring>(effects, state.effects, still);
     const Spring<S> geometry = pass_through<Site::load_spring>(effects, state.effects, still, Keep::yes);
-    const S torque = sum_over<Site::engine_torque>(effects, state.effects,
-                                                   Motion<S>{angle, S{0.0}, S{0.0}, engine_compliance_, h_}, Keep::no);
+    const Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_};
+    const S torque = sum_over<Site::engine_torque>(effects, state.effects, motion_around(around, motion), Keep::no);
     const S needed = (parameters_.engine.duct_stiffness * angle + torque_around(around, torque)) / geometry.arm;
     state.spring_force = needed;
     settle<Site::structure>(effects, state.effects, AttachPoint<S>{needed, h_});

@@ -2,6 +2,7 @@
 
 #include "model/effects/backlash.hpp"
 #include "model/effects/command_delay.hpp"
+#include "model/effects/cross_axis.hpp"
 #include "model/effects/cubic_stiffness.hpp"
 #include "model/effects/duct_hardening.hpp"
 #include "model/effects/force_offset.hpp"
@@ -35,15 +36,15 @@ using SimplexEffects =
     EffectList<RateLimit, CommandDelay, UnlistedSignal<Site::command>, UnlistedSignal<Site::valve_command>, ValveHysteresis,
                UnlistedSignal<Site::valve>, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
                PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
-               StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset,
+               StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis,
                UnlistedMotion<Site::engine_torque>, SensorNonlinearity, UnlistedReading, SensorLag, SensorDelay,
                SensorScale>;
 
-/// Every effect an axis of a `Vehicle` knows, in the same order. What the vehicle has itself is not among them: geometry,
-/// modes and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would
-/// be most of its state.
-using VehicleEffects = EffectList<RateLimit, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction,
-                                  Backlash, SoftStiffness, DuctHardening, TorqueOffset, SensorNonlinearity, SensorLag>;
+/// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
+/// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most
+/// of the state of eight. A `Taos` knows the whole list.
+using MasvEffects = EffectList<RateLimit, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction, Backlash,
+                               SoftStiffness, DuctHardening, TorqueOffset, CrossAxis, SensorNonlinearity, SensorLag>;
 
 /// Every effect a force-driven mass knows.
 using DirectEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, PositionDamping,

@@ -72,6 +72,14 @@ class EngineGeometry {
         vehicle_{pitch.vehicle(), yaw.vehicle()},
         length_{norm(pitch.engine() - pitch.vehicle()), norm(yaw.engine() - yaw.vehicle())} {}
 
+  /// Arms [m] that are the same at any angle, as physics.md section 1 has them: stroke = arm angle, and no actuator turns the
+  /// engine about the other axis. Both push along the thrust.
+  EngineGeometry(const S& pitch_arm, const S& yaw_arm)
+      : engine_{Vector3<S>::Zero(), Vector3<S>::Zero()},
+        vehicle_{Vector3<S>::Zero(), Vector3<S>::Zero()},
+        length_{pitch_arm, yaw_arm},
+        constant_arms_(true) {}
+
   Pose<S> at(const S& pitch, const S& yaw) const noexcept {
     using std::cos;
     using std::sin;
@@ -81,6 +89,12 @@ class EngineGeometry {
     const S sy = sin(yaw);
     Pose<S> pose;
     pose.thrust = {cp * cy, sy, -sp * cy};
+    if (constant_arms_) {
+      pose.stroke = {length_[0] * pitch, length_[1] * yaw};
+      pose.arm = {{{length_[0], S(0.0)}, {S(0.0), length_[1]}}};
+      pose.direction = {Vector3<S>{S(-1.0), S(0.0), S(0.0)}, Vector3<S>{S(-1.0), S(0.0), S(0.0)}};
+      return pose;
+    }
     for (std::size_t k = 0; k < 2; ++k) {
       const S x = cy * engine_[k](0) - sy * engine_[k](1);
       const S y = sy * engine_[k](0) + cy * engine_[k](1);
@@ -102,7 +116,8 @@ class EngineGeometry {
 
   std::array<Vector3<S>, 2> engine_;
   std::array<Vector3<S>, 2> vehicle_;
-  std::array<S, 2> length_;
+  std::array<S, 2> length_;  ///< between the attach points at zero angles; the arms where these are constant
+  bool constant_arms_ = false;
 };
 
 /// What is wrong with the attach points of an engine's two actuators; empty if nothing.

@@ -78,7 +78,9 @@ struct Motion {
   S free_velocity;
   S compliance;
   double h = 0.0;
-  S time{0.0};  ///< of the record, mean over the step [s]
+  S time{0.0};         ///< of the record, mean over the step [s]
+  S other_angle{0.0};  ///< of the engine about its other axis, mean over the step [rad]; known at `engine_torque` only
+  S other_rate{0.0};   ///< its rate [rad/s]; both zero for an axis alone
 };
 
 /// What an effect sees at the site `load_spring`, and returns with its change. The spring's force is

@@ -32,7 +32,7 @@ namespace hotfire::model {
 ///
 /// A step costs the same whatever the state, and is linear in the modes. No allocation, lock or exception after
 /// construction.
-template <class S, int Engines, int Capacity, class List = VehicleEffects>
+template <class S, int Engines, int Capacity, class List>
 class Vehicle {
  public:
   using Scalar = S;
@@ -50,6 +50,8 @@ class Vehicle {
   struct Parameters {
     std::array<typename AxisModel::Parameters, kAxes> axes{};
     std::array<AttachPoints<S>, kAxes> attach = representative_attach_points();
+    /// True for an engine whose arms are the declared `actuator.moment_arm` at any angle: its attach points are not read.
+    std::array<bool, Engines> constant_arms{};
     std::array<GimbalParameters<S>, Engines> gimbals{};
     Modes modes{};
   };
@@ -75,8 +77,8 @@ class Vehicle {
     std::array<S, kAxes> vibration{};  ///< slip velocity of the bearings from a recorded vibration [rad/s]
   };
 
-  /// Constants of a run at step `h` [s]. An axis's moment arm is that of its attach points at zero angles: the declared one
-  /// is not read.
+  /// Constants of a run at step `h` [s]. But for constant arms, an axis's moment arm is that of its attach points at zero
+  /// angles: the declared one is not read.
   Vehicle(const Parameters& parameters, double h)
       : h_(h),
         axes_(axes_of(parameters, h, std::make_index_sequence<kAxes>{})),
@@ -165,6 +167,14 @@ class Vehicle {
 
   static const std::array<S, kAxes * kChannels>& measured(const State& state) noexcept { return state.measured; }
 
+  /// Strokes and arms of one engine's actuators.
+  static EngineGeometry<S> geometry_of(const Parameters& parameters, std::size_t engine) {
+    const std::size_t pitch = 2 * engine;
+    return parameters.constant_arms[engine]
+               ? EngineGeometry<S>(parameters.axes[pitch].actuator.moment_arm, parameters.axes[pitch + 1].actuator.moment_arm)
+               : EngineGeometry<S>(parameters.attach[pitch], parameters.attach[pitch + 1]);
+  }
+
  private:
   struct Gimbal {
     EngineGeometry<S> geometry;
@@ -199,9 +209,7 @@ class Vehicle {
   static std::array<AxisModel, kAxes> axes_of(const Parameters& parameters, double h, std::index_sequence<I...>) {
     const auto axis = [&](std::size_t i) {
       auto own = parameters.axes[i];
-      const std::size_t pitch = i - i % 2;
-      const EngineGeometry<S> geometry(parameters.attach[pitch], parameters.attach[pitch + 1]);
-      own.actuator.moment_arm = geometry.at(S(0.0), S(0.0)).arm[i % 2][i % 2];
+      own.actuator.moment_arm = geometry_of(parameters, i / 2).at(S(0.0), S(0.0)).arm[i % 2][i % 2];
       return AxisModel(own, h);
     };
     return {axis(I)...};
@@ -211,7 +219,7 @@ class Vehicle {
   static std::array<Gimbal, Engines> gimbals_of(const Parameters& parameters, double h, std::index_sequence<I...>) {
     const auto gimbal = [&](std::size_t e) {
       const GimbalParameters<S>& own = parameters.gimbals[e];
-      return Gimbal{EngineGeometry<S>(parameters.attach[2 * e], parameters.attach[2 * e + 1]),
+      return Gimbal{geometry_of(parameters, e),
                     GimbalSpring<S>(own, h),
                     own.friction,
                     own.vibration,
@@ -306,6 +314,9 @@ class Vehicle {
                         engine.viscous_damping * step.axes[at(i)].rate(AxisModel::kAngle, h_);
     state.structure.forces(kAxes + i) = friction + of_engine - of_vehicle;
     step.around[at(i)].torque = friction + across - of_vehicle;
+    const auto& other = step.axes[at(i ^ 1)];
+    step.around[at(i)].other_angle = other.mean(AxisModel::kAngle);
+    step.around[at(i)].other_rate = other.rate(AxisModel::kAngle, h_);
     axes_[at(i)].evaluate_engine(state.axes[at(i)], step.axes[at(i)], step.springs[at(i)], step.around[at(i)], keep);
   }
 
@@ -358,6 +369,7 @@ class Vehicle {
         around[at(i)].arm = pose.arm[at(k)][at(k)];
         around[at(i)].torque = -pose.arm[at(1 - k)][at(k)] * state.axes[at(2 * e + 1 - k)].spring_force -
                                parameters.engine.duct_stiffness * moved(kAxes + i);
+        around[at(i)].other_angle = angles[at(1 - k)];
       }
     }
   }
@@ -380,8 +392,8 @@ class Vehicle {
 
 /// The presets, with the modes that their memory holds.
 template <class S>
-using Taos = Vehicle<S, 1, 32>;
+using Taos = Vehicle<S, 1, 32, SimplexEffects>;
 template <class S>
-using Masv = Vehicle<S, 4, 64>;
+using Masv = Vehicle<S, 4, 64, MasvEffects>;
 
 }  // namespace hotfire::model

@@ -60,7 +60,7 @@ void fill_group(KeyGroup& group, int option, RandomNumbers& random) {
   }
 }
 
-/// Every effect is active, every parameter that acts under the chosen options has a number inside its bounds, every declared
+/// Every effect that one axis can have is active, every parameter that acts under the chosen options has a number inside its bounds, every declared
 /// parameter a tolerance and every channel a noise.
 void fill(ModelFile& model, int option) {
   RandomNumbers random;
@@ -72,7 +72,9 @@ void fill(ModelFile& model, int option) {
     }
   }
   for (KeyGroup& effect : layout.effects) {
-    fill_group(effect, option, random);
+    if (!effect.needs_other_axis) {
+      fill_group(effect, option, random);
+    }
   }
   for (const ModelChannel& channel : layout.channels) {
     model.noise[std::string{channel.name}] = random.between(1e-9, 1.0);

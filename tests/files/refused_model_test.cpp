@@ -128,6 +128,11 @@ TEST(RefusedModel, a_tolerance_must_name_a_declared_parameter_and_lie_above_0_an
                  {"m.toml:4:18:", "engine.inertia = 1.5", "above 0, at most 1"});
 }
 
+TEST(RefusedModel, an_effect_of_the_other_axis_needs_one) {
+  expect_message(refused("[effects.cross_axis]\nstiffness = 1e5\n"),
+                 {"m.toml:3:", "effects.cross_axis", "simplex", "allowed with topology \"taos\""});
+}
+
 TEST(RefusedModel, a_noise_must_be_above_zero) {
   expect_message(refused("[sensors]\npiston_noise = 0\n"), {"m.toml:4:16:", "sensors.piston_noise = 0", "above 0"});
 }

@@ -78,6 +78,20 @@ double lively_input(const model::Direct<S, List>&, double t) {
   return 40.0 * std::sin(4.0 * t) + 30.0 * std::sin(9.0 * t);
 }
 
+/// One step under an input. A hydraulic axis has another one beside it, on the same engine and in motion.
+template <class S, class List>
+void step_beside(const model::Simplex<S, List>& plant, typename model::Simplex<S, List>::State& state, const S& input) {
+  const double t = model::value_of(state.clock) + 0.5 * plant.step_size();
+  const S arm = plant.parameters().actuator.moment_arm;
+  plant.step(state, input, [&](const S&) {
+    return model::Coupling<S>{S(0.0), arm, S(0.0), S(0.02 * std::sin(7.0 * t)), S(0.14 * std::cos(7.0 * t))};
+  });
+}
+template <class S, class List>
+void step_beside(const model::Direct<S, List>& plant, typename model::Direct<S, List>::State& state, const S& input) {
+  plant.step(state, input);
+}
+
 /// What the sensors read under the lively input, held over samples of `sample` seconds that are split into `parts` steps:
 /// one row a sample.
 template <class Plant>
@@ -90,7 +104,7 @@ std::vector<std::array<typename Plant::Scalar, Plant::channels.size()>> record(c
   for (int i = 0; i < samples; ++i) {
     const typename Plant::Scalar input(lively_input(plant, i * sample));
     for (int part = 0; part < parts; ++part) {
-      plant.step(state, input);
+      step_beside(plant, state, input);
     }
     rows.push_back(Plant::measured(state));
   }

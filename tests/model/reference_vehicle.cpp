@@ -36,6 +36,26 @@ struct Turned {
   }
 };
 
+/// How an actuator stands between vehicle and engine.
+struct Actuator {
+  double stroke;     ///< from zero angles [m]
+  Vector direction;  ///< of its push on the engine
+  Pair arms;         ///< torque about pitch and yaw per force [m]
+};
+
+Actuator actuator_of(const ReferenceVehicle::Engine& engine, int axis, const Turned& turned, double angle) {
+  const auto i = static_cast<std::size_t>(axis);
+  if (engine.declared_arms) {
+    const double arm = engine.axes[i].arm;
+    return {arm * angle, -Vector::UnitX(), arm * Pair::Unit(axis)};
+  }
+  const Vector at = turned.rotation * engine.on_engine[i];
+  const Vector line = at - engine.on_vehicle[i];
+  const Vector direction = line.normalized();
+  return {line.norm() - (engine.on_engine[i] - engine.on_vehicle[i]).norm(), direction,
+          Pair(direction.dot(turned.axes[0].cross(at)), direction.dot(turned.axes[1].cross(at)))};
+}
+
 struct Friction {
   Pair torque;
   Pair bristle_rate;
@@ -96,18 +116,13 @@ OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const doub
   Pair torque = Pair::Zero();
   Vector on_bearing = engine.thrust * (turned.rotation * Vector::UnitX());
   for (int axis = 0; axis < 2; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    const Vector at = turned.rotation * engine.on_engine[i];
-    const Vector line = at - engine.on_vehicle[i];
-    const Vector direction = line.normalized();
-    const double stroke = line.norm() - (engine.on_engine[i] - engine.on_vehicle[i]).norm();
-    const double deflection = of(axis, kReferencePiston) - stroke - base.moved(axis) - direction.dot(bearing.head<3>());
-    const double force = study::spring_force(engine.axes[i], deflection);
+    const Actuator actuator = actuator_of(engine, axis, turned, of(axis, kReferenceAngle));
+    const double deflection =
+        of(axis, kReferencePiston) - actuator.stroke - base.moved(axis) - actuator.direction.dot(bearing.head<3>());
+    const double force = study::spring_force(engine.axes[static_cast<std::size_t>(axis)], deflection);
     result.forces(axis) = force;
-    on_bearing += force * direction;
-    for (int about = 0; about < 2; ++about) {
-      torque(about) += force * direction.dot(turned.axes[static_cast<std::size_t>(about)].cross(at));
-    }
+    on_bearing += force * actuator.direction;
+    torque += force * actuator.arms;
   }
 
   const Pair rates(of(0, kReferenceAngleRate), of(1, kReferenceAngleRate));
@@ -132,7 +147,8 @@ OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const doub
     own_rate[kReferenceAngle] = own[kReferenceAngleRate];
     result.torques(axis) = friction.torque(axis) + a.duct_stiffness * (own[kReferenceAngle] - base.turned(axis)) +
                            a.damping * (own[kReferenceAngleRate] - base.turned_rate(axis));
-    own_rate[kReferenceAngleRate] = (torque(axis) - result.torques(axis)) / a.inertia;
+    const double across = a.cross_stiffness * of(1 - axis, kReferenceAngle) + a.cross_damping * rates(1 - axis);
+    own_rate[kReferenceAngleRate] = (torque(axis) - result.torques(axis) - across) / a.inertia;
   }
   return result;
 }

@@ -16,7 +16,9 @@ struct ReferenceVehicle {
   using Vector = Eigen::Vector3d;
 
   struct Engine {
-    std::array<ReferenceAxis, 2> axes;  ///< pitch, yaw: declared values, dead band and softness, and nothing else
+    std::array<ReferenceAxis, 2> axes;  ///< pitch, yaw: declared values, dead band, softness and torque from the
+                                        ///< other axis, and nothing else
+    bool declared_arms = false;         ///< `arm` of the axes at any angle: the attach points are not read
     std::array<Vector, 2> on_engine;    ///< attach points at zero angles, from the gimbal's centre
     std::array<Vector, 2> on_vehicle;
     double thrust = 0.0;

@@ -56,6 +56,7 @@ template <class Vehicle>
 ReferenceAxis reference_axis_of(const typename Vehicle::AxisModel::Parameters& axis, double arm) {
   constexpr std::size_t soft_stiffness = index_in<model::SoftStiffness>(typename Vehicle::Effects{});
   constexpr std::size_t deadband = index_in<model::ValveDeadband>(typename Vehicle::Effects{});
+  constexpr std::size_t cross_axis = index_in<model::CrossAxis>(typename Vehicle::Effects{});
   ReferenceAxis reference;
   reference.arm = arm;
   reference.load_stiffness = axis.structure.stiffness;
@@ -69,6 +70,11 @@ ReferenceAxis reference_axis_of(const typename Vehicle::AxisModel::Parameters& a
   }
   if (axis.effects.active[deadband]) {
     reference.deadband = std::get<deadband>(axis.effects.values).half_width;
+  }
+  if (axis.effects.active[cross_axis]) {
+    const auto& cross = std::get<cross_axis>(axis.effects.values);
+    reference.cross_stiffness = cross.stiffness;
+    reference.cross_damping = cross.damping;
   }
   return reference;
 }
@@ -103,6 +109,7 @@ ReferenceVehicle reference_of(const typename Vehicle::Parameters& parameters, co
       engine.on_engine[k] = parameters.attach[i].engine();
       engine.on_vehicle[k] = parameters.attach[i].vehicle();
     }
+    engine.declared_arms = parameters.constant_arms[e];
     tell_gimbal(parameters.gimbals[e], engine);
     vehicle.engines.push_back(engine);
   }

@@ -70,6 +70,27 @@ TEST(VehicleAgreesWithCvode, WithFrictionThatVibrationLowers) {
   check_agreement("hot fire, vibrated_lugre", parameters);
 }
 
+// Ducts that pull the other way by as much as they resist, and a follower force that is not symmetric.
+TEST(VehicleAgreesWithCvode, WithTorqueFromTheOtherAxis) {
+  Taos::Parameters parameters = smooth();
+  constexpr std::size_t kCross = index_in<model::CrossAxis>(Taos::Effects{});
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    parameters.axes[axis].effects.active[kCross] = true;
+    auto& cross = std::get<kCross>(parameters.axes[axis].effects.values);
+    cross.stiffness = axis == 0 ? 2e6 : -1e6;
+    cross.damping = 4e4;
+  }
+  check_agreement("torque from the other axis", parameters);
+}
+
+// A bearing that gives way along the thrust shows where they push, modes what they carry to the structure.
+TEST(VehicleAgreesWithCvode, WithTheDeclaredArmsAtAnyAngle) {
+  Taos::Parameters parameters = smooth();
+  parameters.constant_arms.fill(true);
+  parameters.axes[1].actuator.moment_arm = 0.6;
+  check_agreement("declared arms", parameters);
+}
+
 // The structure alone carries the actuators, and gives way by more than they do.
 TEST(VehicleAgreesWithCvode, OnAStructureSofterThanTheActuators) {
   Taos::Parameters parameters = smooth();

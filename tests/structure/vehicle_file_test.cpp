@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/keys.hpp"
+#include "tests/model/plants.hpp"
 #include "tests/structure/vehicle_texts.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/structure/mode_table.hpp"
@@ -27,6 +29,37 @@ std::string matrix(double diagonal, double corner, double other_corner) {
     text.append("],\n");
   }
   return text + "]\n";
+}
+
+/// Every number of an axis that a fit may move, and the choices of its effects.
+template <class Axis>
+std::vector<double> numbers_of(const Axis& axis) {
+  std::vector<double> numbers;
+  model::visit_values(axis, [&](const double& value) { numbers.push_back(value); });
+  model::visit_effects(axis, [&]<class E>(std::size_t, const auto& values) { numbers.push_back(values.option); });
+  return numbers;
+}
+
+/// Every number of a part.
+template <class Part>
+std::vector<double> numbers_of_part(const Part& part) {
+  std::vector<double> numbers;
+  for (const auto& field : Part::fields()) {
+    numbers.push_back(part.*field.member);
+  }
+  return numbers;
+}
+
+void check_same(const VehicleSensors& a, const VehicleSensors& b) {
+  CHECK_TRUE(numbers_of_part(a.piston) == numbers_of_part(b.piston));
+  CHECK_TRUE(numbers_of_part(a.string) == numbers_of_part(b.string));
+  DOUBLES_EQUAL(a.placement_error, b.placement_error, 0.0);
+  LONGS_EQUAL(a.strings.size(), b.strings.size());
+  for (std::size_t engine = 0; engine < a.strings.size(); ++engine) {
+    for (std::size_t string = 0; string < VehicleSensors::Strings::kStrings; ++string) {
+      CHECK_TRUE(numbers_of_part(a.strings[engine][string]) == numbers_of_part(b.strings[engine][string]));
+    }
+  }
 }
 
 /// A record with command channels.
@@ -56,6 +89,108 @@ TEST(VehicleFile, GivesEveryAxisWhatIsSaidOfAllAndThenWhatIsSaidOfIt) {
     DOUBLES_EQUAL(9e7, masv.axes[i].actuator.stiffness, 0.0);
     DOUBLES_EQUAL(i % 2 == 0 ? 3e-12 : i == 3 ? 5e-12 : 1e-12, masv.axes[i].actuator.leakage, 0.0);
   }
+}
+
+TEST(VehicleFile, PutsAnEffectOnEveryAxisOrOnThoseThatItsTablesName) {
+  const auto taos = std::get<TaosParameters>(
+      load(kTaos + "[effects.duct_hardening]\ncubic = 1e7\n[effects.duct_hardening.yaw]\ncubic = 2e7\n"
+                   "[effects.cross_axis.pitch]\nstiffness = 3e5\n"
+                   "[effects.gimbal_friction]\nlaw = \"lugre\"\ncoulomb_torque = 4e3\n[effects.gimbal_friction.yaw]\n"
+                   "coulomb_torque = 6e3\n")
+          .parameters);
+  constexpr std::size_t kHardening = index_in<model::DuctHardening>(model::SimplexEffects{});
+  constexpr std::size_t kCross = index_in<model::CrossAxis>(model::SimplexEffects{});
+  constexpr std::size_t kFriction = index_in<model::GimbalFriction>(model::SimplexEffects{});
+  const auto& pitch = taos.axes[0].effects;
+  const auto& yaw = taos.axes[1].effects;
+  CHECK_TRUE(pitch.active[kHardening] && yaw.active[kHardening]);
+  DOUBLES_EQUAL(1e7, std::get<kHardening>(pitch.values).cubic, 0.0);
+  DOUBLES_EQUAL(2e7, std::get<kHardening>(yaw.values).cubic, 0.0);
+  CHECK_TRUE(pitch.active[kCross] && !yaw.active[kCross]);
+  DOUBLES_EQUAL(3e5, std::get<kCross>(pitch.values).stiffness, 0.0);
+  // The law was said of both axes: the table of one need not say it again.
+  LONGS_EQUAL(std::get<kFriction>(pitch.values).option, std::get<kFriction>(yaw.values).option);
+  DOUBLES_EQUAL(6e3, std::get<kFriction>(yaw.values).coulomb_torque, 0.0);
+}
+
+TEST(VehicleFile, GivesEveryAxisItsNoiseAndTolerances) {
+  const VehicleFile taos = load(kTaos +
+                                "[sensors]\npiston_noise = 8e-6\n[sensors.yaw]\npiston_noise = 9e-6\n"
+                                "[tolerance]\nengine.inertia = 0.02\nengine.yaw.inertia = 0.05\n");
+  DOUBLES_EQUAL(8e-6, taos.axes[0].noise.at("piston"), 0.0);
+  DOUBLES_EQUAL(9e-6, taos.axes[1].noise.at("piston"), 0.0);
+  DOUBLES_EQUAL(0.02, taos.axes[0].tolerance.at("engine.inertia"), 0.0);
+  DOUBLES_EQUAL(0.05, taos.axes[1].tolerance.at("engine.inertia"), 0.0);
+  expect_message(refused(kTaos + "[tolerance]\nengine.roll.inertia = 0.02\n"), {"v.toml:4:", "engine.roll.inertia"});
+  expect_message(refused(kTaos + "[sensors.pitch]\nengin_noise = 1e-5\n"), {"v.toml:4:", "sensors.pitch.engin_noise"});
+}
+
+// Everything a file can say, some of it of one axis only.
+// `piston` is a channel in the key of a noise and a sensor as a table: the two don't get in each other's way.
+TEST(VehicleFile, HasTheNoiseOfItsRecordsAndTheSensorsOfItsSimulationInOneTable) {
+  const std::string noise = "[sensors]\npiston_noise = 8e-6\n[sensors.pitch]\npiston_noise = 9e-6\n";
+  const std::string sensor = "[sensors.piston]\nnoise = 2e-5\n";
+  for (const std::string& text : {kTaos + noise + sensor, kTaos + sensor + noise}) {
+    const VehicleFile both = load(text);
+    DOUBLES_EQUAL(9e-6, both.axes[0].noise.at("piston"), 0.0);
+    DOUBLES_EQUAL(8e-6, both.axes[1].noise.at("piston"), 0.0);
+    DOUBLES_EQUAL(2e-5, both.sensors.piston.noise, 0.0);
+  }
+  LONGS_EQUAL(0, load(kTaos + sensor).axes[0].noise.size());
+  DOUBLES_EQUAL(0.0, load(kTaos + noise).sensors.piston.noise, 0.0);
+  expect_message(refused(kTaos + "[sensors.pitch.piston]\nnoise = 2e-5\n"), {"v.toml:3:", "sensors.pitch.piston"});
+  expect_message(refused(kTaos + "[sensors]\npiston = 2e-5\n"), {"v.toml:4:", "sensors.piston"});
+}
+
+TEST(VehicleFile, IsReadBackBitForBitFromItsText) {
+  const std::vector<std::string> texts{
+      kTaos +
+          "name = \"a \\\"test\\\"\"\n[actuator]\nmoment_arm = \"29.7 in\"\n[actuator.yaw]\nmoment_arm = 0.8\n"
+          "[sensors]\npiston_noise = 8e-6\n[sensors.yaw]\nengine_noise = 6e-5\n"
+          "[tolerance]\nengine.inertia = 0.02\nengine.yaw.inertia = 0.05\nservovalve.yaw.position_gain = 0.1\n"
+          "[effects.cross_axis]\nstiffness = 3e5\n[effects.cross_axis.yaw]\nstiffness = -3e5\n"
+          "[effects.soft_stiffness.yaw]\nlaw = \"table\"\nload = [0, 1e4]\ntable_stiffness = [4e7, 1.1e8]\n"
+          "[sensors.piston]\nlag = 2e-3\nstep = 5e-6\n",
+      kMasv + "[attach.pitch]\nengine_z = -0.8\nvehicle_z = -0.8\n[gimbal]\nthrust = 1.86e6\n" + matrix(2e7, 1e6, 1e6) +
+          "[gimbal.friction]\nlaw = \"lugre\"\ncoulomb_torque = 2e4\n[effects.torque_offset.pitch2]\ntorque = 1e3\n"
+          "[strings]\nlag = 2e-3\nplacement_error = 0.02\n[strings.string2]\nengine_z = 0.7\n"
+          "[strings.string2.engine3]\nengine_z = 0.8\n"};
+  for (const std::string& written : texts) {
+    const VehicleFile first = load(written);
+    const std::string text = vehicle_text(first);
+    const VehicleFile again = load(text);
+    STRCMP_EQUAL(text.c_str(), vehicle_text(again).c_str());
+    check_same(first.sensors, again.sensors);
+    std::visit(
+        [&]<class Parameters>(const Parameters& parameters) {
+          const auto& others = std::get<Parameters>(again.parameters);
+          for (std::size_t axis = 0; axis < parameters.axes.size(); ++axis) {
+            CHECK_TRUE(numbers_of(parameters.axes[axis]) == numbers_of(others.axes[axis]));
+            CHECK_TRUE(parameters.axes[axis].effects.active == others.axes[axis].effects.active);
+            CHECK_TRUE(first.axes[axis].noise == again.axes[axis].noise);
+            CHECK_TRUE(first.axes[axis].tolerance == again.axes[axis].tolerance);
+          }
+          CHECK_TRUE(parameters.constant_arms == others.constant_arms);
+          CHECK_TRUE(parameters.gimbals[0].stiffness == others.gimbals[0].stiffness);
+          DOUBLES_EQUAL(parameters.gimbals[0].friction.coulomb_torque, others.gimbals[0].friction.coulomb_torque, 0.0);
+        },
+        first.parameters);
+  }
+}
+
+// physics.md section 1 for each axis, where no attach points are given.
+TEST(VehicleFile, WithoutAttachPointsHasTheDeclaredArmsAtAnyAngle) {
+  const VehicleFile taos = load(kTaos + "[actuator]\nmoment_arm = 0.6\n[actuator.yaw]\nmoment_arm = 0.9\n");
+  DOUBLES_EQUAL(0.6, moment_arm_of(taos, "pitch"), 0.0);
+  DOUBLES_EQUAL(0.9, moment_arm_of(taos, "yaw"), 0.0);
+  Record run = commands({"command.pitch", "command.yaw"}, 0.0);
+  run.rows = 2000;
+  run.channels[0].values.assign(run.rows, 0.1);
+  run.channels[1].values.assign(run.rows, 0.05);
+  const Record record = simulate(taos, run);
+  // At rest the piston is where the command has it but for the valve's leakage flow, a thousandth.
+  DOUBLES_EQUAL(0.06, record.find("piston.pitch")->values.back(), 1e-4);
+  DOUBLES_EQUAL(0.045, record.find("piston.yaw")->values.back(), 1e-4);
 }
 
 TEST(VehicleFile, ReadsTheBearingAndItsAttachPoints) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/effects/cross_axis.hpp"
 #include "model/keys.hpp"
 #include "tools/files/model_layout.hpp"
 
@@ -58,6 +59,7 @@ KeyGroup effect_group(Values& values, bool& active) {
   group.option = &values.option;
   group.active = &active;
   group.site = model::site_name(Effect::site);
+  group.needs_other_axis = model::needs_other_axis<Effect>();
   group.broken_relation = relation_of<Effect>(values);
   return group;
 }

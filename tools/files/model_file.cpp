@@ -47,67 +47,22 @@ void read_effects(const TomlSource& source, const ModelLayout& layout) {
   for (const KeyGroup& effect : layout.effects) {
     if (const toml::node* own = effects.get(effect.name)) {
       const std::string key = fmt::format("effects.{}", effect.name);
+      if (effect.needs_other_axis) {
+        source.refuse_missing(source.table(*own, key), key,
+                              fmt::format("acts from the other axis of an engine, and topology \"{}\" has one axis; "
+                                          "allowed with topology \"taos\" or \"masv\"",
+                                          layout.topology));
+      }
       read_group(source, source.table(*own, key), effect, key + ".");
       *effect.active = true;
     }
   }
 }
 
-void read_sensors(const TomlSource& source, const ModelLayout& layout, ModelFile& model) {
-  const toml::node* node = source.root().get("sensors");
-  if (node == nullptr) {
-    return;
-  }
-  const toml::table& sensors = source.table(*node, "sensors");
-  std::vector<std::string> keys;
-  for (const ModelChannel& channel : layout.channels) {
-    keys.push_back(fmt::format("{}_noise", channel.name));
-  }
-  refuse_unknown_keys(source, sensors, "sensors.", Words(keys.begin(), keys.end()));
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (const toml::node* noise = sensors.get(keys[i])) {
-      const double rms = source.number(*noise, "sensors." + keys[i], layout.channels[i].unit);
-      if (!(rms > 0.0)) {
-        source.refuse(*noise, "sensors." + keys[i], "an rms noise; allowed: above 0 (leave it out to have it estimated)");
-      }
-      model.noise[std::string{layout.channels[i].name}] = rms;
-    }
-  }
-}
-
-/// Reads `servovalve.position_gain = 0.03`, which TOML nests, and the same key in quotes.
-void read_tolerances(const TomlSource& source, const toml::table& table, const std::string& prefix, const Words& declared,
-                     ModelFile& model) {
-  for (const auto& [own_key, node] : table) {
-    const std::string key = prefix + std::string{own_key.str()};
-    if (const toml::table* nested = node.as_table()) {
-      read_tolerances(source, *nested, key + ".", declared, model);
-      continue;
-    }
-    if (std::find(declared.begin(), declared.end(), key) == declared.end()) {
-      source.refuse_key(own_key, "tolerance of " + key, "no such declared parameter; " + suggestion(key, declared));
-    }
-    const double relative = source.number(node, "tolerance of " + key, "1");
-    if (!(relative > 0.0 && relative <= 1.0)) {
-      source.refuse(node, "tolerance of " + key,
-                    "a relative one-sigma; allowed: above 0, at most 1 (leave it out if exact)");
-    }
-    model.tolerance[key] = relative;
-  }
-}
-
-void read_tolerances(const TomlSource& source, const ModelLayout& layout, ModelFile& model) {
-  const toml::node* node = source.root().get("tolerance");
-  if (node == nullptr) {
-    return;
-  }
-  std::vector<std::string> declared;
-  for (const KeyGroup& part : layout.parts) {
-    for (const NumberKey& number : part.numbers) {
-      declared.push_back(fmt::format("{}.{}", part.name, number.name));
-    }
-  }
-  read_tolerances(source, source.table(*node, "tolerance"), "", Words(declared.begin(), declared.end()), model);
+/// The table of that name, if the file has one.
+const toml::table* table_of(const TomlSource& source, std::string_view name) {
+  const toml::node* node = source.root().get(name);
+  return node != nullptr ? &source.table(*node, name) : nullptr;
 }
 
 void choose_topology(const TomlSource& source, ModelFile& model) {
@@ -146,8 +101,13 @@ ModelFile load_model(const std::filesystem::path& path) {
   model.name = name != nullptr ? source.text(*name, "name") : path.stem().string();
   read_parts(source, layout, model);
   read_effects(source, layout);
-  read_sensors(source, layout, model);
-  read_tolerances(source, layout, model);
+  if (const toml::table* sensors = table_of(source, "sensors")) {
+    read_noise(source, *sensors, "sensors.", layout.channels, {}, model.noise);
+  }
+  if (const toml::table* tolerance = table_of(source, "tolerance")) {
+    const std::vector<std::string> declared = declared_keys(layout);
+    model.tolerance = read_tolerances(source, *tolerance, Words(declared.begin(), declared.end()));
+  }
   return model;
 }
 

@@ -42,12 +42,13 @@ void refuse_unused(const TomlSource& source, const toml::table& table, const Key
   }
 }
 
-void read_option(const TomlSource& source, const toml::table& table, const KeyGroup& group, const std::string& prefix) {
-  if (group.options.empty()) {
+void read_option(const TomlSource& source, const toml::table& table, const KeyGroup& group, const std::string& prefix,
+                 Extent extent) {
+  const toml::node* node = table.get(group.option_key);
+  if (group.options.empty() || (node == nullptr && extent == Extent::difference)) {
     return;
   }
   const std::string key = prefix + std::string{group.option_key};
-  const toml::node* node = table.get(group.option_key);
   if (node == nullptr) {
     source.refuse_missing(table, key, fmt::format("missing; allowed: {}", options_using(group, ~0U)));
   }
@@ -103,6 +104,26 @@ void read_curve(const TomlSource& source, const toml::table& table, const std::s
   *curve.points = static_cast<int>(x.size());
 }
 
+void read_tolerances(const TomlSource& source, const toml::table& table, const std::string& prefix, const Words& declared,
+                     std::map<std::string, double>& tolerances) {
+  for (const auto& [own_key, node] : table) {
+    const std::string key = prefix + std::string{own_key.str()};
+    if (const toml::table* nested = node.as_table()) {
+      read_tolerances(source, *nested, key + ".", declared, tolerances);
+      continue;
+    }
+    if (std::find(declared.begin(), declared.end(), key) == declared.end()) {
+      source.refuse_key(own_key, "tolerance of " + key, "no such declared parameter; " + suggestion(key, declared));
+    }
+    const double relative = source.number(node, "tolerance of " + key, "1");
+    if (!(relative > 0.0 && relative <= 1.0)) {
+      source.refuse(node, "tolerance of " + key,
+                    "a relative one-sigma; allowed: above 0, at most 1 (leave it out if exact)");
+    }
+    tolerances[key] = relative;
+  }
+}
+
 Words keys_of(const KeyGroup& group) {
   Words known = names_of(group.numbers);
   for (const CurveKey& curve : group.curves) {
@@ -126,11 +147,11 @@ void refuse_unknown_keys(const TomlSource& source, const toml::table& table, std
 }
 
 std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::table& table, const KeyGroup& group,
-                                         const std::string& prefix, const Words& others) {
+                                         const std::string& prefix, const Words& others, Extent extent) {
   Words known = keys_of(group);
   known.insert(known.end(), others.begin(), others.end());
   refuse_unknown_keys(source, table, prefix, known);
-  read_option(source, table, group, prefix);
+  read_option(source, table, group, prefix, extent);
   std::vector<const NumberKey*> left_out;
   for (const NumberKey& number : group.numbers) {
     refuse_unused(source, table, group, prefix, number.name, number.options);
@@ -143,7 +164,8 @@ std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::t
   for (const CurveKey& curve : group.curves) {
     refuse_unused(source, table, group, prefix, curve.x_name, curve.options);
     refuse_unused(source, table, group, prefix, curve.y_name, curve.options);
-    if (group.uses(curve.options)) {
+    const bool said = table.contains(curve.x_name) || table.contains(curve.y_name);
+    if (group.uses(curve.options) && (said || extent == Extent::whole)) {
       read_curve(source, table, prefix, curve);
     }
   }
@@ -151,6 +173,42 @@ std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::t
     source.refuse_missing(table, prefix.substr(0, prefix.size() - 1), broken);
   }
   return left_out;
+}
+
+void read_noise(const TomlSource& source, const toml::table& table, const std::string& prefix,
+                const std::vector<ModelChannel>& channels, const Words& others, std::map<std::string, double>& noise) {
+  std::vector<std::string> keys;
+  for (const ModelChannel& channel : channels) {
+    keys.push_back(fmt::format("{}_noise", channel.name));
+  }
+  Words known(keys.begin(), keys.end());
+  known.insert(known.end(), others.begin(), others.end());
+  refuse_unknown_keys(source, table, prefix, known);
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (const toml::node* node = table.get(keys[i])) {
+      const double rms = source.number(*node, prefix + keys[i], channels[i].unit);
+      if (!(rms > 0.0)) {
+        source.refuse(*node, prefix + keys[i], "an rms noise; allowed: above 0 (leave it out to have it estimated)");
+      }
+      noise[std::string{channels[i].name}] = rms;
+    }
+  }
+}
+
+std::map<std::string, double> read_tolerances(const TomlSource& source, const toml::table& table, const Words& declared) {
+  std::map<std::string, double> tolerances;
+  read_tolerances(source, table, "", declared, tolerances);
+  return tolerances;
+}
+
+std::vector<std::string> declared_keys(const ModelLayout& layout) {
+  std::vector<std::string> keys;
+  for (const KeyGroup& part : layout.parts) {
+    for (const NumberKey& number : part.numbers) {
+      keys.push_back(fmt::format("{}.{}", part.name, number.name));
+    }
+  }
+  return keys;
 }
 
 void require_schema(const TomlSource& source) {

@@ -45,6 +45,7 @@ struct KeyGroup {
   int* option = nullptr;                              ///< null for a part
   bool* active = nullptr;                             ///< null for a part
   std::string_view site;                              ///< empty for a part
+  bool needs_other_axis = false;                      ///< of an effect that an axis alone has no use for
   std::function<std::string_view()> broken_relation;  ///< what the values break, empty if nothing
 
   /// True if a key with these option bits acts under the chosen option.

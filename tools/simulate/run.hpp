@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "model/scalar.hpp"
 #include "tools/simulate/excitation.hpp"
@@ -11,14 +14,12 @@ namespace hotfire {
 /// A reading beyond this is a simulation that ran away, in any unit.
 inline constexpr double kRunaway = 1e12;
 
-/// Steps a plant through an input, `steps` plant steps a row, and hands every
-/// row's readings to `sink(row, readings)`: row 0 is the state as given.
-/// Returns false at the first reading that is not finite or ran away.
-template <class Plant, class Sink>
-bool run(const Plant& plant, std::span<const double> input, typename Plant::State& state, int steps, Sink&& sink) {
+/// Steps a plant through `rows` rows, `steps` plant steps a row by `advance(row, step)`, and hands every row's readings to
+/// `sink(row, readings)`: row 0 is the state as given. Returns false at the first reading that is not finite or ran away.
+template <class Plant, class Advance, class Sink>
+bool run_rows(std::size_t rows, const typename Plant::State& state, int steps, Advance&& advance, Sink&& sink) {
   using S = typename Plant::Scalar;
-  const Excitation excitation(input, steps, between_rows<Plant>());
-  for (std::size_t row = 0; row < input.size(); ++row) {
+  for (std::size_t row = 0; row < rows; ++row) {
     const auto& readings = Plant::measured(state);
     for (const S& reading : readings) {
       if (!(std::abs(model::value_of(reading)) < kRunaway)) {
@@ -27,10 +28,55 @@ bool run(const Plant& plant, std::span<const double> input, typename Plant::Stat
     }
     sink(row, readings);
     for (int k = 0; k < steps; ++k) {
-      plant.step(state, S(excitation(row, k)));
+      advance(row, k);
     }
   }
   return true;
+}
+
+/// Steps a plant through an input; otherwise as above.
+template <class Plant, class Sink>
+bool run(const Plant& plant, std::span<const double> input, typename Plant::State& state, int steps, Sink&& sink) {
+  using S = typename Plant::Scalar;
+  const Excitation excitation(input, steps, between_rows<Plant>());
+  return run_rows<Plant>(
+      input.size(), state, steps, [&](std::size_t row, int k) { plant.step(state, S(excitation(row, k))); }, sink);
+}
+
+/// Steps the axes of a vehicle through their commands, held between rows, from the steady state under the first; hands every
+/// row's state to `sink(row, state)`. Before every plant step `disturb(row, step, state, inputs)` may change the state and
+/// what else is put in. Returns false at the first reading that is not finite or ran away.
+template <class Plant, class Disturb, class Sink>
+bool run_vehicle(const Plant& plant, const std::array<std::span<const double>, Plant::kAxes>& commands, double start,
+                 int steps, Disturb&& disturb, Sink&& sink) {
+  typename Plant::Inputs inputs;
+  const auto set_commands = [&](std::size_t row) {
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      inputs.commands[i] = commands[i][row];
+    }
+  };
+  set_commands(0);
+  // A state with delays is hundreds of kilobytes: it lives on the heap.
+  const auto state = std::make_unique<typename Plant::State>(plant.steady(inputs.commands));
+  for (auto& axis : state->axes) {
+    axis.clock = start;
+  }
+  return run_rows<Plant>(
+      commands.front().size(), *state, steps,
+      [&](std::size_t row, int step) {
+        set_commands(row);
+        disturb(row, step, *state, inputs);
+        plant.step(*state, inputs);
+      },
+      [&](std::size_t row, const auto&) { sink(row, std::as_const(*state)); });
+}
+
+/// The same with nothing but the commands.
+template <class Plant, class Sink>
+bool run_vehicle(const Plant& plant, const std::array<std::span<const double>, Plant::kAxes>& commands, double start,
+                 int steps, Sink&& sink) {
+  const auto undisturbed = [](std::size_t, int, auto&, auto&) {};
+  return run_vehicle(plant, commands, start, steps, undisturbed, sink);
 }
 
 }  // namespace hotfire

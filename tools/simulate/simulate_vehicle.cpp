@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <optional>
+#include <span>
 
 #include "model/step_size.hpp"
 #include "tools/files/error.hpp"
@@ -109,51 +111,45 @@ Record empty_outputs(const VehicleFile& model, const Record& inputs) {
 }
 
 template <class Plant>
-Record run_vehicle(const typename Plant::Parameters& parameters, const VehicleFile& model, const Record& inputs,
+Record simulate_on(const typename Plant::Parameters& parameters, const VehicleFile& model, const Record& inputs,
                    const VehicleRun& run) {
   const int steps = model::steps_per_period(inputs.period);
   const Plant plant(parameters, inputs.period / steps);
   Record outputs = empty_outputs<Plant>(model, inputs);
   constexpr std::size_t kColumns = Plant::kChannels + 1;
   constexpr std::size_t kStrings = Plant::kAxes * kColumns;
-  typename Plant::Inputs driven;
-  const auto command_at = [&](std::size_t row) {
-    for (std::size_t i = 0; i < Plant::kAxes; ++i) {
-      driven.commands[i] = outputs.channels[i * kColumns].values[row];
-    }
-  };
-  command_at(0);
-  typename Plant::State state = plant.steady(driven.commands);
-  for (auto& axis : state.axes) {
-    axis.clock = inputs.start;
+  std::array<std::span<const double>, Plant::kAxes> held;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    held[i] = outputs.channels[i * kColumns].values;
   }
   const RecordedVibration vibration(inputs, axis_names(Plant::kEngines), parameters, steps);
-  VehicleReadings<Plant> readings(model.sensors, state, run.seed);
-  for (std::size_t row = 0; row < inputs.rows; ++row) {
-    const auto& measured = Plant::measured(state);
-    readings.read(state, inputs.period);
-    for (std::size_t r = 0; r < measured.size(); ++r) {
-      if (!(std::abs(measured[r]) < kRunaway)) {
-        throw FileError(
-            fmt::format("{}: the model runs away at {:.6g} s: its parameters make it "
-                        "unstable for these commands",
-                        inputs.path.string(), inputs.start + static_cast<double>(row) * inputs.period));
-      }
-      const std::size_t axis = r / Plant::kChannels;
-      const std::size_t channel = r % Plant::kChannels;
-      outputs.channels[axis * kColumns + 1 + channel].values[row] = channel == 0 ? readings.pistons()[axis] : measured[r];
-    }
-    for (std::size_t k = 0; k < readings.strings().size(); ++k) {
-      outputs.channels[kStrings + k].values[row] = readings.strings()[k];
-    }
-    command_at(row);
-    for (std::size_t i = 0; i < run.impulses.size(); ++i) {
+  const auto disturb = [&](std::size_t row, int step, auto& state, auto& driven) {
+    for (std::size_t i = 0; step == 0 && i < run.impulses.size(); ++i) {
       state.axes[i].y(Plant::AxisModel::kAngleRate) += run.impulses[i][row] / parameters.axes[i].engine.inertia;
     }
-    for (int k = 0; k < steps; ++k) {
-      vibration.put(row, k, driven.vibration);
-      plant.step(state, driven);
+    vibration.put(row, step, driven.vibration);
+  };
+  std::optional<VehicleReadings<Plant>> readings;
+  std::size_t rows = 0;
+  const bool finite = run_vehicle(plant, held, inputs.start, steps, disturb, [&](std::size_t row, const auto& state) {
+    if (!readings) {
+      readings.emplace(model.sensors, state, run.seed);
     }
+    readings->read(state, inputs.period);
+    const auto& measured = Plant::measured(state);
+    for (std::size_t r = 0; r < measured.size(); ++r) {
+      const std::size_t axis = r / Plant::kChannels;
+      const std::size_t channel = r % Plant::kChannels;
+      outputs.channels[axis * kColumns + 1 + channel].values[row] = channel == 0 ? readings->pistons()[axis] : measured[r];
+    }
+    for (std::size_t k = 0; k < readings->strings().size(); ++k) {
+      outputs.channels[kStrings + k].values[row] = readings->strings()[k];
+    }
+    rows = row + 1;
+  });
+  if (!finite) {
+    throw FileError(fmt::format("{}: the model runs away at {:.6g} s: its parameters make it unstable for these commands",
+                                inputs.path.string(), inputs.start + static_cast<double>(rows) * inputs.period));
   }
   return outputs;
 }
@@ -171,7 +167,7 @@ auto with_plant(const VehicleFile& model, F&& f) {
 
 Record simulate(const VehicleFile& model, const Record& inputs, const VehicleRun& run) {
   return with_plant(model, [&]<class Plant>(const typename Plant::Parameters& parameters) {
-    return run_vehicle<Plant>(parameters, model, inputs, run);
+    return simulate_on<Plant>(parameters, model, inputs, run);
   });
 }
 
@@ -187,10 +183,8 @@ std::size_t axis_index(const VehicleFile& model, const std::string& axis) {
 
 double moment_arm_of(const VehicleFile& model, const std::string& axis) {
   const std::size_t index = axis_index(model, axis);
-  const std::size_t pitch = index - index % 2;
   return with_plant(model, [&]<class Plant>(const typename Plant::Parameters& parameters) {
-    const model::EngineGeometry<double> geometry(parameters.attach[pitch], parameters.attach[pitch + 1]);
-    return geometry.at(0.0, 0.0).arm[index % 2][index % 2];
+    return Plant::geometry_of(parameters, index / 2).at(0.0, 0.0).arm[index % 2][index % 2];
   });
 }
 

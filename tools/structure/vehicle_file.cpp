@@ -17,9 +17,6 @@ namespace {
 constexpr std::string_view kTaos = model::Taos<double>::topology;
 constexpr std::string_view kMasv = model::Masv<double>::topology;
 
-/// One axis of a vehicle as the layout of keys wants it.
-using VehicleAxis = model::Simplex<double, model::VehicleEffects>;
-
 /// The tables that may stand for an axis, from general to particular: pitch, then pitch2.
 std::vector<std::string> tables_of_axis(int axis, int engines) {
   std::vector<std::string> names{axis % 2 == 0 ? "pitch" : "yaw"};
@@ -44,25 +41,30 @@ std::vector<std::string> tables_of_all_axes(int engines) {
 /// Reads the tables of one vehicle file, step by step.
 template <class Plant>
 class Reader {
+  /// One axis of a vehicle as the layout of keys wants it.
+  using Axis = model::Simplex<double, typename Plant::Effects>;
+
  public:
   Reader(const TomlSource& source, std::filesystem::path folder)
       : source_(source), folder_(std::move(folder)), axis_tables_(tables_of_all_axes(Plant::kEngines)) {}
 
-  typename Plant::Parameters read() {
+  void read(VehicleFile& vehicle) {
     refuse_unknown_keys(source_, source_.root(), "",
                         {"schema", "name", "topology", "servovalve", "actuator", "structure", "engine", "effects", "attach",
-                         "gimbal", "modes", "sensors", "strings"});
+                         "gimbal", "modes", "sensors", "strings", "tolerance"});
     for (int axis = 0; axis < Plant::kAxes; ++axis) {
       read_axis(axis);
     }
+    read_tolerance();
     read_attach_points();
     read_gimbals();
     sensors_ = read_vehicle_sensors(source_, Plant::kEngines);
     read_modes();
-    return parameters_;
+    vehicle.parameters = parameters_;
+    vehicle.sensors = sensors_;
+    vehicle.axes = declarations_;
+    vehicle.modes_table = modes_table_;
   }
-
-  const VehicleSensors& sensors() const { return sensors_; }
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -74,52 +76,118 @@ class Reader {
 
   Words axis_words() const { return {axis_tables_.begin(), axis_tables_.end()}; }
 
-  /// Reads a part's own table, then those of its axis within it.
-  void read_part(const KeyGroup& part, int axis) {
-    const toml::table* own = table_at(source_.root(), part.name, std::string{part.name});
-    if (own == nullptr) {
-      return;
-    }
-    const std::string prefix = fmt::format("{}.", part.name);
-    read_group(source_, *own, part, prefix, axis_words());
+  /// Calls `f(table, prefix)` for the tables of an axis within another, from general to particular.
+  template <class F>
+  void for_tables_of_axis(const toml::table& table, const std::string& prefix, int axis, F&& f) const {
     for (const std::string& name : tables_of_axis(axis, Plant::kEngines)) {
-      if (const toml::table* particular = table_at(*own, name, prefix + name)) {
-        read_group(source_, *particular, part, prefix + name + ".");
+      if (const toml::table* particular = table_at(table, name, prefix + name)) {
+        f(*particular, prefix + name + ".");
       }
     }
   }
 
+  /// Reads a part's own table, then those of its axis within it.
+  void read_part(const KeyGroup& part, int axis) {
+    const toml::table* own = table_at(source_.root(), part.name, std::string{part.name});
+    const std::string prefix = fmt::format("{}.", part.name);
+    const toml::table empty;
+    auto left_out = read_group(source_, own != nullptr ? *own : empty, part, prefix, axis_words());
+    if (own != nullptr) {
+      for_tables_of_axis(*own, prefix, axis, [&](const toml::table& table, const std::string& at) {
+        read_group(source_, table, part, at, {}, Extent::difference);
+        std::erase_if(left_out, [&](const NumberKey* number) { return table.contains(number->name); });
+      });
+    }
+    for (const NumberKey* number : left_out) {
+      declarations_[at(axis)].left_out.push_back(prefix + std::string{number->name});
+    }
+  }
+
+  /// Reads an effect's own table, which is that of every axis unless it holds tables of axes only, then those of its axis.
+  void read_effect(const KeyGroup& effect, const toml::table& own, int axis) {
+    const std::string prefix = fmt::format("effects.{}.", effect.name);
+    const auto is_axis = [&](const auto& entry) {
+      return std::find(axis_tables_.begin(), axis_tables_.end(), entry.first.str()) != axis_tables_.end();
+    };
+    const bool of_every_axis = own.empty() || !std::all_of(own.begin(), own.end(), is_axis);
+    if (of_every_axis) {
+      read_group(source_, own, effect, prefix, axis_words());
+      *effect.active = true;
+    }
+    for_tables_of_axis(own, prefix, axis, [&](const toml::table& table, const std::string& at) {
+      read_group(source_, table, effect, at, {}, *effect.active ? Extent::difference : Extent::whole);
+      *effect.active = true;
+    });
+  }
+
   void read_axis(int axis) {
-    const ModelLayout layout = layout_of_plant<VehicleAxis>(parameters_.axes[at(axis)]);
+    const ModelLayout layout = layout_of_plant<Axis>(parameters_.axes[at(axis)]);
     for (const KeyGroup& part : layout.parts) {
       read_part(part, axis);
     }
-    const toml::table* effects = table_at(source_.root(), "effects", "effects");
-    if (effects == nullptr) {
+    if (const toml::table* effects = table_at(source_.root(), "effects", "effects")) {
+      refuse_unknown_keys(source_, *effects, "effects.", names_of(layout.effects));
+      for (const KeyGroup& effect : layout.effects) {
+        if (const toml::table* own = table_at(*effects, effect.name, fmt::format("effects.{}", effect.name))) {
+          read_effect(effect, *own, axis);
+        }
+      }
+    }
+    if (const toml::table* sensors = table_at(source_.root(), "sensors", "sensors")) {
+      auto& noise = declarations_[at(axis)].noise;
+      Words others = axis_words();
+      others.push_back(kPistonSensor);
+      read_noise(source_, *sensors, "sensors.", layout.channels, others, noise);
+      for_tables_of_axis(*sensors, "sensors.", axis, [&](const toml::table& table, const std::string& prefix) {
+        read_noise(source_, table, prefix, layout.channels, {}, noise);
+      });
+    }
+  }
+
+  void read_tolerance() {
+    const toml::table* table = table_at(source_.root(), "tolerance", "tolerance");
+    if (table == nullptr) {
       return;
     }
-    refuse_unknown_keys(source_, *effects, "effects.", names_of(layout.effects));
-    for (const KeyGroup& effect : layout.effects) {
-      const std::string key = fmt::format("effects.{}", effect.name);
-      if (const toml::table* own = table_at(*effects, effect.name, key)) {
-        read_group(source_, *own, effect, key + ".");
-        *effect.active = true;
+    const std::vector<std::string> keys = declared_keys(layout_of_plant<Axis>(parameters_.axes.front()));
+    std::vector<std::string> allowed = keys;
+    const auto of_axis = [](const std::string& key, const std::string& axis) {
+      const auto dot = key.find('.');
+      return key.substr(0, dot + 1) + axis + key.substr(dot);
+    };
+    for (const std::string& key : keys) {
+      for (const std::string& axis : axis_tables_) {
+        allowed.push_back(of_axis(key, axis));
+      }
+    }
+    const auto tolerances = read_tolerances(source_, *table, Words(allowed.begin(), allowed.end()));
+    for (int axis = 0; axis < Plant::kAxes; ++axis) {
+      for (const std::string& key : keys) {
+        std::vector<std::string> said{key};
+        for (const std::string& name : tables_of_axis(axis, Plant::kEngines)) {
+          said.push_back(of_axis(key, name));
+        }
+        for (const std::string& name : said) {
+          if (const auto found = tolerances.find(name); found != tolerances.end()) {
+            declarations_[at(axis)].tolerance[key] = found->second;
+          }
+        }
       }
     }
   }
 
   void read_attach_points() {
     const toml::table* attach = table_at(source_.root(), "attach", "attach");
-    if (attach != nullptr) {
-      refuse_unknown_keys(source_, *attach, "attach.", axis_words());
-      for (int axis = 0; axis < Plant::kAxes; ++axis) {
-        const KeyGroup group = part_group(parameters_.attach[at(axis)]);
-        for (const std::string& name : tables_of_axis(axis, Plant::kEngines)) {
-          if (const toml::table* own = table_at(*attach, name, "attach." + name)) {
-            read_group(source_, *own, group, fmt::format("attach.{}.", name));
-          }
-        }
-      }
+    if (attach == nullptr) {
+      parameters_.constant_arms.fill(true);
+      return;
+    }
+    refuse_unknown_keys(source_, *attach, "attach.", axis_words());
+    for (int axis = 0; axis < Plant::kAxes; ++axis) {
+      const KeyGroup group = part_group(parameters_.attach[at(axis)]);
+      for_tables_of_axis(*attach, "attach.", axis, [&](const toml::table& own, const std::string& prefix) {
+        read_group(source_, own, group, prefix);
+      });
     }
     for (int engine = 0; engine < Plant::kEngines; ++engine) {
       const std::string_view broken =
@@ -127,7 +195,7 @@ class Reader {
       if (!broken.empty()) {
         const std::string key =
             Plant::kEngines == 1 ? std::string("attach") : fmt::format("attach of engine {}", engine + 1);
-        source_.refuse_missing(attach != nullptr ? *attach : source_.root(), key, broken);
+        source_.refuse_missing(*attach, key, broken);
       }
     }
   }
@@ -189,7 +257,8 @@ class Reader {
     if (node == nullptr) {
       source_.refuse_missing(*table, "modes.table", "missing; the file name of a mode table, beside this file");
     }
-    const ModeSet modes = load_modes(folder_ / source_.text(*node, "modes.table"));
+    modes_table_ = folder_ / source_.text(*node, "modes.table");
+    const ModeSet modes = load_modes(modes_table_);
     if (modes.engines != Plant::kEngines) {
       source_.refuse(*node, "modes.table",
                      fmt::format("is for {} engines; allowed: {}, as topology \"{}\" has", modes.engines, Plant::kEngines,
@@ -217,14 +286,9 @@ class Reader {
   std::vector<std::string> axis_tables_;
   typename Plant::Parameters parameters_{};
   VehicleSensors sensors_;
+  std::vector<AxisDeclaration> declarations_{Plant::kAxes};
+  std::filesystem::path modes_table_;
 };
-
-template <class Plant>
-void read_plant(const TomlSource& source, VehicleFile& vehicle) {
-  Reader<Plant> reader(source, vehicle.path.parent_path());
-  vehicle.parameters = reader.read();
-  vehicle.sensors = reader.sensors();
-}
 
 std::string topology_of(const TomlSource& source) {
   const toml::node* node = source.root().get("topology");
@@ -251,14 +315,14 @@ VehicleFile load_vehicle(const std::filesystem::path& path) {
   const TomlSource source(path);
   source.require_schema();
   const std::string topology = topology_of(source);
-  VehicleFile vehicle{path, path.stem().string(), {}, {}};
+  VehicleFile vehicle{path, path.stem().string(), {}, {}, {}, {}};
   if (const toml::node* name = source.root().get("name")) {
     vehicle.name = source.text(*name, "name");
   }
   if (topology == kTaos) {
-    read_plant<model::Taos<double>>(source, vehicle);
+    Reader<model::Taos<double>>(source, path.parent_path()).read(vehicle);
   } else if (topology == kMasv) {
-    read_plant<model::Masv<double>>(source, vehicle);
+    Reader<model::Masv<double>>(source, path.parent_path()).read(vehicle);
   } else {
     source.refuse_missing(source.root(), "topology",
                           fmt::format("\"{}\" is not one of several axes; allowed: \"{}\", \"{}\"", topology, kTaos, kMasv));

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tools/files/key_groups.hpp"
 #include "tools/files/model_group.hpp"
+#include "tools/files/toml_text.hpp"
 
 namespace hotfire {
 
@@ -62,14 +65,42 @@ void read_strings(const TomlSource& source, const toml::table& table, int engine
   }
 }
 
+/// Lines of a part's table.
+template <class Part>
+std::string lines_of(Part part) {
+  std::string lines;
+  append_group(lines, part_group(part));
+  return lines;
+}
+
+std::string strings_text(const VehicleSensors& sensors) {
+  std::string text = fmt::format("\n[{}]\n{}", kStrings, lines_of(sensors.string));
+  append_line(text, fmt::format("placement_error = {}", number_text(sensors.placement_error)), "m",
+              "rms in each direction between an anchor and where it is drawn");
+  for (std::size_t string = 0; string < VehicleSensors::Strings::kStrings; ++string) {
+    std::vector<std::string> ends;
+    for (const VehicleSensors::Strings::Anchors& engine : sensors.strings) {
+      ends.push_back(lines_of(engine[string]));
+    }
+    const std::string table = fmt::format("{}.string{}", kStrings, string + 1);
+    if (std::all_of(ends.begin(), ends.end(), [&](const std::string& lines) { return lines == ends.front(); })) {
+      text += fmt::format("\n[{}]\n{}", table, ends.front());
+      continue;
+    }
+    for (std::size_t engine = 0; engine < ends.size(); ++engine) {
+      text += fmt::format("\n[{}.engine{}]\n{}", table, engine + 1, ends[engine]);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 VehicleSensors read_vehicle_sensors(const TomlSource& source, int engines) {
   VehicleSensors sensors;
   if (const toml::node* node = source.root().get(kSensors)) {
     const toml::table& table = source.table(*node, kSensors);
-    refuse_unknown_keys(source, table, "sensors.", {"piston"});
-    if (const toml::node* piston = table.get("piston")) {
+    if (const toml::node* piston = table.get(kPistonSensor)) {
       read_group(source, source.table(*piston, "sensors.piston"), part_group(sensors.piston), "sensors.piston.");
     }
   }
@@ -77,6 +108,14 @@ VehicleSensors read_vehicle_sensors(const TomlSource& source, int engines) {
     read_strings(source, source.table(*node, kStrings), engines, sensors);
   }
   return sensors;
+}
+
+std::string vehicle_sensors_text(const VehicleSensors& sensors) {
+  std::string text;
+  if (const auto& piston = sensors.piston; piston.lag > 0.0 || piston.noise > 0.0 || piston.step > 0.0) {
+    text += fmt::format("\n[{}.{}]\n{}", kSensors, kPistonSensor, lines_of(piston));
+  }
+  return sensors.strings.empty() ? text : text + strings_text(sensors);
 }
 
 }  // namespace hotfire

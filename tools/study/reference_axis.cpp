@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "tools/study/cvode_integrator.hpp"
 #include "tools/study/reference_equations.hpp"
@@ -10,103 +11,163 @@
 namespace hotfire::study {
 namespace {
 
-StateVector unpacked(const std::vector<ReferenceState>& states, const double* values) {
-  StateVector y{};
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    y[states[i]] = values[i];
+/// The axes that are integrated together, and where the states of each begin among all.
+struct Problems {
+  std::vector<ReferenceProblem> axes;
+  std::vector<std::size_t> first;
+
+  std::size_t size() const { return first.back() + axes.back().states.size(); }
+
+  StateVector unpacked(std::size_t axis, const double* values) const {
+    StateVector y{};
+    for (std::size_t i = 0; i < axes[axis].states.size(); ++i) {
+      y[axes[axis].states[i]] = values[first[axis] + i];
+    }
+    return y;
   }
-  return y;
-}
+};
 
 int right_hand_side(double t, N_Vector state, N_Vector result, void* user) {
-  const ReferenceProblem& problem = *static_cast<const ReferenceProblem*>(user);
-  const StateVector d = derivative(problem, t, unpacked(problem.states, N_VGetArrayPointer(state)));
-  double* values = N_VGetArrayPointer(result);
-  for (std::size_t i = 0; i < problem.states.size(); ++i) {
-    values[i] = d[problem.states[i]];
+  Problems& problems = *static_cast<Problems*>(user);
+  const double* values = N_VGetArrayPointer(state);
+  double* rates = N_VGetArrayPointer(result);
+  if (problems.axes.size() == 2) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const StateVector other = problems.unpacked(1 - axis, values);
+      problems.axes[axis].other_angle = other[kAngle];
+      problems.axes[axis].other_rate = other[kAngleRate];
+    }
+  }
+  for (std::size_t axis = 0; axis < problems.axes.size(); ++axis) {
+    const ReferenceProblem& problem = problems.axes[axis];
+    const StateVector d = derivative(problem, t, problems.unpacked(axis, values));
+    for (std::size_t i = 0; i < problem.states.size(); ++i) {
+      rates[problems.first[axis] + i] = d[problem.states[i]];
+    }
   }
   return 0;
 }
 
-/// The axis' states within CVODE's.
+/// The states of the axes within CVODE's.
 class Integrator {
  public:
-  Integrator(ReferenceProblem& problem, double relative)
-      : problem_(problem), cvode_(right_hand_side, &problem, scales_of(problem.states), relative) {}
+  Integrator(Problems& problems, double relative)
+      : problems_(problems), cvode_(right_hand_side, &problems, scales_of(problems), relative) {}
 
-  StateVector state() { return unpacked(problem_.states, cvode_.state()); }
+  StateVector state(std::size_t axis) { return problems_.unpacked(axis, cvode_.state()); }
 
-  /// Sets one of the states the axis has.
-  void set(ReferenceState state, double value) {
-    const auto at = std::find(problem_.states.begin(), problem_.states.end(), state);
-    cvode_.state()[at - problem_.states.begin()] = value;
+  /// Sets one of the states that an axis has.
+  void set(std::size_t axis, ReferenceState state, double value) {
+    const std::vector<ReferenceState>& states = problems_.axes[axis].states;
+    const auto at = std::find(states.begin(), states.end(), state) - states.begin();
+    cvode_.state()[problems_.first[axis] + static_cast<std::size_t>(at)] = value;
   }
 
-  /// Goes on to `end` with the command of the problem, started afresh.
+  /// Goes on to `end` with the commands of the problems, started afresh.
   void advance(double end) { cvode_.advance(end); }
 
   double time() const { return cvode_.time(); }
   long evaluations() const { return cvode_.evaluations(); }
 
  private:
-  static std::vector<double> scales_of(const std::vector<ReferenceState>& states) {
+  static std::vector<double> scales_of(const Problems& problems) {
     std::vector<double> scales;
-    scales.reserve(states.size());
-    for (const ReferenceState state : states) {
-      scales.push_back(kStateScale[state]);
+    scales.reserve(problems.size());
+    for (const ReferenceProblem& problem : problems.axes) {
+      for (const ReferenceState state : problem.states) {
+        scales.push_back(kStateScale[state]);
+      }
     }
     return scales;
   }
 
-  ReferenceProblem& problem_;
+  Problems& problems_;
   CvodeIntegrator cvode_;
 };
 
-/// Changes the command at the present time. A jump moves the torque motor at once, and with it the play.
-void set_command(ReferenceProblem& problem, Integrator& integrator, double command) {
+/// Changes the command of an axis at the present time. A jump moves the torque motor at once, and with it the play.
+void set_command(Problems& problems, std::size_t which, Integrator& integrator, double command) {
+  ReferenceProblem& problem = problems.axes[which];
   const ReferenceAxis& axis = problem.axis;
   problem.command_start = std::isinf(axis.rate_limit) ? command : command_at(problem, integrator.time());
   problem.start_time = integrator.time();
   if (axis.play > 0.0) {
-    const double moved = integrator.state()[kPlay] + axis.position_gain * axis.arm * (command - problem.command);
-    integrator.set(kPlay, std::clamp(moved, -axis.play, axis.play));
+    const double moved = integrator.state(which)[kPlay] + axis.position_gain * axis.arm * (command - problem.command);
+    integrator.set(which, kPlay, std::clamp(moved, -axis.play, axis.play));
   }
   problem.command = command;
+}
+
+/// A change of an axis's command: the delayed command has its edges after the samples.
+struct Edge {
+  double offset = 0.0;
+  std::size_t axis = 0;
+  double command = 0.0;
+};
+
+/// Any number of axes together, each under its commands.
+std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& axes,
+                                     const std::vector<const std::vector<double>*>& commands, double sample, double settling,
+                                     double tolerance, long* evaluations) {
+  Problems problems;
+  for (const ReferenceAxis* axis : axes) {
+    if (axis->play > 0.0 && !std::isinf(axis->rate_limit)) {
+      throw std::invalid_argument(
+          "the reference axis has no play behind a rate limit: its play follows jumps of the command");
+    }
+    problems.first.push_back(problems.axes.empty() ? 0 : problems.size());
+    problems.axes.push_back({*axis, states_of(*axis)});
+    problems.axes.back().first_row = settling;
+  }
+  Integrator integrator(problems, tolerance);
+  if (settling > 0.0) {
+    integrator.advance(settling);
+  }
+  std::vector<ReferenceRows> rows(axes.size());
+  for (std::ptrdiff_t i = 0; i < std::ssize(*commands.front()); ++i) {
+    const double start = settling + static_cast<double>(i) * sample;
+    std::vector<Edge> edges;
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      const auto earlier = [&](std::ptrdiff_t k) { return k < 0 ? 0.0 : (*commands[axis])[static_cast<std::size_t>(k)]; };
+      // The delayed command has its edges `offset` after the samples, and is `late` samples behind.
+      const double delay = axes[axis]->delay + axes[axis]->unlisted.dead_time * std::abs(earlier(i));
+      const auto late = static_cast<std::ptrdiff_t>(delay / sample);
+      const double offset = delay - static_cast<double>(late) * sample;
+      if (offset > 0.0) {
+        edges.push_back({0.0, axis, earlier(i - late - 1)});
+      }
+      edges.push_back({std::max(0.0, offset), axis, earlier(i - late)});
+    }
+    std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.offset < b.offset; });
+    for (const Edge& edge : edges) {
+      if (edge.offset > 0.0) {
+        integrator.advance(start + edge.offset);
+      }
+      set_command(problems, edge.axis, integrator, edge.command);
+    }
+    integrator.advance(settling + static_cast<double>(i + 1) * sample);
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      rows[axis].push_back(readings(*axes[axis], integrator.state(axis)));
+    }
+  }
+  if (evaluations != nullptr) {
+    *evaluations += integrator.evaluations();
+  }
+  return rows;
 }
 
 }  // namespace
 
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
                                   double settling, double tolerance, long* evaluations) {
-  if (axis.play > 0.0 && !std::isinf(axis.rate_limit)) {
-    throw std::invalid_argument("the reference axis has no play behind a rate limit: its play follows jumps of the command");
-  }
-  ReferenceProblem problem{axis, states_of(axis)};
-  problem.first_row = settling;
-  Integrator integrator(problem, tolerance);
-  if (settling > 0.0) {
-    integrator.advance(settling);
-  }
-  const auto earlier = [&](std::ptrdiff_t i) { return i < 0 ? 0.0 : commands[static_cast<std::size_t>(i)]; };
-  ReferenceRows rows;
-  for (std::ptrdiff_t i = 0; i < std::ssize(commands); ++i) {
-    const double start = settling + static_cast<double>(i) * sample;
-    // The delayed command has its edges `offset` after the samples, and is `late` samples behind.
-    const double delay = axis.delay + axis.unlisted.dead_time * std::abs(earlier(i));
-    const auto late = static_cast<std::ptrdiff_t>(delay / sample);
-    const double offset = delay - static_cast<double>(late) * sample;
-    if (offset > 0.0) {
-      set_command(problem, integrator, earlier(i - late - 1));
-      integrator.advance(start + offset);
-    }
-    set_command(problem, integrator, earlier(i - late));
-    integrator.advance(settling + static_cast<double>(i + 1) * sample);
-    rows.push_back(readings(axis, integrator.state()));
-  }
-  if (evaluations != nullptr) {
-    *evaluations += integrator.evaluations();
-  }
-  return rows;
+  return integrate({&axis}, {&commands}, sample, settling, tolerance, evaluations).front();
+}
+
+std::array<ReferenceRows, 2> integrate_reference_pair(const std::array<ReferenceAxis, 2>& axes,
+                                                      const std::array<std::vector<double>, 2>& commands, double sample,
+                                                      double settling, double tolerance, long* evaluations) {
+  auto rows = integrate({&axes[0], &axes[1]}, {&commands[0], &commands[1]}, sample, settling, tolerance, evaluations);
+  return {std::move(rows[0]), std::move(rows[1])};
 }
 
 }  // namespace hotfire::study

@@ -97,6 +97,8 @@ struct ReferenceAxis {
   double mode_shape = 0.0;
   double duct_cubic = 0.0;
   double torque_offset = 0.0;
+  double cross_stiffness = 0.0;  ///< torque against this axis per angle of the engine about its other axis [N m/rad]
+  double cross_damping = 0.0;    ///< ... per rate [N m s/rad]
 
   /// What a channel reads: x -> x + quadratic x^2 + cubic x^3 + bumps, then a lag.
   struct Bump {
@@ -142,5 +144,12 @@ using ReferenceRows = std::vector<std::array<double, 3>>;
 /// took is added to `evaluations`, without those for CVODE's Jacobian. Throws std::runtime_error if CVODE gives up.
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
                                   double settling, double tolerance = 1e-10, long* evaluations = nullptr);
+
+/// The two axes of one engine together, coupled by `cross_stiffness` and `cross_damping`; otherwise the same. Both have as
+/// many commands.
+std::array<ReferenceRows, 2> integrate_reference_pair(const std::array<ReferenceAxis, 2>& axes,
+                                                      const std::array<std::vector<double>, 2>& commands, double sample,
+                                                      double settling, double tolerance = 1e-10,
+                                                      long* evaluations = nullptr);
 
 }  // namespace hotfire::study

@@ -60,7 +60,9 @@ struct ReferenceProblem {
   double command = 0.0;        ///< what is asked for in this interval [rad]
   double command_start = 0.0;  ///< where a limited command stands at its beginning
   double start_time = 0.0;
-  double first_row = 0.0;  ///< when the record begins
+  double first_row = 0.0;    ///< when the record begins
+  double other_angle = 0.0;  ///< of the engine about its other axis; zero for an axis alone
+  double other_rate = 0.0;
 };
 
 /// The command behind the rate limit.

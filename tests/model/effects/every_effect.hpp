@@ -199,6 +199,8 @@ inline void randomise(Random& random, model::Motion<double>& input) {
   input.velocity = random.either_sign(1e-12, 1e2);
   input.free_velocity = random.either_sign(1e-12, 1e2);
   input.compliance = random.logarithmic(1e-12, 1.0);
+  input.other_angle = random.either_sign(1e-9, 10.0);
+  input.other_rate = random.either_sign(1e-12, 1e2);
 }
 /// The load spring of the reference values (physics.md section 1) at a deflection [m] and an angle [rad].
 inline model::Spring<double> reference_spring(double deflection, double angle, double h) {
@@ -232,7 +234,14 @@ inline void move(double t, model::Compression<double>& input) {
 }
 inline void move(double t, model::Motion<double>& input) {
   const double velocity = 0.7 * std::cos(7.0 * t) + 0.3 * std::cos(20.0 * t);
-  input = {0.1 * std::sin(7.0 * t) + 0.015 * std::sin(20.0 * t), velocity, velocity, 1e-12, input.h, t};
+  input = {0.1 * std::sin(7.0 * t) + 0.015 * std::sin(20.0 * t),
+           velocity,
+           velocity,
+           1e-12,
+           input.h,
+           t,
+           0.1 * std::sin(5.0 * t),
+           0.5 * std::cos(5.0 * t)};
 }
 inline void move(double t, model::Spring<double>& input) {
   input = reference_spring(5e-4 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), input.h);
@@ -262,7 +271,8 @@ model::Compression<S> converted(const model::Compression<double>& in) {
 }
 template <class S>
 model::Motion<S> converted(const model::Motion<double>& in) {
-  return {S(in.position), S(in.velocity), S(in.free_velocity), S(in.compliance), in.h, S(in.time)};
+  return {S(in.position), S(in.velocity), S(in.free_velocity), S(in.compliance),
+          in.h,           S(in.time),     S(in.other_angle),   S(in.other_rate)};
 }
 template <class S>
 model::Spring<S> converted(const model::Spring<double>& in) {
