@@ -15,9 +15,9 @@ namespace hotfire::model {
 /// the other axes and the structure; means over the step.
 template <class S>
 struct Coupling {
-  S motion;  ///< motion of the attach point, and stroke of the geometry beyond R beta [m]
-  S arm;     ///< derivative of the stroke by the axis's own angle [m]
-  S torque;  ///< further torque against the engine [N m]; read by `evaluate_engine` only, like the two below
+  S motion;            ///< motion of the attach point, and stroke of the geometry beyond R beta [m]
+  S arm;               ///< derivative of the stroke by the axis's own angle [m]
+  S torque;            ///< further torque against the engine [N m]; read by `evaluate_engine` only, like the two below
   S other_angle{0.0};  ///< of the engine about its other axis [rad]
   S other_rate{0.0};   ///< its rate [rad/s]
 };
@@ -235,8 +235,7 @@ class Axis {
                        Keep keep) const noexcept {
     const S angle_rate = advance.rate(kAngle, h_);
     const Motion<S> motion{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, mid_step(state)};
-    const S own =
-        sum_over<Site::engine_torque>(parameters_.effects, state.effects, motion_around(around, motion), keep);
+    const S own = sum_over<Site::engine_torque>(parameters_.effects, state.effects, motion_around(around, motion), keep);
     state.inputs(kEngineTorque) =
         torque_around(around, own) - (spring.arm - parameters_.actuator.moment_arm) * state.spring_force;
   }

@@ -72,8 +72,8 @@ class EngineGeometry {
         vehicle_{pitch.vehicle(), yaw.vehicle()},
         length_{norm(pitch.engine() - pitch.vehicle()), norm(yaw.engine() - yaw.vehicle())} {}
 
-  /// Arms [m] that are the same at any angle, as physics.md section 1 has them: stroke = arm angle, and no actuator turns the
-  /// engine about the other axis. Both push along the thrust.
+  /// Arms [m] that are the same at any angle, as physics.md section 1 has them: stroke = arm angle, and no actuator turns
+  /// the engine about the other axis. Both push along the thrust.
   EngineGeometry(const S& pitch_arm, const S& yaw_arm)
       : engine_{Vector3<S>::Zero(), Vector3<S>::Zero()},
         vehicle_{Vector3<S>::Zero(), Vector3<S>::Zero()},

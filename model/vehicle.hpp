@@ -170,9 +170,9 @@ class Vehicle {
   /// Strokes and arms of one engine's actuators.
   static EngineGeometry<S> geometry_of(const Parameters& parameters, std::size_t engine) {
     const std::size_t pitch = 2 * engine;
-    return parameters.constant_arms[engine]
-               ? EngineGeometry<S>(parameters.axes[pitch].actuator.moment_arm, parameters.axes[pitch + 1].actuator.moment_arm)
-               : EngineGeometry<S>(parameters.attach[pitch], parameters.attach[pitch + 1]);
+    return parameters.constant_arms[engine] ? EngineGeometry<S>(parameters.axes[pitch].actuator.moment_arm,
+                                                                parameters.axes[pitch + 1].actuator.moment_arm)
+                                            : EngineGeometry<S>(parameters.attach[pitch], parameters.attach[pitch + 1]);
   }
 
  private:

@@ -6,8 +6,8 @@ namespace hotfire::model {
 
 /// Torque on an axis from the motion of its engine about the other axis: torque = stiffness theta + damping theta', theta
 /// the other angle. Ducts, hoses and the bearing are anchored off the axes, so that turning one way pulls the other way
-/// [physics.md section 4]. Each axis has its own: a passive coupling has the same stiffness on both, a follower force such as
-/// the thrust has not. Against positive motion if positive. An axis alone has no other axis: there it acts on nothing.
+/// [physics.md section 4]. Each axis has its own: a passive coupling has the same stiffness on both, a follower force such
+/// as the thrust has not. Against positive motion if positive. An axis alone has no other axis: there it acts on nothing.
 struct CrossAxis {
   static constexpr std::string_view name = "cross_axis";
   static constexpr Site site = Site::engine_torque;

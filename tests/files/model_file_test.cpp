@@ -60,8 +60,8 @@ void fill_group(KeyGroup& group, int option, RandomNumbers& random) {
   }
 }
 
-/// Every effect that one axis can have is active, every parameter that acts under the chosen options has a number inside its bounds, every declared
-/// parameter a tolerance and every channel a noise.
+/// Every effect that one axis can have is active, every parameter that acts under the chosen options has a number inside its
+/// bounds, every declared parameter a tolerance and every channel a noise.
 void fill(ModelFile& model, int option) {
   RandomNumbers random;
   ModelLayout layout = layout_of(model);

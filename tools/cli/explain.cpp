@@ -12,12 +12,15 @@
 #include <iostream>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <variant>
 
 #include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/whole_file.hpp"
+#include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {
 
@@ -72,7 +75,8 @@ std::string summary(const nlohmann::json& report, const std::filesystem::path& o
                         number(channel["after"]["rms"]), number(channel["noise"]));
   }
   for (const auto& effect : report["effects"]) {
-    text += fmt::format("\n{} at {}{}\n", effect["name"].get<std::string>(), effect["site"].get<std::string>(),
+    text += fmt::format("\n{} at {}{}{}\n", effect["name"].get<std::string>(), effect["site"].get<std::string>(),
+                        effect.contains("axis") ? " of the " + effect["axis"].get<std::string>() + " axis" : "",
                         effect.contains("law") ? ", " + effect["law"].get<std::string>() : "");
     for (const auto& [name, parameter] : effect["parameters"].items()) {
       const auto& interval = parameter["ci95"];
@@ -91,8 +95,31 @@ std::string summary(const nlohmann::json& report, const std::filesystem::path& o
   return text + fmt::format("\n{}: explained.toml, report.json, report.html\n", out.string());
 }
 
+/// What a run leaves behind, of a model of one axis or of two.
+struct Outcome {
+  nlohmann::json report;
+  ReportSeries series;
+  std::string model;
+  std::optional<Record> next_experiment;
+};
+
+using AnyModel = std::variant<ModelFile, VehicleFile>;
+
+AnyModel load_any(const std::filesystem::path& path) {
+  return is_vehicle(path) ? AnyModel(load_vehicle(path)) : AnyModel(load_model(path));
+}
+
+Outcome outcome_of(const AnyModel& model, const std::vector<Record>& records, const explain::ExplainOptions& options) {
+  if (const auto* vehicle = std::get_if<VehicleFile>(&model)) {
+    explain::TaosExplanation found = explain::explain(*vehicle, records, options);
+    return {std::move(found.report), std::move(found.series), vehicle_text(found.model), std::nullopt};
+  }
+  explain::Explanation found = explain::explain(std::get<ModelFile>(model), records, options);
+  return {std::move(found.report), std::move(found.series), model_text(found.model), std::move(found.next_experiment)};
+}
+
 void run_explain(const ExplainArguments& arguments, const std::string& command_line) {
-  const ModelFile model = load_model(arguments.model);
+  const AnyModel model = load_any(arguments.model);
   std::vector<Record> records;
   for (const std::string& path : arguments.records) {
     records.push_back(load_record_or_log(path, arguments.candump));
@@ -115,22 +142,22 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   options.most_effects = arguments.most_effects;
   options.watch.progress = [&](const std::string& what) { progress.say(what); };
   options.watch.interrupted = [] { return interrupted != 0; };
-  explain::Explanation explanation = explain::explain(model, records, options);
-  explanation.report["hotfire"] = HOTFIRE_VERSION;
-  explanation.report["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
-  explanation.report["command_line"] = command_line;
-  explanation.report["seconds"] = progress.seconds();
+  Outcome outcome = outcome_of(model, records, options);
+  outcome.report["hotfire"] = HOTFIRE_VERSION;
+  outcome.report["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
+  outcome.report["command_line"] = command_line;
+  outcome.report["seconds"] = progress.seconds();
 
-  write_whole_file(out / "explained.toml", model_text(explanation.model));
-  if (explanation.next_experiment) {
-    write_record(*explanation.next_experiment, out / explanation.next_experiment->name);
+  write_whole_file(out / "explained.toml", outcome.model);
+  if (outcome.next_experiment) {
+    write_record(*outcome.next_experiment, out / outcome.next_experiment->name);
   } else {
     // One of an earlier run would be taken for this one's.
     std::filesystem::remove(out / "next_experiment.csv");
   }
-  write_whole_file(out / "report.json", explanation.report.dump(1) + "\n");
-  write_whole_file(out / "report.html", report_page(explanation.report, explanation.series));
-  std::cout << (arguments.json ? explanation.report.dump(1) + "\n" : summary(explanation.report, out));
+  write_whole_file(out / "report.json", outcome.report.dump(1) + "\n");
+  write_whole_file(out / "report.html", report_page(outcome.report, outcome.series));
+  std::cout << (arguments.json ? outcome.report.dump(1) + "\n" : summary(outcome.report, out));
   if (interrupted != 0) {
     throw CLI::RuntimeError(130);
   }
@@ -154,6 +181,7 @@ void add_explain(CLI::App& program) {
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(
       "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv ramps.csv\n"
+      "A taos model takes records with channels of its axes: command.pitch, piston.pitch, engine.yaw ...\n"
       "Ctrl-C ends the search and reports what is known so far (exit status 130).");
   command->callback([arguments] {
     std::string line = "hotfire explain --model " + arguments->model + " --out " + arguments->out;

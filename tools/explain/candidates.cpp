@@ -102,6 +102,9 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
     if constexpr (requires { E::is_unlisted; }) {
       return;
     }
+    if (model::needs_other_axis<E>() && !data.has_other_axis()) {
+      return;
+    }
     const int variants = std::max<int>(1, static_cast<int>(E::options.size()));
     for (int option = 0; option < variants; ++option) {
       Candidate candidate{index, option, std::string(E::name), "", std::string(model::site_name(E::site))};

@@ -173,9 +173,27 @@ json structure_curve(const Params& params) {
   return curve("time after a step of 1 N", "s", "motion of the attach point", "m", {drawn});
 }
 
+/// Torque from the other axis over one cycle of a sine of its largest motion.
+template <class E, class Params>
+json other_axis_curve(const Params& params, const Reach& reach) {
+  typename E::template State<double> state{};
+  Drawn drawn{"sine at the largest motion of the other axis", {}, {}};
+  for (int i = 0; i <= kPoints; ++i) {
+    const double phase = 2.0 * std::numbers::pi * i / kPoints;
+    model::Motion<double> motion{0.0, 0.0, 0.0, 1e-30, kStep};
+    motion.other_angle = reach.other_angle * std::sin(phase);
+    motion.other_rate = reach.other_rate * std::cos(phase);
+    drawn.x.push_back(motion.other_angle);
+    drawn.y.push_back(E::step(params, state, motion));
+  }
+  return curve("engine angle about the other axis", "rad", "torque against the motion", "N.m", {drawn});
+}
+
 template <class E, class Params>
 json effect_curve(const SimplexParameters& p, const Params& params, const Reach& reach) {
-  if constexpr (E::site == Site::engine_torque) {
+  if constexpr (model::needs_other_axis<E>()) {
+    return other_axis_curve<E>(params, reach);
+  } else if constexpr (E::site == Site::engine_torque) {
     return motion_curve<E>(params, reach.angle, reach.angle_rate, "engine", "rad", "torque against the motion", "N.m");
   } else if constexpr (E::site == Site::piston) {
     return motion_curve<E>(params, reach.position, reach.position_rate, "piston", "m", "force against the motion", "N");
@@ -223,6 +241,8 @@ Reach reach_of(const Dataset& data, const SimplexParameters& parameters) {
       reach.angle = std::max(reach.angle, largest(e.measured[1]));
       reach.angle_rate = std::max(reach.angle_rate, largest_rate(e.measured[1], e.period));
     }
+    reach.other_angle = std::max(reach.other_angle, largest(e.other.angle));
+    reach.other_rate = std::max(reach.other_rate, largest(e.other.rate));
   }
   // What is not measured follows from the geometry and from the pressure that the duct stiffness asks for.
   const double arm = parameters.actuator.moment_arm;

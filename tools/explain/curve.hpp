@@ -16,6 +16,8 @@ struct Reach {
   double angle_rate = 0.0;
   double deflection = 0.0;  ///< largest |piston - R angle|
   double pressure = 0.0;
+  double other_angle = 0.0;  ///< largest angle of the engine about its other axis [rad]
+  double other_rate = 0.0;
 };
 
 Reach reach_of(const Dataset& data, const SimplexParameters& parameters);

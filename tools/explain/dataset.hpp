@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/explain/other_axis.hpp"
 #include "tools/explain/start_state.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/record.hpp"
@@ -28,6 +29,7 @@ struct Experiment {
   std::vector<Block> excluded;                ///< rows that the user excludes
   StartState start_state;                     ///< of a force-driven mass
   std::size_t first_scored = 0;               ///< rows before it are simulated, not compared: the start is not at rest
+  OtherAxis other;                            ///< of a hydraulic axis that is one of two
 
   std::size_t rows() const { return input.size(); }
   double time_of(std::size_t row) const { return start + static_cast<double>(row) * period; }
@@ -52,6 +54,10 @@ struct Dataset {
   std::vector<double> noise;          ///< rms by channel; 1 where unused
   std::vector<bool> noise_declared;
   std::vector<Experiment> experiments;
+  AxisGeometry geometry;  ///< read where experiments have another axis
+
+  /// True if the axis is one of two.
+  bool has_other_axis() const { return !experiments.empty() && experiments.front().other.is_there(); }
 };
 
 /// Puts records into the model's channels, estimates noise where it is not declared, and holds out every fourth block of

@@ -24,16 +24,46 @@ struct Start {
 };
 
 template <class Plant, class S>
-typename Plant::State initial_state(const Plant& plant, const Experiment& experiment, const Start<S>& start) {
+typename Plant::State initial_state(const Plant& plant, const Dataset& data, const Experiment& experiment,
+                                    const Start<S>& start) {
   typename Plant::State state = [&] {
     if constexpr (Plant::topology == "direct") {
       return plant.moving(start.values[0], start.values[1]);
+    } else if (experiment.other.is_there()) {
+      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
+      const OtherAxis& other = experiment.other;
+      return plant.steady(S(experiment.input.front()),
+                          [&](const S& angle) { return beside(angle, other.angle.front(), 0.0, other.force.front()); });
     } else {
       return plant.steady(S(experiment.input.front()));
     }
   }();
   state.clock = start.values[2];
   return state;
+}
+
+/// Steps a plant through an experiment; an axis that is one of two, beside the motion of the other.
+template <class Plant, class Sink>
+bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& experiment, typename Plant::State& state,
+                    int steps, Sink&& sink) {
+  if constexpr (Plant::topology != "direct") {
+    if (experiment.other.is_there()) {
+      using S = typename Plant::Scalar;
+      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
+      const Excitation angle(experiment.other.angle, steps, Excitation::Between::interpolated);
+      const Excitation rate(experiment.other.rate, steps, Excitation::Between::interpolated);
+      const Excitation force(experiment.other.force, steps, Excitation::Between::interpolated);
+      const auto advance = [&](std::size_t row, int k) {
+        const double other_angle = angle(row, k);
+        const double other_rate = rate(row, k);
+        const double other_force = force(row, k);
+        plant.step(state, S(experiment.input[row]),
+                   [&](const S& own) { return beside(own, other_angle, other_rate, other_force); });
+      };
+      return run_rows<Plant>(experiment.rows(), state, steps, advance, sink);
+    }
+  }
+  return run(plant, experiment.input, state, steps, sink);
 }
 
 /// Constants of a run for every sampling period that occurs.
@@ -207,8 +237,8 @@ bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreePara
     }
     const auto& plant = *plants.at(experiment.period);
     const auto start = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
-    auto state = initial_state(plant, experiment, start);
-    if (!run(plant, experiment.input, state, steps_of(experiment), [&](std::size_t row, const auto& readings) {
+    auto state = initial_state(plant, data_, experiment, start);
+    if (!run_experiment(plant, data_, experiment, state, steps_of(experiment), [&](std::size_t row, const auto& readings) {
           for (std::size_t c = 0; c < readings.size(); ++c) {
             channels[c][row] = readings[c];
           }
@@ -278,14 +308,15 @@ bool Evaluator<Family>::differentiate_by(const Parameters& base, std::span<const
     const auto& plant = *plants[task % chunks.size()].at(experiment.period);
     const auto start = start_of<Dual>(data_, e, free, [&](std::size_t k) { return chunk.value(k); });
     // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
-    auto state = std::make_unique<typename Plant::State>(initial_state(plant, experiment, start));
+    auto state = std::make_unique<typename Plant::State>(initial_state(plant, data_, experiment, start));
     Writer writer(data_, stretches_, e, residual, jacobian);
     bool good = true;
-    const bool ran = run(plant, experiment.input, *state, steps_of(experiment), [&](std::size_t row, const auto& readings) {
+    const auto sink = [&](std::size_t row, const auto& readings) {
       for (std::size_t channel = 0; channel < readings.size(); ++channel) {
         good = writer.write(row, channel, readings[channel], chunk) && good;
       }
-    });
+    };
+    const bool ran = run_experiment(plant, data_, experiment, *state, steps_of(experiment), sink);
     if (!ran || !good) {
       finite = false;
     }

@@ -2,39 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "tools/explain/conclusion.hpp"
 #include "tools/explain/report_json.hpp"
 #include "tools/explain/search.hpp"
 
 namespace hotfire::explain {
 
 namespace {
-
-template <class Family>
-ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, const SearchResult<Family>& found) {
-  ReportSeries series;
-  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    const Experiment& experiment = data.experiments[e];
-    ReportRecord record;
-    record.name = experiment.name;
-    record.start = experiment.start;
-    record.period = experiment.period;
-    for (const Block& block : experiment.held_out) {
-      record.held_out.emplace_back(experiment.time_of(block.first), experiment.time_of(block.last));
-    }
-    record.input_name = Family::template Plant<double>::input_channel;
-    record.input_unit = records[e].find(record.input_name)->unit;
-    record.input = experiment.input;
-    for (std::size_t c = 0; c < data.channels.size(); ++c) {
-      if (!experiment.measured[c].empty()) {
-        record.channels.push_back({data.channels[c], records[e].find(data.channels[c])->unit, experiment.measured[c],
-                                   found.declared.prediction[e][c], found.calibrated.prediction[e][c],
-                                   found.explained.prediction[e][c]});
-      }
-    }
-    series.records.push_back(std::move(record));
-  }
-  return series;
-}
 
 /// Says which test would tell two effects apart, and leaves its command in the explanation.
 template <class Family>
@@ -61,25 +35,13 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
   explanation.report["residual"]["next_experiment"] = text + ".";
 }
 
-/// The explained model fitted once more, to the rows that were held out as well: what the rig runs has seen all that there
-/// is. The errors of `found` stay those of the fit that had not seen them.
-template <class Family>
-void fit_to_all_rows(Dataset data, const ExplainOptions& options, SearchResult<Family>& found) {
-  options.watch.progress("fitting what was found to all rows");
-  fit_every_row(data);
-  const Evaluator<Family> whole(data, Resolution::fine);
-  const Assessed<Family> again = refined(whole, whole, options.threads, found.explained.model, kAllRows);
-  if (again.good()) {
-    found.explained.model = again.model;
-  }
-}
-
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
   SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
   if (!found.interrupted) {
-    fit_to_all_rows(data, options, found);
+    options.watch.progress("fitting what was found to all rows");
+    fit_to_all_rows(data, options.threads, found);
   }
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
   if (found.rival) {

@@ -9,6 +9,7 @@
 #include "tools/files/model_file.hpp"
 #include "tools/files/record.hpp"
 #include "tools/report/report_page.hpp"
+#include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire::explain {
 
@@ -31,5 +32,19 @@ struct ExplainOptions {
 /// Closes the loop: calibrates the declared model within its tolerances, traces what is left, adds the effects that the data
 /// support, and judges all of it on data that no fit has seen. Throws FileError if a record does not suit the model.
 Explanation explain(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options);
+
+/// What the finder hands out for a model of one engine with two axes.
+struct TaosExplanation {
+  nlohmann::json report;
+  ReportSeries series;
+  VehicleFile model;
+};
+
+/// The same for a `taos` model and records with channels of its axes, `command.pitch`, `piston.yaw`. Each axis is explained
+/// beside the measured motion of the other, which enters where the two are coupled: the geometry of the attach points and
+/// `cross_axis`. What is reported is what the model of both axes together leaves. An axis of which nothing is measured is
+/// simulated and not explained. Throws FileError for what cannot be explained: topology "masv", a bearing with friction,
+/// vibration or compliance, modes.
+TaosExplanation explain(const VehicleFile& model, const std::vector<Record>& records, const ExplainOptions& options);
 
 }  // namespace hotfire::explain

@@ -7,44 +7,12 @@
 #include <numbers>
 #include <random>
 
+#include "tools/explain/smoothing.hpp"
 #include "tools/explain/statistics.hpp"
 
 namespace hotfire::explain {
 
 namespace {
-
-using Series = std::vector<double>;
-
-/// Zero-phase Gaussian low-pass with its half-power point at `frequency`; ends are continued by their last value.
-Series smoothed(const Series& x, double period, double frequency) {
-  const double spread = std::sqrt(std::numbers::ln2) / (2.0 * std::numbers::pi * frequency * period);
-  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(4.0 * spread));
-  Series kernel;
-  double sum = 0.0;
-  for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
-    kernel.push_back(std::exp(-0.5 * static_cast<double>(k * k) / (spread * spread)));
-    sum += kernel.back();
-  }
-  const auto last = static_cast<std::ptrdiff_t>(x.size()) - 1;
-  Series result(x.size(), 0.0);
-  for (std::ptrdiff_t i = 0; i <= last; ++i) {
-    double value = 0.0;
-    for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
-      value += kernel[static_cast<std::size_t>(k + reach)] *
-               x[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i + k, 0, last))];
-    }
-    result[static_cast<std::size_t>(i)] = value / sum;
-  }
-  return result;
-}
-
-Series rate_of(const Series& x, double period) {
-  Series rate(x.size(), 0.0);
-  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
-    rate[i] = (x[i + 1] - x[i - 1]) / (2.0 * period);
-  }
-  return rate;
-}
 
 template <class F>
 Series by_row(std::size_t rows, F&& f) {
@@ -54,8 +22,6 @@ Series by_row(std::size_t rows, F&& f) {
   }
   return values;
 }
-
-double smoothing_frequency(double period) { return std::min(12.0, 1.0 / (40.0 * period)); }
 
 /// What one equation leaves over in one experiment, with the quantities it may depend on.
 struct LeftOver {
@@ -108,9 +74,11 @@ std::vector<LeftOver> left_over(const Experiment& experiment, const SimplexParam
     return p.servovalve.rated_flow * opening[i] * std::sqrt(drop) - p.actuator.piston_area * x_rate[i] -
            p.actuator.leakage * pressure[i] - p.actuator.trapped_volume / (4.0 * p.actuator.bulk_modulus) * pressure_rate[i];
   });
-  return {{"engine",
-           {"torque against the motion", "N.m", torque},
-           {{"engine rate", "rad/s", beta_rate}, {"engine angle", "rad", beta}, {"load", "N", load}}},
+  std::vector<Quantity> around{{"engine rate", "rad/s", beta_rate}, {"engine angle", "rad", beta}, {"load", "N", load}};
+  if (experiment.other.is_there()) {
+    around.push_back({"engine angle about the other axis", "rad", experiment.other.angle});
+  }
+  return {{"engine", {"torque against the motion", "N.m", torque}, around},
           {"flow",
            {"missing flow", "m^3/s", flow},
            {{"spool position", "1", opening},

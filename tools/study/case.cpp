@@ -6,16 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/study/profiles.hpp"
+#include "tools/study/case_parts.hpp"
 
 namespace hotfire::study {
 namespace {
-
-/// A thousandth of the sensor noise is far above it.
-constexpr double kIntegratorTolerance = 1e-8;
-/// Long against the slowest mode of the loop, 1/17 s, and the washout's 1/6.3 s.
-constexpr double kSettling = 10.0;
-constexpr int kDraws = 12;
 
 /// A declared parameter whose value is known within a tolerance.
 struct Scattered {
@@ -55,11 +49,22 @@ constexpr std::array kExact{
     Exact{"actuator", "moment_arm", &ReferenceAxis::arm},
 };
 
+}  // namespace
+
 bool measures_load_pressure(const CaseOrder& order) { return order.seed % 3 == 0; }
 
+ReferenceAxis scattered_axis(const CaseOrder& order, std::uint64_t part) {
+  ReferenceAxis axis;
+  Random scatter(order.name, order.seed, part);
+  for (const Scattered& entry : kScattered) {
+    axis.*entry.member *= 1.0 + order.scatter_factor * entry.tolerance * scatter.normal_within(1.0);
+  }
+  return axis;
+}
+
 std::string model_toml(const ReferenceAxis& axis, const CaseOrder& order, const std::string& effects) {
-  std::string text =
-      "schema = 1\nname = \"single-axis TVC actuator, as its engineer declares it\"\ntopology = \"simplex\"\n";
+  std::string text = fmt::format("schema = 1\nname = \"{} TVC actuator, as its engineer declares it\"\ntopology = \"{}\"\n",
+                                 order.two_axes ? "two-axis" : "single-axis", order.two_axes ? "taos" : "simplex");
   for (const char* section : {"servovalve", "actuator", "structure", "engine"}) {
     text += fmt::format("\n[{}]\n", section);
     const auto add = [&](const auto& entries) {
@@ -83,12 +88,30 @@ std::string model_toml(const ReferenceAxis& axis, const CaseOrder& order, const 
   return text;
 }
 
+std::vector<double> one_row_later(std::vector<double> commands) {
+  std::rotate(commands.rbegin(), commands.rbegin() + 1, commands.rend());
+  commands.front() = 0.0;
+  return commands;
+}
+
+double noisy(double value, const SensorGrade& grade, double factor, Random& random) {
+  const double read = value + grade.noise * factor * random.normal();
+  return grade.quantum > 0.0 ? grade.quantum * std::round(read / grade.quantum) : read;
+}
+
+double rms_of_difference(const ReferenceRows& a, const ReferenceRows& b, std::size_t channel) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += (a[i][channel] - b[i][channel]) * (a[i][channel] - b[i][channel]);
+  }
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+namespace {
+
 /// An axis under a profile: rows read at the times of the commands, the first in equilibrium.
 ReferenceRows run(const ReferenceAxis& axis, const Profile& profile) {
-  std::vector<double> earlier(profile.commands);
-  std::rotate(earlier.rbegin(), earlier.rbegin() + 1, earlier.rend());
-  earlier.front() = 0.0;
-  return integrate_reference(axis, earlier, kSample, kSettling, kIntegratorTolerance);
+  return integrate_reference(axis, one_row_later(profile.commands), kSample, kSettling, kIntegratorTolerance);
 }
 
 Record record_of(const Profile& profile, const ReferenceRows& rows, std::size_t channels) {
@@ -109,12 +132,8 @@ Record record_of(const Profile& profile, const ReferenceRows& rows, std::size_t 
 
 void add_noise(Record& record, double factor, Random& random) {
   for (std::size_t c = 0; c + 1 < record.channels.size(); ++c) {
-    const SensorGrade& grade = kSensorGrades[c];
     for (double& value : record.channels[c + 1].values) {
-      value += grade.noise * factor * random.normal();
-      if (grade.quantum > 0.0) {
-        value = grade.quantum * std::round(value / grade.quantum);
-      }
+      value = noisy(value, kSensorGrades[c], factor, random);
     }
   }
 }
@@ -123,12 +142,7 @@ void add_noise(Record& record, double factor, Random& random) {
 std::map<std::string, double> difference(const ReferenceRows& a, const ReferenceRows& b, double noise_factor) {
   std::map<std::string, double> sizes;
   for (std::size_t c = 0; c < 2; ++c) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      sum += (a[i][c] - b[i][c]) * (a[i][c] - b[i][c]);
-    }
-    sizes[kSensorGrades[c].channel] =
-        std::sqrt(sum / static_cast<double>(a.size())) / (kSensorGrades[c].noise * noise_factor);
+    sizes[kSensorGrades[c].channel] = rms_of_difference(a, b, c) / (kSensorGrades[c].noise * noise_factor);
   }
   return sizes;
 }
@@ -181,12 +195,11 @@ void add_effect(const StudiedEffect& effect, const CaseOrder& order, const Refer
 }  // namespace
 
 StudyCase make_case(const CaseOrder& order) {
-  StudyCase made{order, {}, {}, {}, {}, {}, {}};
-  ReferenceAxis plain;
-  Random scatter(order.name, order.seed, 1);
-  for (const Scattered& entry : kScattered) {
-    plain.*entry.member *= 1.0 + order.scatter_factor * entry.tolerance * scatter.normal_within(1.0);
+  if (order.two_axes) {
+    return make_two_axis_case(order);
   }
+  StudyCase made{order, {}, {}, {}, {}, {}, {}, {}};
+  const ReferenceAxis plain = scattered_axis(order, 1);
   made.plan.axis = made.plan.without = plain;
 
   const Profile unseen = unseen_profile(Random(order.name, order.seed, 2));

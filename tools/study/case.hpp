@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,17 +18,20 @@ struct CaseOrder {
   std::uint64_t seed = 1;
   double noise_factor = 1.0;    ///< on the sensors' noise, true and declared alike
   double scatter_factor = 1.0;  ///< on the tolerances within which the true parameters are scattered
+  bool two_axes = false;        ///< an engine with two; effects then end with their axis, "cross_axis.pitch"
 };
 
 /// A case as it is made: what the finder is given, and what is kept from it.
 struct StudyCase {
   CaseOrder order;
-  Plan plan;
-  std::string declared;       ///< declared.toml
-  std::string truth;          ///< the same with the true values and effects; empty if the model has no keys for them
-  std::vector<Record> given;  ///< with sensor noise and quantisation
-  Record unseen;              ///< noise-free, for scoring
+  Plan plan;                         ///< of the axis, or of pitch; `values` and `law` are those of both
+  std::optional<ReferenceAxis> yaw;  ///< the other axis, if there are two
+  std::string declared;              ///< declared.toml
+  std::string truth;                 ///< the same with the true values and effects; empty if the model has no keys for them
+  std::vector<Record> given;         ///< with sensor noise and quantisation
+  Record unseen;                     ///< noise-free, for scoring
   std::map<std::string, double> effect_size;  ///< rms that the effects alone make on `unseen`, in sensor noise, by channel
+                                              ///< ("piston", or "piston.pitch" of two axes)
 };
 
 /// Sensor noise (rms) and quantum of a channel, at a noise factor of one.
@@ -46,8 +50,8 @@ inline constexpr double kSmallestEffect = 5.0;
 inline constexpr double kLargestEffect = 150.0;
 
 /// Makes a case. The same order gives the same bits. Three records are given and one is kept, each from equilibrium; every
-/// third case, by its seed, measures the load pressure as well. Throws std::runtime_error if no magnitude of an effect shows
-/// as above in twelve draws.
+/// third case, by its seed, measures the load pressure as well. The axes of an engine with two are scattered and driven each
+/// in its own way, at the same time. Throws std::runtime_error if no magnitude of an effect shows as above in twelve draws.
 StudyCase make_case(const CaseOrder& order);
 
 /// Writes a case as FOLDER/given/{declared.toml,sweep.csv,steps.csv,ramps.csv} and

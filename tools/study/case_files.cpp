@@ -11,14 +11,26 @@ namespace {
 nlohmann::json wanted_words(const CaseOrder& order) {
   nlohmann::json words = nlohmann::json::array();
   for (const std::string& name : order.effects) {
-    const StudiedEffect& effect = studied_effect(name);
-    words.push_back(is_listed(effect) ? name : "unlisted@" + std::string(effect.site));
+    words.push_back(
+        order.two_axes || is_listed(studied_effect(name)) ? name : "unlisted@" + std::string(studied_effect(name).site));
   }
   return words;
 }
 
+nlohmann::json parameters_of(const ReferenceAxis& axis) {
+  return {{"valve_natural_frequency", axis.valve_frequency},
+          {"position_gain", axis.position_gain},
+          {"pressure_feedback_gain", axis.pressure_gain},
+          {"bulk_modulus", axis.bulk_modulus},
+          {"leakage", axis.leakage},
+          {"piston_damping", axis.piston_damping},
+          {"structure_stiffness", axis.load_stiffness},
+          {"inertia", axis.inertia},
+          {"viscous_damping", axis.damping},
+          {"duct_stiffness", axis.duct_stiffness}};
+}
+
 nlohmann::json truth_of(const StudyCase& made) {
-  const ReferenceAxis& axis = made.plan.axis;
   nlohmann::json truth{{"case", made.order.name},
                        {"seed", made.order.seed},
                        {"effects", wanted_words(made.order)},
@@ -30,20 +42,14 @@ nlohmann::json truth_of(const StudyCase& made) {
                        {"scatter_factor", made.order.scatter_factor}};
   truth["may_name"] = nlohmann::json::array();
   for (const std::string& name : made.order.effects) {
-    if (!studied_effect(name).contains.empty()) {
+    if (!made.order.two_axes && !studied_effect(name).contains.empty()) {
       truth["may_name"].push_back(studied_effect(name).contains);
     }
   }
-  truth["parameters"] = {{"valve_natural_frequency", axis.valve_frequency},
-                         {"position_gain", axis.position_gain},
-                         {"pressure_feedback_gain", axis.pressure_gain},
-                         {"bulk_modulus", axis.bulk_modulus},
-                         {"leakage", axis.leakage},
-                         {"piston_damping", axis.piston_damping},
-                         {"structure_stiffness", axis.load_stiffness},
-                         {"inertia", axis.inertia},
-                         {"viscous_damping", axis.damping},
-                         {"duct_stiffness", axis.duct_stiffness}};
+  truth["parameters"] = parameters_of(made.plan.axis);
+  if (made.yaw) {
+    truth["parameters_of_yaw"] = parameters_of(*made.yaw);
+  }
   return truth;
 }
 

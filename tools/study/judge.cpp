@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -11,15 +12,22 @@
 #include "tools/explain/stopwatch.hpp"
 #include "tools/files/error.hpp"
 #include "tools/simulate/simulate.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
 
 namespace hotfire::study {
 
 using Errors = std::map<std::string, double>;
 
-Errors errors_of(const ModelFile& model, const Record& truth, const std::map<std::string, double>& noise) {
+namespace {
+
+constexpr std::array kScored{"piston", "engine", "piston.pitch", "engine.pitch", "piston.yaw", "engine.yaw"};
+
+/// As `errors_of`, for a model of one axis or several.
+template <class Model>
+Errors scored_errors(const Model& model, const Record& truth, const std::map<std::string, double>& noise) {
   const Record modelled = simulate(model, truth);
   Errors errors;
-  for (const char* name : {"piston", "engine"}) {
+  for (const char* name : kScored) {
     const Channel* wanted = truth.find(name);
     if (wanted == nullptr) {
       continue;
@@ -32,6 +40,12 @@ Errors errors_of(const ModelFile& model, const Record& truth, const std::map<std
     errors[name] = std::sqrt(sum / static_cast<double>(got.size())) / noise.at(name);
   }
   return errors;
+}
+
+}  // namespace
+
+Errors errors_of(const ModelFile& model, const Record& truth, const std::map<std::string, double>& noise) {
+  return scored_errors(model, truth, noise);
 }
 
 std::vector<Record> given_records(const std::filesystem::path& folder) {
@@ -86,8 +100,13 @@ std::string joined(std::vector<std::string> words) {
 
 std::string pair_of(const Errors& errors) {
   std::vector<std::string> numbers;
-  for (const char* channel : {"piston", "engine"}) {
-    numbers.push_back(errors.contains(channel) ? fmt::format("{:.2f}", errors.at(channel)) : "-");
+  for (const char* channel : kScored) {
+    if (errors.contains(channel)) {
+      numbers.push_back(fmt::format("{:.2f}", errors.at(channel)));
+    }
+  }
+  if (numbers.empty()) {
+    return "-/-";
   }
   return fmt::format("{}", fmt::join(numbers, "/"));
 }
@@ -100,6 +119,46 @@ std::string ruling(const Judgement& judgement) {
   return fmt::format("{} {}", judgement.names_right ? "right" : "WRONG", judgement.below_noise ? "below" : "ABOVE");
 }
 
+std::map<std::string, double> noise_of(const ModelFile& model) { return model.noise; }
+
+std::map<std::string, double> noise_of(const VehicleFile& model) {
+  std::map<std::string, double> noise;
+  const std::vector<std::string> names = axis_names(static_cast<int>(model.axes.size()) / 2);
+  for (std::size_t axis = 0; axis < names.size(); ++axis) {
+    for (const auto& [channel, rms] : model.axes[axis].noise) {
+      noise[channel + "." + names[axis]] = rms;
+    }
+  }
+  return noise;
+}
+
+/// Runs the finder on a case and compares with the unseen record.
+template <class Model>
+void explain_case(const Model& declared, const std::vector<Record>& records, const Record& unseen, unsigned threads,
+                  Judgement& judgement) {
+  judgement.before = scored_errors(declared, unseen, noise_of(declared));
+  const explain::Stopwatch stopwatch;
+  try {
+    explain::ExplainOptions options;
+    options.threads = threads;
+    options.most_effects = 4;
+    const auto explanation = explain::explain(declared, records, options);
+    judgement.verdict = explanation.report.at("verdict");
+    for (const auto& effect : explanation.report.at("effects")) {
+      const std::string name = effect.at("name");
+      const std::string axis = effect.contains("axis") ? "." + effect.at("axis").template get<std::string>() : "";
+      judgement.found_sites.push_back(effect.at("site"));
+      judgement.found.push_back((name == "unlisted" ? name + "@" + judgement.found_sites.back() : name) + axis);
+      judgement.found_laws.push_back(effect.value("law", ""));
+    }
+    judgement.after = scored_errors(explanation.model, unseen, noise_of(declared));
+  } catch (const std::exception& error) {
+    judgement.failure = error.what();
+  }
+  judgement.seconds = stopwatch.seconds();
+  judgement.processor_seconds = stopwatch.processor_seconds();
+}
+
 }  // namespace
 
 Judgement judge(const std::filesystem::path& folder, unsigned threads) {
@@ -109,40 +168,24 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
   judgement.wanted = truth.at("effects").get<std::vector<std::string>>();
   judgement.wanted_law = truth.value("law", "");
   judgement.effect = truth.at("effect_size").get<Errors>();
-  const ModelFile declared = load_model(folder / "given/declared.toml");
   const std::vector<Record> records = given_records(folder / "given");
   const Record unseen = load_record(folder / "kept/score_noisefree.csv");
-  judgement.before = errors_of(declared, unseen, declared.noise);
-
+  const std::filesystem::path declared = folder / "given/declared.toml";
   if (const auto path = folder / "kept/true.toml"; std::filesystem::exists(path)) {
     // An effect of physics.md that the model does not have yet is refused.
     try {
-      judgement.truth = errors_of(load_model(path), unseen, declared.noise);
+      const ModelFile model = load_model(path);
+      judgement.truth = errors_of(model, unseen, model.noise);
     } catch (const FileError&) {
       judgement.truth.clear();
     }
   }
 
-  const explain::Stopwatch stopwatch;
-  try {
-    explain::ExplainOptions options;
-    options.threads = threads;
-    options.most_effects = 4;
-    const explain::Explanation explanation = explain::explain(declared, records, options);
-    judgement.verdict = explanation.report.at("verdict");
-    for (const auto& effect : explanation.report.at("effects")) {
-      const std::string name = effect.at("name");
-      judgement.found_sites.push_back(effect.at("site"));
-      judgement.found.push_back(name == "unlisted" ? name + "@" + judgement.found_sites.back() : name);
-      judgement.found_laws.push_back(effect.value("law", ""));
-    }
-    judgement.after = errors_of(explanation.model, unseen, declared.noise);
-  } catch (const std::exception& error) {
-    judgement.failure = error.what();
+  if (is_vehicle(declared)) {
+    explain_case(load_vehicle(declared), records, unseen, threads, judgement);
+  } else {
+    explain_case(load_model(declared), records, unseen, threads, judgement);
   }
-  judgement.seconds = stopwatch.seconds();
-  judgement.processor_seconds = stopwatch.processor_seconds();
-
   judgement.below_noise = !judgement.after.empty() && std::all_of(judgement.after.begin(), judgement.after.end(),
                                                                   [](const auto& error) { return error.second < 1.0; });
   if (judgement.is_unlisted()) {

@@ -15,7 +15,7 @@ namespace hotfire::study {
 /// What the finder made of one case.
 struct Judgement {
   std::string name;
-  std::vector<std::string> wanted;      ///< names, or "unlisted@SITE|SITE"
+  std::vector<std::string> wanted;      ///< names, or "unlisted@SITE|SITE"; of two axes "cross_axis.pitch"
   std::string wanted_law;               ///< the law of what is missing, if it has laws; one of the model's or not
   std::vector<std::string> found;       ///< names, those without a name as "unlisted@SITE"
   std::vector<std::string> found_laws;  ///< in the order of `found`; "" for an effect without laws

@@ -190,11 +190,13 @@ int run(int argc, char** argv) {
   Options pairs;
   Options unlisted;
   Options null;
+  Options two_axes;
   Options folders;
   add_study(program, "effects", "Every listed effect, alone", 3, effects);
   add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
   add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
   add_study(program, "null", "Records in which nothing is missing", 40, null);
+  add_study(program, "two-axes", "Engines with two axes that lack something on one of them, or nothing", 1, two_axes);
   FitArguments candidate;
   add_fit(program, candidate);
   CLI::App* judging = program.add_subcommand("judge", "Explain cases that are there");
@@ -212,6 +214,8 @@ int run(int argc, char** argv) {
     status = study(pair_orders(pairs.selection), pairs);
   } else if (program.got_subcommand("unlisted")) {
     status = study(unlisted_orders(unlisted.selection), unlisted);
+  } else if (program.got_subcommand("two-axes")) {
+    status = study(two_axis_orders(two_axes.selection), two_axes);
   } else if (program.got_subcommand("null")) {
     status = study(null_orders(null.selection), null);
   } else if (program.got_subcommand("fit")) {

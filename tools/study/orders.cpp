@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "tools/files/error.hpp"
 
@@ -58,6 +59,34 @@ std::vector<CaseOrder> pair_orders(const Selection& selection) {
     kinds.push_back({std::string(first), std::string(second)});
   }
   return orders_of(kinds, selection);
+}
+
+std::vector<CaseOrder> two_axis_orders(const Selection& selection) {
+  // One other effect a seed, on one axis; the list comes round.
+  constexpr std::array kOthers{"gimbal_friction", "soft_stiffness", "valve_deadband",
+                               "piston_friction", "backlash",       "command_delay"};
+  std::vector<CaseOrder> orders;
+  for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {
+    const std::string other = fmt::format("{}.{}", kOthers[(seed - 1) % kOthers.size()], seed % 2 == 0 ? "pitch" : "yaw");
+    Selection one = selection;
+    one.first_seed = seed;
+    one.seeds = 1;
+    one.only.clear();
+    for (CaseOrder order : orders_of({{"cross_axis.pitch"}, {"cross_axis.yaw"}, {other}, {}}, one)) {
+      const std::string name = order.effects.empty() ? "null" : name_of(order.effects);
+      if (!selection.only.empty() && std::find(selection.only.begin(), selection.only.end(), name) == selection.only.end()) {
+        continue;
+      }
+      order.name = fmt::format("two-axes-{}-{}", name, seed);
+      order.two_axes = true;
+      orders.push_back(std::move(order));
+    }
+  }
+  if (orders.empty()) {
+    throw UsageError(
+        "--only: this study has no such case; it has cross_axis.pitch, cross_axis.yaw, null and, by seed, another effect");
+  }
+  return orders;
 }
 
 std::vector<CaseOrder> null_orders(const Selection& selection) {

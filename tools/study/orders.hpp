@@ -22,6 +22,10 @@ std::vector<CaseOrder> effect_orders(const Selection& selection);
 std::vector<CaseOrder> pair_orders(const Selection& selection);
 std::vector<CaseOrder> unlisted_orders(const Selection& selection);
 
+/// Engines with two axes, four cases a seed: `cross_axis` on pitch, on yaw, one other effect on one axis, and nothing
+/// missing. They are named "two-axes-cross_axis.pitch-1".
+std::vector<CaseOrder> two_axis_orders(const Selection& selection);
+
 /// Null records: noise of half to five times the usual, true parameters scattered within half to twice the tolerances.
 std::vector<CaseOrder> null_orders(const Selection& selection);
 

@@ -7,23 +7,30 @@ const timesNoise = (channels, stage) => Object.entries(channels)
 
 const countOf = (number, singular, plural = `${singular}s`) => `${number} ${number === 1 ? singular : plural}`;
 
-/** The rounds of the search in their order, each with its rows. */
+/** The rounds of the search in their order, axis by axis, each with its rows. */
 function roundsOf(rows) {
   const rounds = new Map();
-  for (const row of rows) rounds.set(row.round, [...(rounds.get(row.round) ?? []), row]);
-  return [...rounds].sort(([first], [second]) => first - second);
+  for (const row of rows) {
+    const key = `${row.axis ?? ""} ${row.round}`;
+    rounds.set(key, [...(rounds.get(key) ?? []), row]);
+  }
+  const axes = [...new Set(rows.map((row) => row.axis))];
+  const place = ([row]) => axes.indexOf(row.axis);
+  return [...rounds.values()].sort((first, second) => place(first) - place(second) || first[0].round - second[0].round);
 }
 
 const isFittedJointly = (row) => Number.isFinite(row.held_out_rms_ratio);
 
-function roundText([round, rows]) {
+function roundText(rows) {
+  const [{ round, axis }] = rows;
   const tried = rows.filter((row) => row.decision !== "taken out");
   const effectsTried = new Set(tried.map((row) => row.candidate)).size;
   const joint = tried.filter(isFittedJointly).length;
   const told = (row) => `${withLaw(row)}${row.reason ? ` (${row.reason})` : ""}`;
   const named = (decision) => rows.filter((row) => row.decision === decision).map(told).join("; ");
   const kept = named("kept");
-  return [`Round ${round}: ${countOf(tried.length, "candidate")} of ${countOf(effectsTried, "effect")} screened, ` +
+  const name = `Round ${round}${isFilled(axis) ? ` of the ${axis} axis` : ""}`;
+  return [`${name}: ${countOf(tried.length, "candidate")} of ${countOf(effectsTried, "effect")} screened, ` +
     `${joint || "none"} of them fitted together with everything else.`,
     kept ? `Kept: ${kept}.` : "None was kept.", named("tied") && `Not told apart from it: ${named("tied")}.`,
     named("taken out") && `Taken out again: ${named("taken out")}.`].filter(Boolean).join(" ");
@@ -43,9 +50,12 @@ function chain(report) {
 }
 
 function searchTable(report) {
-  const rowClass = (row, previous) => [row.decision === "kept" && "kept", previous && row.round !== previous.round && "round"]
+  const isNext = (row, previous) => previous && (row.round !== previous.round || row.axis !== previous.axis);
+  const rowClass = (row, previous) => [row.decision === "kept" && "kept", isNext(row, previous) && "round"]
     .filter(Boolean).join(" ") || null;
+  const ofAxes = report.search.some((row) => isFilled(row.axis));
   return [table([
+    ...(ofAxes ? [{ title: "axis", cell: (row) => String(row.axis ?? "") }] : []),
     { title: "round", number: true, cell: (row) => String(row.round ?? "") },
     { title: "candidate", cell: withLaw },
     { title: "started from", cell: (row) => String(row.start ?? ""), text: true },

@@ -109,7 +109,8 @@ function effects(report) {
   const traced = report.effects.find((effect) => belongs(report.trace, effect));
   return section(report.effects.length > 1 ? "The effects found" : "The effect found", report.effects.map((effect) => element("div",
     { class: "together" },
-    element("h3", {}, sentenceCase(withLaw(effect)), element("span", { class: "note" }, "  at ", code(effect.site ?? ""))),
+    element("h3", {}, sentenceCase(withLaw(effect)), element("span", { class: "note" }, "  at ", code(effect.site ?? ""),
+      isFilled(effect.axis) ? ` of the ${effect.axis} axis` : "")),
     paragraph(effect.meaning), paragraph(evidenceText(effect.evidence)),
     element("div", { class: "figures" },
       isFilled(effect.curve) ? element("figure", {}, curveChart(effect.curve, effect === traced ? report.trace.points : null)) : null,

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "tools/explain/conclusion.hpp"
+#include "tools/explain/explain.hpp"
+#include "tools/explain/report_json.hpp"
+#include "tools/explain/two_axes.hpp"
+#include "tools/explain/two_axis_report.hpp"
+#include "tools/files/error.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+using Found = SearchResult<SimplexFamily>;
+using FoundAxes = std::array<std::optional<Found>, 2>;
+
+/// Both axes at one stage of their searches; an axis without a search stays as it is declared. With attach points in space
+/// the arm follows from them, and what the file says of it stays.
+template <class Stage>
+TaosParameters together(const TaosParameters& declared, const FoundAxes& found, Stage&& stage) {
+  TaosParameters taos = declared;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i]) {
+      const Fitted<SimplexFamily>& fitted = stage(*found[i]).model;
+      taos.axes[i] = Evaluator<SimplexFamily>::with_values(fitted.base, fitted.free, fitted.u);
+      if (!taos.constant_arms.front()) {
+        taos.axes[i].actuator.moment_arm = declared.axes[i].actuator.moment_arm;
+      }
+    }
+  }
+  return taos;
+}
+
+Assessed<SimplexFamily>& declared_stage(Found& found) { return found.declared; }
+Assessed<SimplexFamily>& calibrated_stage(Found& found) { return found.calibrated; }
+Assessed<SimplexFamily>& explained_stage(Found& found) { return found.explained; }
+
+/// Progress and messages that say which axis they are about.
+Watch watch_of(const Watch& watch, const std::string& axis) {
+  Watch own = watch;
+  own.progress = [progress = watch.progress, axis](const std::string& what) { progress(axis + ": " + what); };
+  return own;
+}
+
+Found search_axis(const AxisOfTwo& axis, const ExplainOptions& options) {
+  try {
+    return search<SimplexFamily>(axis.data, axis.model,
+                                 {options.threads, options.most_effects, watch_of(options.watch, axis.name)});
+  } catch (const FileError& error) {
+    throw FileError(fmt::format("{} axis: {}", axis.name, error.what()));
+  }
+}
+
+/// Fits the explained model of each axis again, beside the other one as that is explained.
+void fit_beside_explained(const TaosParameters& declared, const ExplainOptions& options, TwoAxes& axes, FoundAxes& found) {
+  const auto run = run_coupled(together(declared, found, explained_stage), axes, options.threads);
+  if (!run) {
+    return;
+  }
+  put_beside(*run, axes);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (found[i]) {
+      options.watch.progress(axes[i].name + ": fitting beside the other axis as explained");
+      const Evaluator<SimplexFamily> fine(axes[i].data, Resolution::fine);
+      Assessed<SimplexFamily> again = refined(fine, options.threads, found[i]->explained.model, kFinal);
+      if (again.good()) {
+        found[i]->explained = std::move(again);
+      }
+    }
+  }
+}
+
+/// Replaces what each axis predicts of itself by what both together predict.
+template <class Stage>
+void judge_together(const TaosParameters& declared, unsigned threads, const TwoAxes& axes, FoundAxes& found, Stage&& stage) {
+  const auto run = run_coupled(together(declared, found, stage), axes, threads);
+  for (std::size_t i = 0; run && i < axes.size(); ++i) {
+    if (found[i]) {
+      stage(*found[i]).prediction = run->prediction[i];
+      stage(*found[i]).goodness = goodness(axes[i].data, run->prediction[i]);
+    }
+  }
+}
+
+}  // namespace
+
+TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& records, const ExplainOptions& options) {
+  TwoAxes axes = axes_of(vehicle, records, options.exclusions);
+  const TaosParameters declared = std::get<TaosParameters>(vehicle.parameters);
+  const auto before = run_coupled(declared, axes, options.threads);
+  if (!before) {
+    throw FileError(fmt::format("{}: the declared model runs away on these records: its parameters make it unstable",
+                                vehicle.path.string()));
+  }
+  put_beside(*before, axes);
+  FoundAxes found;
+  bool interrupted = false;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].measured) {
+      found[i] = search_axis(axes[i], options);
+      interrupted = interrupted || found[i]->interrupted;
+    }
+  }
+  if (!interrupted) {
+    fit_beside_explained(declared, options, axes, found);
+  }
+  judge_together(declared, options.threads, axes, found, declared_stage);
+  judge_together(declared, options.threads, axes, found, calibrated_stage);
+  judge_together(declared, options.threads, axes, found, explained_stage);
+
+  TaosExplanation explanation{{}, {}, vehicle};
+  std::vector<AxisReport> reports;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (!found[i]) {
+      continue;
+    }
+    if (!interrupted) {
+      options.watch.progress(axes[i].name + ": fitting what was found to all rows");
+      fit_to_all_rows(axes[i].data, options.threads, *found[i]);
+    }
+    reports.push_back({axes[i].name, report_json(axes[i].model, axes[i].records, axes[i].data, *found[i])});
+    if (found[i]->rival) {
+      reports.back().report["residual"]["next_experiment"] = fmt::format(
+          "{} and {} explain these records equally well.", label(found[i]->rival->kept), label(found[i]->rival->other));
+    }
+    append_series(axes[i].name, series_of(axes[i].records, axes[i].data, *found[i]), explanation.series);
+  }
+  explanation.report = joined_report(reports);
+  explanation.model.parameters = together(declared, found, explained_stage);
+  return explanation;
+}
+
+}  // namespace hotfire::explain
