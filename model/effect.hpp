@@ -22,8 +22,9 @@ namespace hotfire::model {
 /// An effect may carry another one of the same additive site: `carries` is that one's name, and `carry(params, state, input,
 /// step)` evaluates it by `step(input)`, on what it sees through the carrier. Such an effect adds nothing of its own.
 ///
-/// Optional: `settle(params, state, input)` puts the state where a constant input leaves it; `broken_relation(params)` names
-/// a relation between fields that the values break, empty if none.
+/// Optional: `needs_other_axis` marks an effect that acts only where the engine has another axis, `options_of_two_axes` (a
+/// bit each) such laws; `settle(params, state, input)` puts the state where a constant input leaves it;
+/// `broken_relation(params)` names a relation between fields that the values break, empty if none.
 template <class E, class S>
 concept Effect = requires(const typename E::template Params<S>& params, typename E::template State<S>& state,
                           const typename SiteInput<E::site, S>::type& input) {
@@ -33,6 +34,22 @@ concept Effect = requires(const typename E::template Params<S>& params, typename
   { E::step(params, state, input) }
   noexcept;
 };
+
+/// True for an effect that acts only where the engine has another axis.
+template <class E>
+constexpr bool needs_other_axis() noexcept {
+  return requires { E::needs_other_axis; };
+}
+
+/// The same for one of its laws, which alone is another of them.
+template <class E>
+constexpr bool needs_other_axis(int option) noexcept {
+  if constexpr (requires { E::options_of_two_axes; }) {
+    return (E::options_of_two_axes >> static_cast<unsigned>(option) & 1U) != 0;
+  } else {
+    return needs_other_axis<E>();
+  }
+}
 
 /// For effects that have nothing to choose.
 using NoOptions = std::array<std::string_view, 0>;

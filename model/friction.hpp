@@ -122,15 +122,22 @@ BristleStep<S> bristle_step(const S& speed, const S& level, const Bristle<S>& br
 /// [Canudas de Wit et al. 1995], eq. 1-3; exact hold as in [SD]'s companion literature and MuJoCo's dcmotor note, sec.
 /// LuGre.
 ///
-/// `motion.velocity` sets |v|; `level` is g at that velocity. Returns the mean force over the step.
+/// `speed` is |v|, of which v may be one component: those of a bristle vector meet through |v| alone. `level` is g at that
+/// speed. Returns the mean force over the step.
 template <class S>
-S bristle_force(S& deflection, const Motion<S>& motion, const S& level, const Bristle<S>& bristle) noexcept {
-  const BristleStep<S> step = bristle_step<S>(motion.velocity * sign_of(motion.velocity), level, bristle, motion.h);
+S bristle_force(S& deflection, const Motion<S>& motion, const S& speed, const S& level, const Bristle<S>& bristle) noexcept {
+  const BristleStep<S> step = bristle_step<S>(speed, level, bristle, motion.h);
   const S start = deflection;
   const S at_rest = start * step.at_rest;
   const S velocity = (motion.free_velocity - motion.compliance * at_rest) / (1.0 + motion.compliance * step.per_velocity);
   deflection = start * step.decay + velocity * motion.h * step.psi;
   return at_rest + step.per_velocity * velocity;
+}
+
+/// The same along one direction: `motion.velocity` sets |v|.
+template <class S>
+S bristle_force(S& deflection, const Motion<S>& motion, const S& level, const Bristle<S>& bristle) noexcept {
+  return bristle_force<S>(deflection, motion, S(motion.velocity * sign_of(motion.velocity)), level, bristle);
 }
 
 }  // namespace hotfire::model

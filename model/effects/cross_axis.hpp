@@ -37,10 +37,4 @@ struct CrossAxis {
   }
 };
 
-/// True for an effect that acts only where the engine has another axis.
-template <class E>
-constexpr bool needs_other_axis() noexcept {
-  return requires { E::needs_other_axis; };
-}
-
 }  // namespace hotfire::model

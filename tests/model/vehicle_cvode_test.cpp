@@ -70,6 +70,31 @@ TEST(VehicleAgreesWithCvode, WithFrictionThatVibrationLowers) {
   check_agreement("hot fire, vibrated_lugre", parameters);
 }
 
+// The components of a bristle vector meet through the length of the slip alone: each axis can carry its own.
+TEST(VehicleAgreesWithCvode, WithTheFrictionOfTheBearingToldAxisByAxis) {
+  Taos::Parameters told = smooth();
+  told.modes = {};
+  told.gimbals[0].compliant = false;
+  auto& bearing = told.gimbals[0].friction;
+  bearing.option = 2;
+  bearing.coulomb_torque = 1e4;
+  bearing.static_ratio = 1.2;
+  bearing.damping = 500.0;
+  const VehicleRows reference = run_reference<Taos>(told);
+  Taos::Parameters parameters = told;
+  parameters.gimbals[0].friction.coulomb_torque = 0.0;
+  constexpr std::size_t kFriction = index_in<model::GimbalFriction>(Taos::Effects{});
+  for (auto& axis : parameters.axes) {
+    axis.effects.active[kFriction] = true;
+    std::get<kFriction>(axis.effects.values) = {
+        option_named<model::GimbalFriction>("vector_lugre"), 1e4, bearing.stiffness, 1.2, bearing.stribeck_velocity, 500.0};
+  }
+  const VehicleRows rows = run_model<Taos>(parameters, 2);
+  for (std::size_t channel = 0; channel < 4; ++channel) {
+    CHECK_TRUE(relative_rms(rows, reference, channel) < kLimit);
+  }
+}
+
 // Ducts that pull the other way by as much as they resist, and a follower force that is not symmetric.
 TEST(VehicleAgreesWithCvode, WithTorqueFromTheOtherAxis) {
   Taos::Parameters parameters = smooth();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hal/schedule/frame_time.hpp"
+#include "model/keys.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/files/can_schedule.hpp"
 #include "tools/files/candump.hpp"
@@ -47,12 +48,25 @@ Json describe_vehicle(const std::filesystem::path& path) {
   const VehicleFile vehicle = load_vehicle(path);
   return std::visit(
       [&vehicle]<class Parameters>(const Parameters& parameters) -> Json {
+        const std::vector<std::string> names = axis_names(static_cast<int>(parameters.axes.size()) / 2);
+        std::vector<std::string> effects;
+        std::size_t toleranced = 0;
+        for (std::size_t axis = 0; axis < names.size(); ++axis) {
+          model::visit_effects(parameters.axes[axis], [&]<class E>(std::size_t index, const auto&) {
+            if (parameters.axes[axis].effects.active[index]) {
+              effects.push_back(fmt::format("{}.{}", E::name, names[axis]));
+            }
+          });
+          toleranced += vehicle.axes[axis].tolerance.size();
+        }
         return {{"kind", "vehicle"},
                 {"name", vehicle.name},
                 {"topology", std::is_same_v<Parameters, TaosParameters> ? "taos" : "masv"},
                 {"axes", parameters.axes.size()},
                 {"modes", parameters.modes.modes},
-                {"compliant_gimbal", parameters.gimbals.front().compliant}};
+                {"compliant_gimbal", parameters.gimbals.front().compliant},
+                {"effects", effects},
+                {"tolerances", toleranced}};
       },
       vehicle.parameters);
 }
@@ -121,9 +135,10 @@ std::string line_of(const Json& result) {
                        reference.empty() ? "" : ", left to their reference values: " + joined(reference));
   }
   if (result["kind"] == "vehicle") {
-    return fmt::format("model \"{}\", topology {}, {} axes, {} modes, {} gimbal", result["name"].get<std::string>(),
-                       result["topology"].get<std::string>(), result["axes"].get<int>(), result["modes"].get<int>(),
-                       result["compliant_gimbal"].get<bool>() ? "compliant" : "rigid");
+    return fmt::format("model \"{}\", topology {}, {} axes, {} modes, {} gimbal, effects: {}, values with a tolerance: {}",
+                       result["name"].get<std::string>(), result["topology"].get<std::string>(), result["axes"].get<int>(),
+                       result["modes"].get<int>(), result["compliant_gimbal"].get<bool>() ? "compliant" : "rigid",
+                       joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].get<std::size_t>());
   }
   if (result["kind"] == "profile") {
     return fmt::format("profile of {} actuators, {:g} s long", result["actuators"].get<unsigned>(),

@@ -102,11 +102,11 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
     if constexpr (requires { E::is_unlisted; }) {
       return;
     }
-    if (model::needs_other_axis<E>() && !data.has_other_axis()) {
-      return;
-    }
     const int variants = std::max<int>(1, static_cast<int>(E::options.size()));
     for (int option = 0; option < variants; ++option) {
+      if (model::needs_other_axis<E>(option) && !data.has_other_axis()) {
+        continue;
+      }
       Candidate candidate{index, option, std::string(E::name), "", std::string(model::site_name(E::site))};
       if constexpr (E::options.size() > 0) {
         candidate.option_name = E::options[static_cast<std::size_t>(option)];

@@ -15,15 +15,15 @@ namespace {
 
 using Found = SearchResult<SimplexFamily>;
 using FoundAxes = std::array<std::optional<Found>, 2>;
+using Stage = Assessed<SimplexFamily> Found::*;
 
 /// Both axes at one stage of their searches; an axis without a search stays as it is declared. With attach points in space
 /// the arm follows from them, and what the file says of it stays.
-template <class Stage>
-TaosParameters together(const TaosParameters& declared, const FoundAxes& found, Stage&& stage) {
+TaosParameters together(const TaosParameters& declared, const FoundAxes& found, Stage stage) {
   TaosParameters taos = declared;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i]) {
-      const Fitted<SimplexFamily>& fitted = stage(*found[i]).model;
+      const Fitted<SimplexFamily>& fitted = ((*found[i]).*stage).model;
       taos.axes[i] = Evaluator<SimplexFamily>::with_values(fitted.base, fitted.free, fitted.u);
       if (!taos.constant_arms.front()) {
         taos.axes[i].actuator.moment_arm = declared.axes[i].actuator.moment_arm;
@@ -32,10 +32,6 @@ TaosParameters together(const TaosParameters& declared, const FoundAxes& found, 
   }
   return taos;
 }
-
-Assessed<SimplexFamily>& declared_stage(Found& found) { return found.declared; }
-Assessed<SimplexFamily>& calibrated_stage(Found& found) { return found.calibrated; }
-Assessed<SimplexFamily>& explained_stage(Found& found) { return found.explained; }
 
 /// Progress and messages that say which axis they are about.
 Watch watch_of(const Watch& watch, const std::string& axis) {
@@ -55,7 +51,7 @@ Found search_axis(const AxisOfTwo& axis, const ExplainOptions& options) {
 
 /// Fits the explained model of each axis again, beside the other one as that is explained.
 void fit_beside_explained(const TaosParameters& declared, const ExplainOptions& options, TwoAxes& axes, FoundAxes& found) {
-  const auto run = run_coupled(together(declared, found, explained_stage), axes, options.threads);
+  const auto run = run_coupled(together(declared, found, &Found::explained), axes, options.threads);
   if (!run) {
     return;
   }
@@ -73,13 +69,13 @@ void fit_beside_explained(const TaosParameters& declared, const ExplainOptions& 
 }
 
 /// Replaces what each axis predicts of itself by what both together predict.
-template <class Stage>
-void judge_together(const TaosParameters& declared, unsigned threads, const TwoAxes& axes, FoundAxes& found, Stage&& stage) {
+void judge_together(const TaosParameters& declared, unsigned threads, const TwoAxes& axes, FoundAxes& found, Stage stage) {
   const auto run = run_coupled(together(declared, found, stage), axes, threads);
   for (std::size_t i = 0; run && i < axes.size(); ++i) {
     if (found[i]) {
-      stage(*found[i]).prediction = run->prediction[i];
-      stage(*found[i]).goodness = goodness(axes[i].data, run->prediction[i]);
+      Assessed<SimplexFamily>& assessed = (*found[i]).*stage;
+      assessed.prediction = run->prediction[i];
+      assessed.goodness = goodness(axes[i].data, run->prediction[i]);
     }
   }
 }
@@ -106,9 +102,9 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   if (!interrupted) {
     fit_beside_explained(declared, options, axes, found);
   }
-  judge_together(declared, options.threads, axes, found, declared_stage);
-  judge_together(declared, options.threads, axes, found, calibrated_stage);
-  judge_together(declared, options.threads, axes, found, explained_stage);
+  judge_together(declared, options.threads, axes, found, &Found::declared);
+  judge_together(declared, options.threads, axes, found, &Found::calibrated);
+  judge_together(declared, options.threads, axes, found, &Found::explained);
 
   TaosExplanation explanation{{}, {}, vehicle};
   std::vector<AxisReport> reports;
@@ -128,7 +124,7 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
     append_series(axes[i].name, series_of(axes[i].records, axes[i].data, *found[i]), explanation.series);
   }
   explanation.report = joined_report(reports);
-  explanation.model.parameters = together(declared, found, explained_stage);
+  explanation.model.parameters = together(declared, found, &Found::explained);
   return explanation;
 }
 

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "model/effects/cross_axis.hpp"
 #include "model/keys.hpp"
 #include "tools/files/model_layout.hpp"
 
