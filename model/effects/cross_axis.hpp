@@ -24,7 +24,7 @@ struct CrossAxis {
       using P = Params;
       return std::array{
           Field<P>{"stiffness", "N.m/rad", -1e8, 1e8, 3e5, "torque per angle of the other axis", &P::stiffness},
-          Field<P>{"damping", "N.m.s/rad", -1e7, 1e7, 1e4, "torque per rate of the other axis", &P::damping}};
+          Field<P>{"damping", "N.m.s/rad", -1e7, 1e7, 3e3, "torque per rate of the other axis", &P::damping}};
     }
   };
 
