@@ -237,11 +237,17 @@ Dataset thinned(const Dataset& data, double period) {
       const auto held = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(every), full.end() - first);
       experiment.input[row] = std::accumulate(first, first + held, 0.0) / static_cast<double>(held);
     }
-    for (std::vector<double>& channel : experiment.measured) {
-      for (std::size_t row = 0; row * every < channel.size(); ++row) {
-        channel[row] = channel[row * every];
+    const auto thin_rows = [&](std::vector<double>& values) {
+      for (std::size_t row = 0; row * every < values.size(); ++row) {
+        values[row] = values[row * every];
       }
-      channel.resize(kept(channel.size()));
+      values.resize(kept(values.size()));
+    };
+    for (std::vector<double>& channel : experiment.measured) {
+      thin_rows(channel);
+    }
+    for (std::vector<double>* motion : {&experiment.other.angle, &experiment.other.rate, &experiment.other.force}) {
+      thin_rows(*motion);
     }
     experiment.period *= static_cast<double>(every);
     experiment.first_scored = kept(experiment.first_scored);

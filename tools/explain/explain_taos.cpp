@@ -60,7 +60,7 @@ void fit_beside_explained(const TaosParameters& declared, const ExplainOptions& 
     if (found[i]) {
       options.watch.progress(axes[i].name + ": fitting beside the other axis as explained");
       const Evaluator<SimplexFamily> fine(axes[i].data, Resolution::fine);
-      Assessed<SimplexFamily> again = refined(fine, options.threads, found[i]->explained.model, kFinal);
+      Assessed<SimplexFamily> again = refined(fine, fine, options.threads, found[i]->explained.model, kFinal);
       if (again.good()) {
         found[i]->explained = std::move(again);
       }
