@@ -136,6 +136,8 @@ TEST(TwoAxes, WhatExplainDoesNotTakeIsRefusedWithTheMend) {
   test::expect_message(refused("schema = 1\ntopology = \"masv\"\n"), {"masv", "one engine of it as \"taos\""});
   test::expect_message(refused(taos + "[gimbal.friction]\nlaw = \"coulomb\"\ncoulomb_torque = 1e4\n"),
                        {"gimbal", "effects.gimbal_friction.pitch"});
+  test::expect_message(refused(taos + "[attach.pitch]\nengine_z = -0.7\n[tolerance]\nactuator.moment_arm = 0.01\n"),
+                       {"actuator.moment_arm", "[attach]"});
   test::expect_message(refused(taos), {"command.pitch"});
 }
 

@@ -47,6 +47,14 @@ const TaosParameters& explainable(const VehicleFile& vehicle) {
            "modes: 'explain' does not take a structure with modes; remove the table, and give [structure] the stiffness at "
            "the attach points, sum of shape^2 / (2 pi frequency)^2 over the modes, inverted");
   }
+  for (const AxisDeclaration& axis : vehicle.axes) {
+    if (!taos->constant_arms.front() && axis.tolerance.contains("actuator.moment_arm")) {
+      refuse(
+          vehicle,
+          "tolerance of actuator.moment_arm: has no meaning with [attach], from which the arms follow; remove it, or remove "
+          "[attach]");
+    }
+  }
   return *taos;
 }
 
