@@ -138,6 +138,7 @@ TEST(TwoAxes, WhatExplainDoesNotTakeIsRefusedWithTheMend) {
                        {"gimbal", "effects.gimbal_friction.pitch"});
   test::expect_message(refused(taos + "[attach.pitch]\nengine_z = -0.7\n[tolerance]\nactuator.moment_arm = 0.01\n"),
                        {"actuator.moment_arm", "[attach]"});
+  test::expect_message(refused(taos + "[sensors.piston]\nlag = 2e-3\n"), {"sensors.piston.lag", "effects.sensor_lag"});
   test::expect_message(refused(taos), {"command.pitch"});
 }
 

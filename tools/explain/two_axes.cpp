@@ -47,6 +47,12 @@ const TaosParameters& explainable(const VehicleFile& vehicle) {
            "modes: 'explain' does not take a structure with modes; remove the table, and give [structure] the stiffness at "
            "the attach points, sum of shape^2 / (2 pi frequency)^2 over the modes, inverted");
   }
+  if (vehicle.sensors.piston.lag > 0.0) {
+    refuse(
+        vehicle,
+        "sensors.piston.lag: 'explain' does not simulate the pistons' potentiometers; remove it, and declare a lag that the "
+        "records have as [effects.sensor_lag] with channel = \"piston\"");
+  }
   for (const AxisDeclaration& axis : vehicle.axes) {
     if (!taos->constant_arms.front() && axis.tolerance.contains("actuator.moment_arm")) {
       refuse(
