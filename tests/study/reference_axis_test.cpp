@@ -77,6 +77,20 @@ TEST(ReferenceAxisLaws, ADeadTimeByAmplitudeIsThatDelayForAStep) {
   CHECK_TRUE(largest_difference(a, rows_of({}, commands), 0) > 1e-4);
 }
 
+// What a saturated torque motor is asked for beyond its limit reaches neither spool nor play. Five degrees are four times the
+// limit, and the piston is a tenth of the way there at the end.
+TEST(ReferenceAxisLaws, AJumpOfASaturatedTorqueMotorDoesNotMoveThePlay) {
+  ReferenceAxis axis;
+  axis.play = 0.02;
+  const std::vector<double> steady = held(5.0 * kDegree, 0.05);
+  std::vector<double> dithered = steady;
+  for (std::size_t i = 1; i < dithered.size(); i += 2) {
+    dithered[i] -= 0.1 * kDegree;
+  }
+  CHECK_TRUE(axis.position_gain * axis.arm * 0.1 * kDegree > 2.0 * axis.play);
+  CHECK_TRUE(largest_difference(rows_of(axis, steady), rows_of(axis, dithered), 0) < 1e-9);
+}
+
 // The loop closes on the piston itself, so a worn track changes what is read and nothing else.
 TEST(ReferenceAxisLaws, AWornTrackIsReadWhereThePistonIs) {
   ReferenceAxis worn;

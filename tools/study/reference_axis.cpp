@@ -85,15 +85,19 @@ class Integrator {
   CvodeIntegrator cvode_;
 };
 
-/// Changes the command of an axis at the present time. A jump moves the torque motor at once, and with it the play.
+/// Changes the command of an axis at the present time. A jump moves the torque motor at once as far as it is not saturated,
+/// and with it the play.
 void set_command(Problems& problems, std::size_t which, Integrator& integrator, double command) {
   ReferenceProblem& problem = problems.axes[which];
   const ReferenceAxis& axis = problem.axis;
   problem.command_start = std::isinf(axis.rate_limit) ? command : command_at(problem, integrator.time());
   problem.start_time = integrator.time();
   if (axis.play > 0.0) {
-    const double moved = integrator.state(which)[kPlay] + axis.position_gain * axis.arm * (command - problem.command);
-    integrator.set(which, kPlay, std::clamp(moved, -axis.play, axis.play));
+    const StateVector y = integrator.state(which);
+    const auto asked = [&](double angle) {
+      return clamp_to(torque_motor(axis, angle, std::max(0.0, integrator.time() - problem.first_row), y), 1.0);
+    };
+    integrator.set(which, kPlay, clamp_to(y[kPlay] + asked(command) - asked(problem.command), axis.play));
   }
   problem.command = command;
 }

@@ -174,6 +174,11 @@ double command_at(const ReferenceProblem& problem, double t) {
                                 : problem.command_start;
 }
 
+double torque_motor(const ReferenceAxis& axis, double command, double elapsed, const StateVector& y) {
+  return axis.position_gain * (axis.arm * command - y[kPiston]) - axis.pressure_gain * (y[kPressure] - y[kWashout]) +
+         axis.unlisted.null_drift * elapsed;
+}
+
 StateVector derivative(const ReferenceProblem& problem, double t, const StateVector& y) {
   const ReferenceAxis& a = problem.axis;
   const double elapsed = std::max(0.0, t - problem.first_row);
@@ -181,9 +186,8 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
 
   // A limit of infinity makes the command jump at the start of the interval.
   const double angle = std::isinf(a.rate_limit) ? problem.command : command_at(problem, t);
-  const double torque_motor = a.position_gain * (a.arm * angle - y[kPiston]) -
-                              a.pressure_gain * (y[kPressure] - y[kWashout]) + a.unlisted.null_drift * elapsed;
-  const double valve_command = clamp_to(torque_motor, 1.0) - clamp_to(y[kPlay], a.play);
+  const double asked = torque_motor(a, angle, elapsed, y);
+  const double valve_command = clamp_to(asked, 1.0) - clamp_to(y[kPlay], a.play);
   d[kSpool] = y[kSpoolRate];
   d[kSpoolRate] = a.valve_frequency * a.valve_frequency * (valve_command - y[kSpool]) -
                   2.0 * a.valve_damping * a.valve_frequency * y[kSpoolRate];
@@ -211,7 +215,7 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
       a.inertia;
 
   const double torque_motor_rate = -a.position_gain * v - a.pressure_gain * (d[kPressure] - d[kWashout]);
-  d[kPlay] = (std::abs(torque_motor) < 1.0 ? torque_motor_rate : 0.0) - kPlayGivesWay * beyond(y[kPlay], a.play);
+  d[kPlay] = (std::abs(asked) < 1.0 ? torque_motor_rate : 0.0) - kPlayGivesWay * beyond(y[kPlay], a.play);
   d[kSeal] = seal.rate;
   d[kSealBristle] = seal_bristle.rate;
   d[kBristle] = bristle.rate;
