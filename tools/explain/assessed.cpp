@@ -79,6 +79,19 @@ Fitted<Family> with_declared_values(Fitted<Family> model) {
 }
 
 template <class Family>
+bool is_far_from_declared(const Fitted<Family>& model) {
+  double count = 0.0;
+  double square = 0.0;
+  for (std::size_t k = 0; k < model.free.size(); ++k) {
+    if (model.free[k].is_declared()) {
+      count += 1.0;
+      square += model.free[k].surprise(model.u[k]) * model.free[k].surprise(model.u[k]);
+    }
+  }
+  return square > count;
+}
+
+template <class Family>
 Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second) {
   const bool better =
       second.good() && Goodness::combined(second.goodness.fitted) < Goodness::combined(first.goodness.fitted);
@@ -149,6 +162,7 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
                                     const Effort&);                                                                   \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
   template Fitted<Family> with_declared_values(Fitted<Family>);                                                       \
+  template bool is_far_from_declared(const Fitted<Family>&);                                                          \
   template Assessed<Family> better_of(Assessed<Family>, Assessed<Family>);                                            \
   template double criterion_change(const Assessed<Family>&, const Assessed<Family>&, const std::vector<ChannelFit>&); \
   template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);                                   \

@@ -47,6 +47,11 @@ Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& cand
 template <class Family>
 Fitted<Family> with_declared_values(Fitted<Family> model);
 
+/// True if the declared parameters are further from their declaration than its tolerances, in the mean: a calibration of no
+/// model that is right.
+template <class Family>
+bool is_far_from_declared(const Fitted<Family>& model);
+
 /// Whichever leaves less on the rows that a fit sees; the first if the second could not be simulated.
 template <class Family>
 Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second);

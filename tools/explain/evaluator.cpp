@@ -97,13 +97,15 @@ Start<S> start_of(const Dataset& data, std::size_t experiment, std::span<const F
   return start;
 }
 
+/// Derivatives carried by one simulation: as many as one wide register holds. More spill, and cost more each.
+constexpr std::size_t kLanes = 4;
+using Dual = ceres::Jet<double, kLanes>;
+
 /// The parameters whose derivatives one simulation carries, a lane each.
-template <int Lanes>
 struct Chunk {
-  using Dual = ceres::Jet<double, Lanes>;
   std::span<const FreeParameter> free;
   std::span<const double> u;
-  std::span<const std::size_t> wanted;  ///< at most Lanes of them
+  std::span<const std::size_t> wanted;  ///< at most kLanes of them
   Eigen::Index first_column = 0;
 
   /// Parameter k as a dual number.
@@ -154,8 +156,7 @@ class Writer {
   }
 
   /// False if a derivative is not finite.
-  template <int Lanes>
-  bool write(std::size_t row, std::size_t channel, const ceres::Jet<double, Lanes>& reading, const Chunk<Lanes>& chunk) {
+  bool write(std::size_t row, std::size_t channel, const Dual& reading, const Chunk& chunk) {
     const auto& stretches = by_channel_[channel];
     std::size_t& next = next_[channel];
     while (next < stretches.size() && row >= stretches[next]->last) {
@@ -273,23 +274,12 @@ template <class Family>
 bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
                                       std::span<const std::size_t> wanted, unsigned threads, Eigen::VectorXd& residual,
                                       Eigen::MatrixXd& jacobian) const {
-  // Derivatives carried by one simulation: wide enough to amortise it, narrow enough for the registers.
-  return wanted.size() <= 4 ? differentiate_by<4>(base, free, u, wanted, threads, residual, jacobian)
-                            : differentiate_by<8>(base, free, u, wanted, threads, residual, jacobian);
-}
-
-template <class Family>
-template <int Lanes>
-bool Evaluator<Family>::differentiate_by(const Parameters& base, std::span<const FreeParameter> free,
-                                         std::span<const double> u, std::span<const std::size_t> wanted, unsigned threads,
-                                         Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) const {
-  using Dual = ceres::Jet<double, Lanes>;
   using Plant = typename Family::template Plant<Dual>;
   residual.resize(static_cast<Eigen::Index>(fit_rows_));
   jacobian.resize(static_cast<Eigen::Index>(fit_rows_), static_cast<Eigen::Index>(wanted.size()));
-  std::vector<Chunk<Lanes>> chunks;
-  for (std::size_t first = 0; first == 0 || first < wanted.size(); first += Lanes) {
-    const std::size_t count = std::min<std::size_t>(Lanes, wanted.size() - first);
+  std::vector<Chunk> chunks;
+  for (std::size_t first = 0; first == 0 || first < wanted.size(); first += kLanes) {
+    const std::size_t count = std::min(kLanes, wanted.size() - first);
     chunks.push_back({free, u, wanted.subspan(first, count), static_cast<Eigen::Index>(first)});
   }
   const auto plain = with_values(base, free, u);
@@ -302,7 +292,7 @@ bool Evaluator<Family>::differentiate_by(const Parameters& base, std::span<const
 
   std::atomic<bool> finite{true};
   parallel_for(chunks.size() * data_.experiments.size(), threads, [&](std::size_t task) {
-    const Chunk<Lanes>& chunk = chunks[task % chunks.size()];
+    const Chunk& chunk = chunks[task % chunks.size()];
     const std::size_t e = task / chunks.size();
     const Experiment& experiment = data_.experiments[e];
     const auto& plant = *plants[task % chunks.size()].at(experiment.period);

@@ -57,10 +57,6 @@ class Evaluator {
   static Parameters with_values(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u);
 
  private:
-  template <int Lanes>
-  bool differentiate_by(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
-                        std::span<const std::size_t> wanted, unsigned threads, Eigen::VectorXd& residual,
-                        Eigen::MatrixXd& jacobian) const;
   int steps_of(const Experiment& experiment) const;
 
   const Dataset& data_;

@@ -50,10 +50,7 @@ template <class Family>
 class SimulationError : public ceres::CostFunction {
  public:
   SimulationError(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options)
-      : evaluator_(evaluator), fitted_(fitted), options_(options) {
-    for (std::size_t k = options.frozen != nullptr ? options.frozen->u.size() : 0; k < fitted.free.size(); ++k) {
-      simulated_.push_back(k);
-    }
+      : fitted_(fitted), options_(options), tangent_(evaluator, fitted.base, fitted.free, simulated(), options.threads) {
     weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
     for (const Stretch& s : evaluator.stretches()) {
       weight_.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
@@ -74,8 +71,7 @@ class SimulationError : public ceres::CostFunction {
       return true;
     }
     Eigen::VectorXd residual;
-    Eigen::MatrixXd own;
-    if (!simulate(u, want_jacobian, residual, own)) {
+    if (!simulate(u, want_jacobian, residual)) {
       return false;
     }
     residual = residual.cwiseProduct(weight_);
@@ -89,6 +85,7 @@ class SimulationError : public ceres::CostFunction {
       out(count) = std::sqrt(cost);
       return true;
     }
+    const Eigen::MatrixXd& own = tangent_.jacobian();
     Eigen::MatrixXd full(residual.size(), count);
     const Eigen::Index frozen = count - own.cols();
     if (frozen > 0) {
@@ -113,26 +110,27 @@ class SimulationError : public ceres::CostFunction {
   }
 
  private:
-  /// Residuals over noise, with the frozen parameters moved linearly, and the derivatives of the simulated ones.
-  bool simulate(std::span<const double> u, bool want_jacobian, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) const {
+  /// The parameters that are not frozen.
+  std::vector<std::size_t> simulated() const {
+    const std::size_t frozen = options_.frozen != nullptr ? options_.frozen->u.size() : 0;
+    std::vector<std::size_t> rest(fitted_.free.size() - frozen);
+    std::iota(rest.begin(), rest.end(), frozen);
+    return rest;
+  }
+
+  /// Residuals over noise, with the frozen parameters moved linearly; leaves the derivatives of the others in the tangent.
+  bool simulate(std::span<const double> u, bool want_jacobian, Eigen::VectorXd& residual) const {
     std::vector<double> at(u.begin(), u.end());
     if (options_.frozen != nullptr) {
       std::copy(options_.frozen->u.begin(), options_.frozen->u.end(), at.begin());
     }
-    if (want_jacobian) {
-      const auto taken = differentiate<Family>(evaluator_, fitted_.base, fitted_.free, at, simulated_, options_.threads,
-                                               residual, jacobian);
-      if (!taken) {
-        return false;
-      }
-      fitted_.chaotic = *taken == Slopes::wide;
-    } else {
-      Prediction prediction;
-      if (!evaluator_.predict(fitted_.base, fitted_.free, at, options_.threads, prediction)) {
-        return false;
-      }
-      residual = evaluator_.residuals(prediction);
+    if (!(want_jacobian ? tangent_.differentiate_at(at) : tangent_.move_to(at))) {
+      return false;
     }
+    if (want_jacobian) {
+      fitted_.chaotic = tangent_.slopes() == Slopes::wide;
+    }
+    residual = tangent_.residual();
     if (options_.frozen != nullptr && !options_.frozen->u.empty()) {
       const auto frozen = static_cast<Eigen::Index>(options_.frozen->u.size());
       residual += options_.frozen->jacobian * (Eigen::Map<const Eigen::VectorXd>(u.data(), frozen) -
@@ -141,10 +139,9 @@ class SimulationError : public ceres::CostFunction {
     return true;
   }
 
-  const Evaluator<Family>& evaluator_;
   Fitted<Family>& fitted_;
   FitOptions options_;
-  std::vector<std::size_t> simulated_;
+  mutable Tangent<Family> tangent_;
   Eigen::VectorXd weight_;
   mutable std::vector<double> last_u_;  ///< where `last_` holds
   mutable Compressed last_;

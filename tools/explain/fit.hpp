@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/explain/evaluator.hpp"
-#include "tools/explain/slopes.hpp"
+#include "tools/explain/tangent.hpp"
 
 namespace hotfire::explain {
 

@@ -8,6 +8,7 @@
 
 #include "tools/explain/parallel.hpp"
 #include "tools/explain/stopwatch.hpp"
+#include "tools/explain/trial.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
@@ -25,8 +26,9 @@ constexpr std::size_t kMostScanned = 6;
 constexpr std::size_t kStarts = 3;
 constexpr int kShortFit = 3;
 constexpr int kFullFit = 6;
-/// How far a parameter is set off when a fit is started again.
+/// How far a parameter is set off when a fit is started again, and how many of the starts are fitted.
 constexpr double kRestartFactor = 5.0;
+constexpr std::size_t kRestarts = 4;
 /// Relative change of the cost at which a candidate is ranked well enough.
 constexpr double kRankingTolerance = 1e-4;
 
@@ -223,25 +225,21 @@ template <class Family>
 Screened<Family> Screening<Family>::restart(const Candidate& candidate, const std::vector<double>& own,
                                             const Watch& watch) const {
   const Fitted<Family> fitted = with_candidate(candidate);
-  const std::size_t first = current_.free.size();
-  const std::vector<FreeParameter> parameters(fitted.free.begin() + static_cast<std::ptrdiff_t>(first), fitted.free.end());
-  std::vector<Screened<Family>> restarts;
-  const auto add = [&](const std::vector<double>& u) {
-    restarts.push_back({candidate, fitted, 0.0, 0.0, true});
-    restarts.back().fitted.u = u;
-  };
-  const std::vector<Start> starts = scan(fitted, start_points(parameters, frequencies_));
-  for (std::size_t i = 0; i < starts.size() && i < kStarts; ++i) {
-    add(starts[i].u);
-  }
+  const std::vector<FreeParameter> parameters(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
+                                              fitted.free.end());
+  std::vector<std::vector<double>> points = start_points(parameters, frequencies_);
   for (std::size_t k = 0; k < own.size(); ++k) {
     for (const double factor : {1.0 / kRestartFactor, kRestartFactor}) {
-      std::vector<double> u = frozen_.u;
-      u.insert(u.end(), own.begin(), own.end());
-      u[first + k] = parameters[k].coordinate(
+      points.push_back(own);
+      points.back()[k] = parameters[k].coordinate(
           std::clamp(parameters[k].value(own[k]) * factor, parameters[k].lower, parameters[k].upper));
-      add(u);
     }
+  }
+  const std::vector<Start> starts = scan(fitted, points);
+  std::vector<Screened<Family>> restarts;
+  for (std::size_t i = 0; i < starts.size() && i < kRestarts; ++i) {
+    restarts.push_back({candidate, fitted, 0.0, 0.0, true});
+    restarts.back().fitted.u = starts[i].u;
   }
   parallel_for(restarts.size(), threads_, [&](std::size_t i) {
     if (!watch.interrupted()) {
@@ -256,7 +254,13 @@ Screened<Family> Screening<Family>::restart(const Candidate& candidate, const st
     }
   });
   sort_best_first(restarts);
-  return restarts.empty() ? Screened<Family>{candidate, fitted, 0.0, 0.0, false} : restarts.front();
+  Screened<Family> stands{candidate, fitted, 0.0, 0.0, true};
+  stands.fitted.u = frozen_.u;
+  stands.fitted.u.insert(stands.fitted.u.end(), own.begin(), own.end());
+  improve(stands, 0);
+  const bool elsewhere =
+      !restarts.empty() && (!stands.good || restarts.front().criterion < stands.criterion - kStrongEvidence);
+  return elsewhere ? restarts.front() : Screened<Family>{candidate, fitted, 0.0, 0.0, false};
 }
 
 /// Laws of one effect share parameters and some contain others: each is fitted once more from where the best one ended.

@@ -43,9 +43,9 @@ class Screening {
   std::vector<Screened<Family>> run(const std::vector<Candidate>& candidates, const std::string& stage,
                                     const Watch& watch) const;
 
-  /// Fits an effect once more, from the best of its usual starts and from each of its parameters set a factor of five up and
-  /// down from `own`, and returns the best of these: the way out of a local minimum. The current model is to hold the effect
-  /// with its values fixed.
+  /// Fits an effect once more, from the best of its usual starts and of each of its parameters set a factor of five up and
+  /// down from `own`: the way out of a local minimum. Not good if none ends clearly below `own`. The current model is to
+  /// hold the effect with these values fixed.
   Screened<Family> restart(const Candidate& candidate, const std::vector<double>& own, const Watch& watch) const;
 
  private:

@@ -295,10 +295,12 @@ class Search {
       return winner;
     }
     options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
-    Assessed<Family> afresh = ranked(with_declared_values(winner.model), kRanking);
-    winner = better_of(std::move(winner), std::move(afresh));
-    if (reaches_noise(data_, winner)) {
-      return winner;
+    if (is_far_from_declared(winner.model)) {
+      Assessed<Family> afresh = ranked(with_declared_values(winner.model), kRanking);
+      winner = better_of(std::move(winner), std::move(afresh));
+      if (reaches_noise(data_, winner)) {
+        return winner;
+      }
     }
     Fitted<Family> anchor = without_effect(winner.model, candidate);
     anchor.base.effects.active[candidate.effect] = true;

@@ -9,9 +9,6 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Half the width of a wide difference, in the coordinate of an effect's parameter and in tolerances of a declared one.
-constexpr double kWideStep = 0.1;
-constexpr double kWideTolerance = 0.3;
 /// The whole range of a sensor is thousands of times its noise: a reading that moves by more than a million for one unit of
 /// a parameter (one tolerance, a factor e) is a derivative that ran away.
 constexpr double kRunawaySlope = 1e6;
@@ -27,7 +24,7 @@ bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Famil
     std::vector<double> at(u.begin(), u.end());
     if (i < 2 * count) {
       const FreeParameter& parameter = free[wanted[i / 2]];
-      const double step = parameter.is_declared() ? kWideTolerance : kWideStep;
+      const double step = wide_step(parameter);
       const auto [low, high] = parameter.range();
       double& moved = at[wanted[i / 2]];
       moved = std::clamp(moved + (i % 2 == 0 ? -step : step), low, high);
@@ -50,6 +47,8 @@ bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Famil
 }
 
 }  // namespace
+
+double wide_step(const FreeParameter& parameter) { return parameter.is_declared() ? 0.3 : 0.1; }
 
 template <class Family>
 std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,

@@ -11,6 +11,9 @@ namespace hotfire::explain {
 /// How derivatives were taken: `exact` by dual numbers; `wide` by central differences over a tenth of a parameter.
 enum class Slopes { exact, wide };
 
+/// Half the width of a wide difference: in the coordinate of an effect's parameter, and in tolerances of a declared one.
+double wide_step(const FreeParameter& parameter);
+
 /// Residuals that a fit sees and their derivatives, as `Evaluator::differentiate`. Stick-slip motion can be chaotic: each
 /// slip is set off or not, and exact derivatives, those of one sequence of slips, run away. Wide ones then take their place.
 /// Returns which were taken, nothing if a simulation did not stay finite.
