@@ -59,6 +59,29 @@ TEST(EquivalentStiffness, OfASofterSpringGivesALoadResonanceThatRisesToTheLinear
   DOUBLES_EQUAL(linear, before, 1e-3 * linear);
 }
 
+TEST(EquivalentStiffness, TakenOutOfALoadResonanceIsTheOnePutIntoIt) {
+  const LoadResonance load{9490.0, 0.7544, 5.75e7, 4e5, 1.2e8};
+  const double actuator = 8e7;
+  const double total = in_series(actuator, load.load_stiffness);
+  // J (2 pi f)^2 = K_n + K_T R^2, 1 / K_T = 1 / K_act + 1 / K_L.
+  DOUBLES_EQUAL(8e7 * 5.75e7 / (8e7 + 5.75e7), total, 1e-9 * total);
+  const double frequency = load_frequency(load, total);
+  DOUBLES_EQUAL(total, total_stiffness(load, frequency), 1e-12 * total);
+  DOUBLES_EQUAL(actuator, beside(load.load_stiffness, total), 1e-9 * actuator);
+  CHECK_TRUE(std::isinf(beside(load.load_stiffness, load.load_stiffness)));
+}
+
+// The growth of errors that the declarations state, as derivatives.
+TEST(EquivalentStiffness, HasTheErrorOfItsFrequencyAsManyTimesAsItSays) {
+  const LoadResonance load{9490.0, 0.7544, 5.75e7, 4e5, 1.2e8};
+  const double total = in_series(8e7, load.load_stiffness);
+  const double off = 1e-6;
+  const double in_total = total_stiffness(load, (1.0 + off) * load_frequency(load, total)) / total - 1.0;
+  DOUBLES_EQUAL(2.0 * (1.0 + 4e5 / (total * 0.7544 * 0.7544)), in_total / off, 1e-4);
+  const double in_actuator = beside(load.load_stiffness, (1.0 + off) * total) / 8e7 - 1.0;
+  DOUBLES_EQUAL(1.0 / (1.0 - total / load.load_stiffness), in_actuator / off, 1e-4);
+}
+
 TEST_GROUP(AngleCalibration){};
 
 TEST(AngleCalibration, RecoversAnAffineTransformAndWhatItDoesNotExplain) {

@@ -36,6 +36,14 @@ TEST_GROUP(Command) {
   }
 
   std::string record() const { return scratch.write("good.csv", "time[s],command[deg]\n0,0\n0.002,1\n0.004,1\n").string(); }
+  /// Long enough for Welch's method, and no sine.
+  static std::string ramp() {
+    std::string text = "time[s],command[deg]\n";
+    for (int row = 0; row < 2000; ++row) {
+      text += std::to_string(0.01 * row) + "," + std::to_string(1e-4 * row) + "\n";
+    }
+    return text;
+  }
   std::string model() const {
     return scratch
         .write("good.toml",
@@ -84,7 +92,7 @@ TEST(Command, without_what_it_needs_is_wrong_use) {
 
 TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
   for (const std::string command :
-       {"", "check ", "simulate ", "sweep ", "step ", "hammer ", "quiescent ", "strings ", "findings "}) {
+       {"", "check ", "simulate ", "sweep ", "step ", "stiffness ", "hammer ", "quiescent ", "strings ", "findings "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));
@@ -119,6 +127,42 @@ TEST(Command, a_test_on_a_model_is_analysed_again_from_its_record) {
   expect_message(err, {"either --model", "or --record"});
   LONGS_EQUAL(6, status_of("hammer --record " + record()));
   expect_message(err, {"no column engine"});
+}
+
+TEST(Command, stiffness_of_a_test_is_read_again_from_its_record_with_the_model_beside_it) {
+  const std::string bench = scratch
+                                .write("lab.toml",
+                                       "schema = 1\ntopology = \"simplex\"\n[effects.soft_stiffness]\nlaw = \"compliance\"\n"
+                                       "low_stiffness = 5.2e7\nload_scale = 6e3\n")
+                                .string();
+  const std::string kept = scratch.path("sines.csv").string();
+  const std::string picture = scratch.path("stiffness.svg").string();
+  const std::string of_bench = "stiffness --model " + bench;
+  LONGS_EQUAL(0, status_of(of_bench + " --amplitudes 0.05,0.4 --count 20 --output " + kept + " --picture " + picture));
+  expect_message(out,
+                 {"0.05 deg: notch ", "0.4 deg: notch ", "peak force ", "actuator ", "eq. 4-7: ", "asymptote: 7.75 Hz"});
+  CHECK_TRUE(std::filesystem::exists(picture));
+  const std::string simulated = out;
+  LONGS_EQUAL(0, status_of(of_bench + " --record " + kept));
+  STRCMP_EQUAL(simulated.c_str(), out.c_str());
+  LONGS_EQUAL(0, status_of(of_bench + " --record " + kept + " --json"));
+  expect_message(out, {"\"load_stiffness\": 57500000.0", "\"asymptote\"", "\"amplitude_degrees\": 0.0", "\"test\"",
+                       "\"expected\"", "\"peak_force\"", "\"actuator_stiffness\""});
+  LONGS_EQUAL(2, status_of("stiffness --record " + kept));
+  expect_message(err, {"--model is required"});
+  LONGS_EQUAL(2, status_of(of_bench + " --from 9 --to 5"));
+  expect_message(err, {"--from 9 --to 5", "--from below --to"});
+  LONGS_EQUAL(6, status_of(of_bench + " --record " + kept + " --from 12 --to 20"));
+  expect_message(err, {"sines.csv: piston has no notch from 12 to 20 Hz", "--from and --to say"});
+  LONGS_EQUAL(0, status_of("simulate --model " + bench + " --output " + kept + " --input " +
+                           scratch.write("ramp.csv", ramp()).string()));
+  LONGS_EQUAL(6, status_of(of_bench + " --record " + kept));
+  expect_message(err, {"sines.csv: command is no stepped sine", "hotfire sweep --profile sines"});
+  const std::string mass =
+      scratch.write("mass.toml", "schema = 1\ntopology = \"direct\"\n[mass]\ninertia = 1\ndamping = 1\nstiffness = 9\n")
+          .string();
+  LONGS_EQUAL(6, status_of("stiffness --model " + mass));
+  expect_message(err, {"mass.toml: topology = \"direct\"", "allowed: \"simplex\""});
 }
 
 TEST(Command, a_model_of_two_axes_is_checked_and_run_on_the_axis_that_is_named) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace hotfire::analysis {
@@ -40,18 +41,33 @@ double equivalent_stiffness(const SpringCurve& curve, double force, double stiff
   return 2.0 / (most * most) * sum * width / 3.0;
 }
 
+double in_series(double one, double other) { return 1.0 / (1.0 / one + 1.0 / other); }
+
+double beside(double other, double total) {
+  return total < other ? 1.0 / (1.0 / total - 1.0 / other) : std::numeric_limits<double>::infinity();
+}
+
+double load_frequency(const LoadResonance& load, double total) {
+  return std::sqrt((load.duct_stiffness + total * load.moment_arm * load.moment_arm) / load.inertia) /
+         (2.0 * std::numbers::pi);
+}
+
+double total_stiffness(const LoadResonance& load, double frequency) {
+  const double w = 2.0 * std::numbers::pi * frequency;
+  return (w * w * load.inertia - load.duct_stiffness) / (load.moment_arm * load.moment_arm);
+}
+
 double load_resonance(const LoadResonance& load, const SpringCurve& curve, double amplitude) {
   constexpr double kLeastForce = 1e-3;  // N: the slope at rest
   double frequency = 0.0;
   double own = load.actuator_stiffness;
   // The force follows the frequency, which follows the stiffness; each round shrinks the error by the stiffness's share.
   for (int round = 0; round < 50; ++round) {
-    const double total = 1.0 / (1.0 / own + 1.0 / load.load_stiffness);
-    frequency = std::sqrt((load.duct_stiffness + total * load.moment_arm * load.moment_arm) / load.inertia);
-    const double force = peak_sine_force(load.inertia, load.moment_arm, amplitude, frequency);
+    frequency = load_frequency(load, in_series(own, load.load_stiffness));
+    const double force = peak_sine_force(load.inertia, load.moment_arm, amplitude, 2.0 * std::numbers::pi * frequency);
     own = equivalent_stiffness(curve, std::max(force, kLeastForce), load.actuator_stiffness);
   }
-  return frequency / (2.0 * std::numbers::pi);
+  return frequency;
 }
 
 }  // namespace hotfire::analysis

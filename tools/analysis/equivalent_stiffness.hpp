@@ -16,6 +16,13 @@ double peak_sine_force(double inertia, double moment_arm, double amplitude, doub
 /// x_max.
 double equivalent_stiffness(const SpringCurve& curve, double force, double stiffest);
 
+/// Stiffness of two springs in series, 1 / (1 / one + 1 / other) [N/m] [SD eq. 3, 9].
+double in_series(double one, double other);
+
+/// The spring that makes `total` in series with `other` [N/m] [SD eq. 3, 9]; infinite where `total` is no softer than
+/// `other`. A relative error of `total` grows by 1 / (1 - total / other), one of `other` by total / (other - total).
+double beside(double other, double total);
+
 /// What a load resonance is worked out from.
 struct LoadResonance {
   double inertia;             ///< J [kg m^2]
@@ -25,9 +32,17 @@ struct LoadResonance {
   double actuator_stiffness;  ///< slope that the actuator's curve does not exceed [N/m]
 };
 
-/// The load resonance sqrt((K_n + K_T R^2) / J) / 2 pi [Hz] of an engine that swings with `amplitude` [rad], with the
-/// actuator's stiffness equivalent to its curve up to the peak force of that swing at that very frequency [SD eq. 2-7, 10].
-/// Amplitude zero gives the slope of the curve at rest.
+/// The load resonance sqrt((K_n + K_T R^2) / J) / 2 pi [Hz] with a total stiffness K_T [N/m] of actuator and load, damping
+/// left out [SD eq. 2, 10].
+double load_frequency(const LoadResonance& load, double total);
+
+/// The total stiffness ((2 pi f)^2 J - K_n) / R^2 [N/m] that has its load resonance at f [Hz]: `load_frequency` solved for
+/// K_T. A relative error of f comes out twice as large and by 1 + K_n / (K_T R^2) more, one of J by that alone.
+double total_stiffness(const LoadResonance& load, double frequency);
+
+/// The load resonance [Hz] of an engine that swings with `amplitude` [rad], with the actuator's stiffness equivalent to its
+/// curve up to the peak force of that swing at that very frequency [SD eq. 2-7, 10]. Amplitude zero gives the slope of the
+/// curve at rest.
 double load_resonance(const LoadResonance& load, const SpringCurve& curve, double amplitude);
 
 }  // namespace hotfire::analysis

@@ -21,6 +21,7 @@ void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);
 void add_replay(CLI::App& program);
 void add_step(CLI::App& program);
+void add_stiffness(CLI::App& program);
 void add_strings(CLI::App& program);
 void add_sweep(CLI::App& program);
 void add_timing(CLI::App& program);

@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
   add_simulate(program);
   add_sweep(program);
   add_step(program);
+  add_stiffness(program);
   add_hammer(program);
   add_quiescent(program);
   add_strings(program);

@@ -72,7 +72,8 @@ void run_sweep(SweepOptions& options) {
     return run;
   });
   const std::vector<trials::ChannelSweep> sweeps = trials::analyse_sweep(record, options.goal);
-  draw_if_wanted(options.trial, [&] { return trials::bode_chart(fmt::format("Sweep of {}", record.name), sweeps); });
+  draw_if_wanted(options.trial,
+                 [&] { return trials::bode_chart(fmt::format("Sweep of {}", name_of_trial(options.trial)), sweeps); });
   if (options.trial.json) {
     std::cout << trials::to_json(sweeps).dump(2) << '\n';
   } else {

@@ -1,5 +1,7 @@
 #include "tools/cli/trial_options.hpp"
 
+#include <filesystem>
+
 #include "tools/files/error.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -22,11 +24,19 @@ Record record_of_trial(const TrialOptions& options, const std::function<Record()
   if (options.model.empty() == options.record.empty()) {
     throw UsageError("give either --model, to run the test on it, or --record, to analyse a test that was recorded");
   }
-  Record record = options.model.empty() ? load_record(options.record) : run();
+  return recorded_or_run(options, run);
+}
+
+Record recorded_or_run(const TrialOptions& options, const std::function<Record()>& run) {
+  Record record = options.record.empty() ? run() : load_record(options.record);
   if (!options.output.empty()) {
     write_record(record, options.output);
   }
   return record;
+}
+
+std::string name_of_trial(const TrialOptions& options) {
+  return std::filesystem::path(options.record.empty() ? options.model : options.record).filename();
 }
 
 std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options) {

@@ -28,6 +28,12 @@ void add_trial_options(CLI::App& command, TrialOptions& options);
 /// wanted. Throws UsageError unless exactly one of the two is given.
 Record record_of_trial(const TrialOptions& options, const std::function<Record()>& run);
 
+/// The same where a model may be given beside the record, for what only a model knows: without a record it is run.
+Record recorded_or_run(const TrialOptions& options, const std::function<Record()>& run);
+
+/// The file that a test is of, record or model, without folder: what a picture is called.
+std::string name_of_trial(const TrialOptions& options);
+
 /// The options' model if it is of several axes, nothing otherwise. Throws UsageError for one and no axis that is named.
 std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tools/files/error.hpp"
 #include "tools/simulate/simulate.hpp"
@@ -24,12 +23,6 @@ SimplexParameters& axis_of(ModelFile& model) {
 ModelFile without_effects(ModelFile model) {
   axis_of(model).effects.active = {};
   return model;
-}
-
-double load_frequency(const SimplexParameters& axis) {
-  const double total = 1.0 / (1.0 / axis.actuator.stiffness + 1.0 / axis.structure.stiffness);
-  const double arm = axis.actuator.moment_arm;
-  return std::sqrt((axis.engine.duct_stiffness + total * arm * arm) / axis.engine.inertia) / (2.0 * std::numbers::pi);
 }
 
 std::vector<trials::ChannelSweep> swept(const ModelFile& model, const std::vector<double>& command, double lowest,

@@ -37,9 +37,6 @@ typename E::template Params<double>& effect_of(Parameters& parameters) {
 /// The model without any effect: the declared linear parts, saturation and the root of the flow law.
 ModelFile without_effects(ModelFile model);
 
-/// Frequency of the piston's zeros and of the engine on a locked actuator, sqrt((K_n + K_T R^2) / J) / 2 pi [SD eq. 2, 10].
-double load_frequency(const SimplexParameters& axis);
-
 /// Runs stepped sines on a model and analyses them.
 std::vector<trials::ChannelSweep> swept(const ModelFile& model, const std::vector<double>& command, double lowest,
                                         double highest);

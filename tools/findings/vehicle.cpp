@@ -10,6 +10,7 @@
 #include "tools/structure/synthetic.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/profiles.hpp"
+#include "tools/trials/stiffness.hpp"
 
 namespace hotfire::findings {
 
@@ -88,11 +89,10 @@ Outcome stiffness_by_location(const Sets& sets) {
   for (int i = 0; i < kLocations; ++i) {
     const auto& axis = parameters.axes[static_cast<std::size_t>(i)];
     const std::string& name = axes[static_cast<std::size_t>(i)];
-    const double arm = moment_arm_of(stage.vehicle, name);
     const trials::ChannelSweep sweep = piston_sweep(stage, name);
-    const double w = sweep.notch ? 2.0 * std::numbers::pi * sweep.notch->frequency : kNone;
-    const double total = (w * w * axis.engine.inertia - axis.engine.duct_stiffness) / (arm * arm);
-    const double from_notch = 1.0 / (1.0 / total - 1.0 / axis.actuator.stiffness);
+    const trials::LoadSpring spring = trials::load_spring_of(stage.vehicle, name);
+    const double total = analysis::total_stiffness(spring.load, sweep.notch ? sweep.notch->frequency : kNone);
+    const double from_notch = analysis::beside(axis.actuator.stiffness, total);
     const double from_modes = 1.0 / (1.0 / axis.structure.stiffness + stage.flexibility(i, i));
     outcome.figures.push_back(near(fmt::format("load stiffness of {}, notch against modal integral", name),
                                    1e-6 * from_notch, 1e-6 * from_modes, 0.02, "MN/m"));

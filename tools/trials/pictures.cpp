@@ -69,6 +69,32 @@ analysis::Chart time_chart(const std::string& title, const Record& record, const
   return chart;
 }
 
+analysis::Chart stiffness_chart(const std::string& title, const std::vector<SineStiffness>& stiffnesses,
+                                const LoadSpring& spring) {
+  constexpr int kPoints = 60;
+  analysis::Panel frequency{"load resonance [Hz]", {{"test", {}, {}, true}, {"eq. 4-7", {}, {}}, {"asymptote", {}, {}}}};
+  analysis::Panel stiffness = frequency;
+  stiffness.ordinate = "actuator [MN/m]";
+  const auto add = [&](std::size_t curve, double amplitude, double hertz, double newtons_per_metre) {
+    frequency.curves[curve].x.push_back(degrees(amplitude));
+    frequency.curves[curve].y.push_back(hertz);
+    stiffness.curves[curve].x.push_back(degrees(amplitude));
+    stiffness.curves[curve].y.push_back(1e-6 * newtons_per_metre);
+  };
+  for (const SineStiffness& own : stiffnesses) {
+    if (own.test) {
+      add(0, own.amplitude, own.test->frequency, own.test->actuator);
+    }
+  }
+  // The responses come in order of amplitude.
+  for (const double amplitude : spaced(0.5 * stiffnesses.front().amplitude, 2.0 * stiffnesses.back().amplitude, kPoints)) {
+    const ResonanceStiffness expected = expected_stiffness(spring, amplitude);
+    add(1, amplitude, expected.frequency, expected.actuator);
+    add(2, amplitude, asymptote(spring), spring.loaded);
+  }
+  return {title, "amplitude of the command [deg]", true, {frequency, stiffness}};
+}
+
 analysis::Chart spectrum_chart(const std::string& title, const std::vector<std::string>& labels,
                                const std::vector<analysis::Spectrum>& spectra, double lowest, double highest) {
   analysis::Chart chart{title, "frequency [Hz]", false, {{"density over its largest [dB]", {}}}};

@@ -6,6 +6,7 @@
 #include "tools/analysis/chart.hpp"
 #include "tools/analysis/welch.hpp"
 #include "tools/files/record.hpp"
+#include "tools/trials/stiffness.hpp"
 #include "tools/trials/sweep.hpp"
 
 namespace hotfire::trials {
@@ -15,6 +16,11 @@ analysis::Chart bode_chart(const std::string& title, const std::vector<ChannelSw
 
 /// Command and engine in degrees over time, and the piston in millimetres, as far as the record has them.
 analysis::Chart time_chart(const std::string& title, const Record& record, const std::string& axis);
+
+/// Load resonance and stiffness of the actuator over the amplitude of the sines: what the test has as dots, what the force
+/// curve expects [SD eq. 4-7] and what that rises to as lines. At least one amplitude.
+analysis::Chart stiffness_chart(const std::string& title, const std::vector<SineStiffness>& stiffnesses,
+                                const LoadSpring& spring);
 
 /// Densities over frequency between `lowest` and `highest` [Hz], each over its largest, in decibels.
 analysis::Chart spectrum_chart(const std::string& title, const std::vector<std::string>& labels,

@@ -13,6 +13,13 @@ using Json = nlohmann::ordered_json;
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json to_json(const ResonanceStiffness& stiffness) {
+  return {{"hertz", stiffness.frequency},
+          {"peak_force", stiffness.peak_force},
+          {"total_stiffness", stiffness.total},
+          {"actuator_stiffness", number_or_null(stiffness.actuator)}};
+}
+
 }  // namespace
 
 Json to_json(const std::vector<ChannelSweep>& sweeps) {
@@ -50,6 +57,18 @@ Json to_json(const std::vector<analysis::StepResponse>& steps, double period) {
                    {"hesitation", step.hesitation}});
   }
   return all;
+}
+
+Json to_json(const std::vector<SineStiffness>& stiffnesses, const LoadSpring& spring) {
+  Json sines = Json::array();
+  for (const SineStiffness& own : stiffnesses) {
+    sines.push_back({{"amplitude_degrees", degrees(own.amplitude)},
+                     {"test", own.test ? to_json(*own.test) : Json(nullptr)},
+                     {"expected", to_json(own.expected)}});
+  }
+  return {{"load_stiffness", spring.load.load_stiffness},
+          {"asymptote", {{"hertz", asymptote(spring)}, {"actuator_stiffness", spring.loaded}}},
+          {"sines", sines}};
 }
 
 }  // namespace hotfire::trials
