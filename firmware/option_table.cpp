@@ -141,6 +141,8 @@ constexpr OptionLine kLines[] = {
      [](const std::string&, Options& o) { return o.lockstep = true, std::string(); }},
     {"--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`",
      [](const std::string& value, Options& o) { return o.recording = value, std::string(); }},
+    {"--overwrite", "", "replace an older file that --record names, which is refused otherwise",
+     [](const std::string&, Options& o) { return o.overwrite = true, std::string(); }},
     {"--record-buffer-s", "X", "how long the disk may stall before cycles are dropped; default 8",
      [](const std::string& value, Options& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }},
     {"--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384",

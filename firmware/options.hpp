@@ -44,7 +44,8 @@ struct Options {
   std::optional<double> max_step_us;
   std::optional<std::uint64_t> max_overruns;
   hal::sim::CommandSource source;
-  std::string recording;  ///< path to write to, or to replay; empty: none
+  std::string recording;   ///< path to write to, or to replay; empty: none
+  bool overwrite = false;  ///< an older file of the recording's name is replaced
   double record_buffer_s = 8.0;
   std::uint64_t record_max_mib = 16384;
   std::uint64_t max_dropped = 0;  ///< cycles that may be missing in the recording

@@ -42,7 +42,7 @@ std::size_t ring_slots(const Options& options) {
 }  // namespace
 
 RecordingSession::RecordingSession(const Options& options, const RecordedPlant& plant)
-    : file_(options.recording, options.record_max_mib << 20),
+    : file_(options.recording, options.record_max_mib << 20, options.overwrite),
       header_(hal::header_text(header_of(options, plant))),
       recorder_(file_, options.actuators, plant.start.size(), ring_slots(options)) {}
 

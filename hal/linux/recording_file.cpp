@@ -47,9 +47,15 @@ std::optional<Failure> RecordingFile::create(std::string_view header) {
                    "name a file in a folder that this user may write to, on a disk with room"};
   };
   struct stat status {};
-  if (stat(path_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    errno = EEXIST;
-    return failure();
+  if (stat(path_.c_str(), &status) == 0) {
+    if (!S_ISREG(status.st_mode)) {
+      errno = EEXIST;
+      return failure();
+    }
+    if (!overwrite_) {
+      return Failure{"no recording: " + path_ + " exists, and no test can be recorded again",
+                     "name another file, or give --overwrite to replace it"};
+    }
   }
   const std::string unnamed = path_ + ".part";
   file_ = open(unnamed.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);

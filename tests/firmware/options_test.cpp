@@ -86,10 +86,11 @@ TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
 TEST(Options, RecordingAndItsLimitsAreRead) {
   const Options options =
       accepted({"plant", "--image", "p", "--record", "run.hfr", "--record-buffer-s", "2.5", "--record-max-mib=64",
-                "--max-dropped", "7", "--actuators", "8", "--sync", "sim", "--max-missed-syncs", "0"});
+                "--overwrite", "--max-dropped", "7", "--actuators", "8", "--sync", "sim", "--max-missed-syncs", "0"});
   STRCMP_EQUAL("run.hfr", options.recording.c_str());
   DOUBLES_EQUAL(2.5, options.record_buffer_s, 0.0);
   UNSIGNED_LONGS_EQUAL(64, options.record_max_mib);
+  CHECK(options.overwrite);
   UNSIGNED_LONGS_EQUAL(7, options.max_dropped);
   UNSIGNED_LONGS_EQUAL(8, options.actuators);
   CHECK(options.pace == PaceKind::sim);

@@ -27,6 +27,7 @@ inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~st
   LabOnWire bench(std::move(*image.settings));
   Options options;
   options.recording = path;
+  options.overwrite = true;  // a test may record again
   RecordedPlant plant;
   plant.topology = kLabTopology;
   plant.input = {"command", "rad"};

@@ -156,16 +156,28 @@ TEST(Recording, NoByteOfABlockCanChangeUnnoticed) {
   }
 }
 
-TEST(Recording, FileHasItsNameOnlyWithItsHeaderAndReplacesAnOlderOne) {
+TEST(Recording, FileHasItsNameOnlyWithItsHeaderAndReplacesAnOlderOneThatItMayOverwrite) {
   const std::string path = scratch.write("run.hfr", "old").string();
   {
-    RecordingFile file(path, 1 << 20);
+    RecordingFile file(path, 1 << 20, true);
     CHECK(!file.create(start));
     const std::string one = block({0});
     STRCMP_EQUAL("", file.append(std::as_bytes(std::span(one)), {}).c_str());
   }
   RecordingReader reader(path);
   UNSIGNED_LONGS_EQUAL(1, count(reader));
+  CHECK(!std::filesystem::exists(path + ".part"));
+}
+
+TEST(Recording, FileThatExistsIsRefusedWithTheMendAndStaysAsItWas) {
+  const std::string path = scratch.write("run.hfr", "old").string();
+  {
+    const auto failure = RecordingFile(path, 1 << 20).create(start);
+    CHECK(failure.has_value());
+    STRCMP_CONTAINS("run.hfr exists", failure->what.c_str());
+    STRCMP_CONTAINS("--overwrite", failure->mend.c_str());
+  }
+  UNSIGNED_LONGS_EQUAL(3, std::filesystem::file_size(path));
   CHECK(!std::filesystem::exists(path + ".part"));
 }
 

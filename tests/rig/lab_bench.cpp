@@ -148,7 +148,8 @@ LabProgram::LabProgram(const std::string& changes, const std::string& options) {
   process_ = fork();
   if (process_ == 0) {
     const std::string command =
-        "exec hotfire-rt lab --image /tmp/lab.image --bus can0 --gpio rig --period-us 10000 --warm-up 0 --record " +
+        "exec hotfire-rt lab --image /tmp/lab.image --bus can0 --gpio rig --period-us 10000 --warm-up 0 --overwrite "
+        "--record " +
         std::string(kRecording) + " " + options + " >/tmp/lab.out 2>&1";
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
