@@ -58,7 +58,7 @@ Record oscillator(double cubic, double noise) {
   return record;
 }
 
-explain::SearchResult<explain::DirectFamily> found_in(const Record& record) {
+explain::SearchResult<explain::DirectFamily> found_in(const Record& record, int most_effects = 4) {
   ModelFile model;
   DirectParameters declared;
   declared.mass.inertia = 1.02;
@@ -67,7 +67,7 @@ explain::SearchResult<explain::DirectFamily> found_in(const Record& record) {
   model.parameters = declared;
   model.tolerance = {{"mass.inertia", 0.05}, {"mass.damping", 0.3}, {"mass.stiffness", 0.05}};
   const auto data = explain::make_dataset(model, {record});
-  return explain::search<explain::DirectFamily>(data, model, {2, 4, {}});
+  return explain::search<explain::DirectFamily>(data, model, {2, most_effects, {}});
 }
 
 }  // namespace
@@ -94,4 +94,13 @@ TEST(Search, AWrongDeclaredValueIsCalibratedAndNotTakenForAMissingEffect) {
   LONGS_EQUAL(0, found.kept.size());
   CHECK(explain::Goodness::combined(found.declared.goodness.held_out) > 2.0);
   DOUBLES_EQUAL(1.0, explain::Goodness::combined(found.calibrated.goodness.held_out), 0.1);
+}
+
+TEST(Search, AllowedNoEffectItCalibratesAndLooksForNoneUnlistedEither) {
+  const auto found = found_in(oscillator(400.0, 1e-3), 0);
+  LONGS_EQUAL(0, found.trials.size());
+  LONGS_EQUAL(0, found.kept.size());
+  CHECK(found.explained.model.u == found.calibrated.model.u);
+  // What is missing is still there, where the effect leaves the noise alone.
+  CHECK(explain::Goodness::combined(found.explained.goodness.held_out) > 2.0);
 }

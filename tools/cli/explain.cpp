@@ -172,7 +172,7 @@ void add_explain(CLI::App& program) {
   command->add_option("--out", arguments->out, "folder for explained.toml, report.json and report.html")->required();
   command->add_option("records", arguments->records, "measured records (.csv, or candump .log)")->required();
   command->add_option("--threads", arguments->threads, "threads to use")->check(CLI::Range(1U, 256U))->capture_default_str();
-  command->add_option("--most-effects", arguments->most_effects, "most effects to add")
+  command->add_option("--most-effects", arguments->most_effects, "most effects to add; 0: calibrate only")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
   command->add_option("--exclude", arguments->excluded, "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out")

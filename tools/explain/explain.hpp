@@ -24,7 +24,7 @@ struct Explanation {
 
 struct ExplainOptions {
   unsigned threads = 1;
-  int most_effects = 4;
+  int most_effects = 4;  ///< to add; 0: calibrate only
   Watch watch;
   std::vector<Exclusion> exclusions{};
 };

@@ -83,7 +83,7 @@ class Search {
       }
       take_out_superfluous(round);
     }
-    if (!reaches_noise(data_, result_.explained) && !options_.watch.interrupted() &&
+    if (options_.most_effects > 0 && !reaches_noise(data_, result_.explained) && !options_.watch.interrupted() &&
         excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise) {
       look_for_unlisted();
     }

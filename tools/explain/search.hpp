@@ -23,7 +23,7 @@ struct SearchResult {
 
 struct SearchOptions {
   unsigned threads = 1;
-  int most_effects = 4;
+  int most_effects = 4;  ///< to add; 0: calibrate only
   Watch watch;
 };
 
