@@ -1,5 +1,4 @@
-// Prints docs/performance.md: hotfire-benchmark --benchmark_min_time=0.2 >
-// docs/performance.md
+// Prints docs/performance.md: hotfire-benchmark --benchmark_min_time=0.2 > docs/performance.md
 
 #include <benchmark/benchmark.h>
 
@@ -50,16 +49,14 @@ void step_vehicle(benchmark::State& run, int modes) {
 void step_taos(benchmark::State& run) { step_vehicle<Taos>(run, 4); }
 void step_masv(benchmark::State& run) { step_vehicle<Masv>(run, static_cast<int>(run.range(0))); }
 
-/// The largest error of piston and engine of one axis, rms over the signal's
-/// rms.
+/// The largest error of piston and engine of one axis, rms over the signal's rms.
 double axis_error(const study::ReferenceRows& rows) {
   static const study::ReferenceRows reference =
       study::integrate_reference(hot_fire_axis().reference, axis_commands(), kAxisSample, 0.0);
   return std::max(relative_rms(rows, reference, 0), relative_rms(rows, reference, 1));
 }
 
-// Argument of ours: steps a millisecond. Of CVODE: digits of the relative
-// tolerance. Starts are worked out before.
+// Argument of ours: steps a millisecond. Of CVODE: digits of the relative tolerance. Starts are worked out before.
 
 void ours_axis(benchmark::State& run) {
   const AxisCase axis = hot_fire_axis();
@@ -82,8 +79,7 @@ void cvode_axis(benchmark::State& run) {
   run.counters["evaluations"] = static_cast<double>(evaluations) / static_cast<double>(run.iterations());
 }
 
-/// Hot fire with every effect: one engine with four modes, four engines with
-/// twelve that couple them.
+/// Hot fire with every effect: one engine with four modes, four engines with twelve that couple them.
 template <class Vehicle>
 typename Vehicle::Parameters every_effect() {
   typename Vehicle::Parameters parameters = hot_fire<Vehicle>();

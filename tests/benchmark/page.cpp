@@ -25,8 +25,8 @@ std::vector<std::pair<double, Measured>> series(const Results& measured, const s
   return found;
 }
 
-/// Least squares of time over modes: what a step costs without modes, and what
-/// each adds [s], and the largest deviation from it over the cost.
+/// Least squares of time over modes: what a step costs without modes, and what each adds [s], and the largest deviation from
+/// it over the cost.
 struct Line {
   double constant = 0.0;
   double slope = 0.0;
@@ -63,9 +63,8 @@ void append_steps(std::string& text, const Results& measured) {
     return;
   }
   const auto add = std::back_inserter(text);
-  fmt::format_to(add,
-                 "\n## One step\n\n| plant | time | over one axis | wanted | "
-                 "state and constants |\n|---|---|---|---|---|\n");
+  fmt::format_to(
+      add, "\n## One step\n\n| plant | time | over one axis | wanted | state and constants |\n|---|---|---|---|---|\n");
   const double one = axis->second.seconds;
   const auto row = [&](const std::string& name, const Measured& own, const char* wanted) {
     fmt::format_to(add, "| {} | {:.0f} ns | {:.2f} | {} | {:.1f} KiB |\n", name, 1e9 * own.seconds, own.seconds / one,
@@ -78,11 +77,9 @@ void append_steps(std::string& text, const Results& measured) {
   }
   const Line line = fitted(masv);
   fmt::format_to(add,
-                 "\nMASV is linear in its modes: {:.0f} ns + {:.2f} ns a mode, "
-                 "no point further than {:.1f} % from the "
+                 "\nMASV is linear in its modes: {:.0f} ns + {:.2f} ns a mode, no point further than {:.1f} % from the "
                  "line. Counts of\n"
-                 "instructions, which no other load disturbs, are checked by "
-                 "`ctest -R vehicle_cost`.\n",
+                 "instructions, which no other load disturbs, are checked by `ctest -R vehicle_cost`.\n",
                  1e9 * line.constant, 1e9 * line.slope, 100.0 * line.deviation);
 }
 
@@ -98,8 +95,7 @@ const std::pair<double, Measured>* as_accurate(const std::vector<std::pair<doubl
   return best;
 }
 
-/// Both tables of one plant, whose benchmarks are `ours_PLANT` and
-/// `cvode_PLANT`.
+/// Both tables of one plant, whose benchmarks are `ours_PLANT` and `cvode_PLANT`.
 void append_comparison(std::string& text, const Results& measured, const std::string& plant, const std::string& title) {
   const auto own = series(measured, "ours_" + plant);
   const auto cvode = series(measured, "cvode_" + plant);
@@ -108,8 +104,7 @@ void append_comparison(std::string& text, const Results& measured, const std::st
   }
   const auto add = std::back_inserter(text);
   fmt::format_to(add,
-                 "\n### {}\n\n| ours, step | error | time | CVODE of no larger "
-                 "error: tolerance, time | ratio "
+                 "\n### {}\n\n| ours, step | error | time | CVODE of no larger error: tolerance, time | ratio "
                  "|\n|---|---|---|---|---|\n",
                  title);
   for (const auto& [parts, ours] : own) {
@@ -122,9 +117,7 @@ void append_comparison(std::string& text, const Results& measured, const std::st
       fmt::format_to(add, " none that was tried | |\n");
     }
   }
-  fmt::format_to(add,
-                 "\n| CVODE, relative tolerance | error | time | "
-                 "evaluations |\n|---|---|---|---|\n");
+  fmt::format_to(add, "\n| CVODE, relative tolerance | error | time | evaluations |\n|---|---|---|---|\n");
   for (const auto& [digits, other] : cvode) {
     fmt::format_to(add, "| 1e-{:.0f} | {:.2g} % | {:.0f} ms | {:.0f} |\n", digits, 100.0 * other.counters.at("error"),
                    1e3 * other.seconds, other.counters.at("evaluations"));
@@ -138,28 +131,21 @@ void append_work_precision(std::string& text, const Results& measured) {
     return;
   }
   text.append(
-      "\n## Work and precision\n\nSines and steps about every angle, commands "
-      "held for 1 ms, from a start that is given: "
+      "\n## Work and precision\n\nSines and steps about every angle, commands held for 1 ms, from a start that is given: "
       "1.5 s of one axis, 1.2 s of the\n"
-      "others. Error: the largest of any piston or engine, rms over the "
-      "signal's rms, against CVODE at a relative tolerance "
+      "others. Error: the largest of any piston or engine, rms over the signal's rms, against CVODE at a relative tolerance "
       "of 1e-10 on\n"
       "independently written equations. Wanted: a ratio of at least 20.\n\n"
-      "CVODE is BDF with a dense Jacobian by differences, and starts afresh at "
-      "every command, which jumps. It is made for "
+      "CVODE is BDF with a dense Jacobian by differences, and starts afresh at every command, which jumps. It is made for "
       "equations that it\n"
-      "knows nothing of; the model's step is made for these. The reference's "
-      "equations are written plainly, not for speed: a "
-      "soft spring's\n"
-      "force is found by bisection. *Evaluations* are those of the equations, "
-      "without what the Jacobian takes: a step of the "
-      "model evaluates\n"
+      "knows nothing of; the model's step is made for these. The reference's equations are written plainly, not for speed: "
+      "a soft spring's\n"
+      "force is found by bisection. *Evaluations* are those of the equations, without what the Jacobian takes: a step of "
+      "the model evaluates\n"
       "them twice.\n");
   append_comparison(text, measured, "axis", "One axis, friction, soft spring, dead band");
   append_comparison(text, measured, "taos", "TAOS: two axes, hot fire with every effect, four modes");
-  append_comparison(text, measured, "masv",
-                    "MASV: eight axes, hot fire with every effect, twelve "
-                    "modes that couple them");
+  append_comparison(text, measured, "masv", "MASV: eight axes, hot fire with every effect, twelve modes that couple them");
 }
 
 }  // namespace
@@ -183,12 +169,9 @@ void Collector::ReportRuns(const std::vector<Run>& runs) {
 
 std::string performance_page(const Results& measured) {
   std::string text =
-      "# Performance\n\nPrinted by `hotfire-benchmark "
-      "--benchmark_min_time=0.2` (Google Benchmark; processor "
-      "time, best of the "
-      "repetitions if there are\n"
-      "several). Times are those of one machine and change with "
-      "it; ratios, taken in one run, hardly do.\n";
+      "# Performance\n\nPrinted by `hotfire-benchmark --benchmark_min_time=0.2` (Google Benchmark; processor time, best of "
+      "the repetitions if there are\n"
+      "several). Times are those of one machine and change with it; ratios, taken in one run, hardly do.\n";
   append_steps(text, measured);
   append_work_precision(text, measured);
   return text;

@@ -27,8 +27,7 @@ ModelFile linear() {
   return model;
 }
 
-/// Frequency of the engine's pendulum on a locked actuator [SD eq. 10], and of
-/// the piston's zeros.
+/// Frequency of the engine's pendulum on a locked actuator [SD eq. 10], and of the piston's zeros.
 double pendulum(const SimplexParameters& p) {
   const double total = 1.0 / (1.0 / p.actuator.stiffness + 1.0 / p.structure.stiffness);
   return std::sqrt((p.engine.duct_stiffness + total * p.actuator.moment_arm * p.actuator.moment_arm) / p.engine.inertia) /
@@ -42,8 +41,7 @@ TEST_GROUP(Trials){};
 TEST(Trials, SinesAndMultisineGiveTheSameResponseOfALinearAxis) {
   const ModelFile model = linear();
   const SweepGoal goal{.moment_arm = moment_arm_of(model)};
-  // Small enough for the root of the flow law, whose share falls with the load
-  // pressure.
+  // Small enough for the root of the flow law, whose share falls with the load pressure.
   const auto by_sines =
       analyse_sweep(simulate(model, command_record(stepped_sines({{1e-5, {1.0, 2.0, 4.0, 6.0, 9.0}}}))), goal);
   const auto broadband = analyse_sweep(simulate(model, command_record(multisine(1e-4, 0.5, 14.0, 8.0, 6, 2))), goal);
@@ -53,8 +51,7 @@ TEST(Trials, SinesAndMultisineGiveTheSameResponseOfALinearAxis) {
     for (const auto& sine : by_sines[channel].response) {
       for (const auto& point : broadband[channel].response) {
         if (std::abs(point.frequency - sine.frequency) < 0.01) {
-          // Hann's window reaches two bins of 1/8 Hz to either side, over which
-          // the response bends.
+          // Hann's window reaches two bins of 1/8 Hz to either side, over which the response bends.
           CHECK_TRUE(std::abs(point.gain - sine.gain) < 0.03 * std::abs(sine.gain));
           CHECK_TRUE(point.coherence > 0.99);
         }
@@ -217,8 +214,7 @@ TEST(Trials, AQuiescentVehicleMovesOnAllAxesAndIsTheSameForTheSameSeed) {
     }
     return std::sqrt(sum);
   };
-  // Of one strength on both: two seconds of a lightly damped axis vary by less
-  // than a factor of three.
+  // Of one strength on both: two seconds of a lightly damped axis vary by less than a factor of three.
   const double ratio = rms(one.find("engine.yaw")->values) / rms(one.find("engine.pitch")->values);
   CHECK_TRUE(ratio > 1.0 / 3.0 && ratio < 3.0);
   CHECK_THROWS(UsageError, quiescent(vehicle, "yaw2", ambient));
@@ -245,8 +241,7 @@ TEST(Trials, StringsGiveTheAnglesThatTheirSettledPosesTaught) {
   const Record test = simulate(vehicle, command_record(multisine(0.01, 0.5, 2.0, 2.0, 2, 4), "command.pitch"));
   const StringAngles angles = string_angles(test, calibration, "");
   CHECK_TRUE(angles.known);
-  // Calibrated on commands, which the engine misses by what its ducts take from
-  // the load spring: K_n / (K_T R^2), 2 %.
+  // Calibrated on commands, which the engine misses by what its ducts take from the load spring: K_n / (K_T R^2), 2 %.
   CHECK_TRUE(angles.pitch < 0.02 * 0.01);
   CHECK_TRUE(angles.yaw < 1e-4);
   CHECK_THROWS(FileError, settled_poses(test, "2", 2.0));

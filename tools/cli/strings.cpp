@@ -32,10 +32,8 @@ analysis::AngleCalibration calibration_of(const StringOptions& options, std::siz
   try {
     return analysis::AngleCalibration(settled);
   } catch (const std::invalid_argument& problem) {
-    throw FileError(
-        fmt::format("{}: {} poses are held for {:g} s; {}; --hold "
-                    "says for how long a pose is held",
-                    options.settled, poses, options.hold, problem.what()));
+    throw FileError(fmt::format("{}: {} poses are held for {:g} s; {}; --hold says for how long a pose is held",
+                                options.settled, poses, options.hold, problem.what()));
   }
 }
 
@@ -66,10 +64,8 @@ void run_strings(const StringOptions& options) {
     std::cout << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     return;
   }
-  std::cout << fmt::format(
-      "{}: calibrated on {} settled poses, which the fit "
-      "leaves {:.3g} mdeg rms",
-      options.output, poses, millidegrees(calibration.residual()));
+  std::cout << fmt::format("{}: calibrated on {} settled poses, which the fit leaves {:.3g} mdeg rms", options.output, poses,
+                           millidegrees(calibration.residual()));
   if (angles.known) {
     std::cout << fmt::format("; from the record's own angles: pitch {:.3g}, yaw {:.3g} mdeg rms", millidegrees(angles.pitch),
                              millidegrees(angles.yaw));
@@ -81,13 +77,11 @@ void run_strings(const StringOptions& options) {
 
 void add_strings(CLI::App& program) {
   const auto options = std::make_shared<StringOptions>();
-  CLI::App* command = program.add_subcommand("strings",
-                                             "Engine angles from four string potentiometers, calibrated on "
-                                             "settled poses");
+  CLI::App* command =
+      program.add_subcommand("strings", "Engine angles from four string potentiometers, calibrated on settled poses");
   command
       ->add_option("--settled", options->settled,
-                   "record (.csv) with string1 .. string4 in which the "
-                   "commands of both angles are held at several poses")
+                   "record (.csv) with string1 .. string4 in which the commands of both angles are held at several poses")
       ->required();
   command->add_option("--record", options->record, "record (.csv) with string1 .. string4 to find the angles of")
       ->required();
@@ -100,8 +94,7 @@ void add_strings(CLI::App& program) {
   command->add_option("--picture", options->picture, "draw the angles (.svg)");
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
-      "Example: hotfire strings --settled poses.csv --record "
-      "sweep.csv --output angles.csv --picture angles.svg");
+      "Example: hotfire strings --settled poses.csv --record sweep.csv --output angles.csv --picture angles.svg");
   command->callback([options] { run_strings(*options); });
 }
 

@@ -40,9 +40,8 @@ std::vector<analysis::StepResponse> engine_steps(const ModelFile& model, const R
 
 constexpr double kFriction = 45e3;  // N m, physics.md section 4
 
-/// The piston's response in pitch of an engine with two axes on a bearing of
-/// this torsional stiffness [N m/rad], rigid if it is zero, whose friction is
-/// all but rigid.
+/// The piston's response in pitch of an engine with two axes on a bearing of this torsional stiffness [N m/rad], rigid if it
+/// is zero, whose friction is all but rigid.
 trials::ChannelSweep on_bearing(double torsion, const char* name) {
   TaosParameters parameters;
   for (auto& axis : parameters.axes) {
@@ -127,8 +126,7 @@ Outcome hot_fire_step(const Sets& sets) {
 }
 
 Outcome notch_and_gimbal(const Sets& sets) {
-  // Section 3 of physics.md: 45 kN m on the reference axis at hot-fire load
-  // stiffness.
+  // Section 3 of physics.md: 45 kN m on the reference axis at hot-fire load stiffness.
   ModelFile model = without_effects(sets.hot_fire);
   SimplexParameters& axis = axis_of(model);
   axis = SimplexParameters{};
@@ -159,10 +157,8 @@ Outcome notch_and_gimbal(const Sets& sets) {
   outcome.picture =
       trials::bode_chart("F9: piston with 45 kN m of gimbal friction", {rigid, compliant, rigid_bearing, compliant_bearing});
   outcome.note =
-      "One axis has bearing and bristle in series as one stiffness: "
-      "5e8 N m/rad against 45 kN m over 0.15 deg, physics.md "
-      "section 4. Of two axes the bristle keeps 5e8 N m/rad, and "
-      "the bearing's 6x6 stiffness is the compliance.";
+      "One axis has bearing and bristle in series as one stiffness: 5e8 N m/rad against 45 kN m over 0.15 deg, physics.md "
+      "section 4. Of two axes the bristle keeps 5e8 N m/rad, and the bearing's 6x6 stiffness is the compliance.";
   return outcome;
 }
 

@@ -10,12 +10,10 @@ namespace hotfire {
 
 /// What drives a plant between the rows of a record.
 ///
-/// A command is held between rows: that is what a controller does. A measured
-/// force is a sampled continuous signal: held, it would come half a row late,
-/// which at a tenth of the sampling rate is an error of a third of the
-/// response. It is interpolated by the polynomial through six neighbouring rows
-/// (Lagrange, degree 5) and each plant step gets the mean over its own part of
-/// the row; the first and last value continue beyond the ends.
+/// A command is held between rows: that is what a controller does. A measured force is a sampled continuous signal: held, it
+/// would come half a row late, which at a tenth of the sampling rate is an error of a third of the response. It is
+/// interpolated by the polynomial through six neighbouring rows (Lagrange, degree 5) and each plant step gets the mean over
+/// its own part of the row; the first and last value continue beyond the ends.
 class Excitation {
  public:
   enum class Between { held, interpolated };
@@ -49,8 +47,7 @@ class Excitation {
   static constexpr std::ptrdiff_t kNodes = 6;
   static constexpr std::ptrdiff_t kBefore = 2;
 
-  /// Mean of each Lagrange polynomial on the nodes -2 .. 3 over [from, to]:
-  /// three-point Gauss, exact to degree 5.
+  /// Mean of each Lagrange polynomial on the nodes -2 .. 3 over [from, to]: three-point Gauss, exact to degree 5.
   static std::array<double, kNodes> mean_weights(double from, double to) {
     constexpr std::array<double, 3> kAbscissa{-0.7745966692414834, 0.0, 0.7745966692414834};
     constexpr std::array<double, 3> kShare{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
@@ -75,8 +72,8 @@ class Excitation {
   std::vector<std::array<double, kNodes>> weights_;
 };
 
-/// How the input of a plant goes on between rows: a `direct` mass is driven by
-/// a measured force, a hydraulic axis by a command.
+/// How the input of a plant goes on between rows: a `direct` mass is driven by a measured force, a hydraulic axis by a
+/// command.
 template <class Plant>
 constexpr Excitation::Between between_rows() {
   return Plant::topology == "direct" ? Excitation::Between::interpolated : Excitation::Between::held;

@@ -6,9 +6,8 @@
 
 namespace hotfire {
 
-/// Numbers of a normal distribution, mean 0, variance 1 [Box and Muller 1958,
-/// Ann. Math. Stat. 29]: the same on every machine, as the standard library's
-/// distributions are not.
+/// Numbers of a normal distribution, mean 0, variance 1 [Box and Muller 1958, Ann. Math. Stat. 29]: the same on every
+/// machine, as the standard library's distributions are not.
 class Normal {
  public:
   explicit Normal(unsigned seed) : random_(seed) {}

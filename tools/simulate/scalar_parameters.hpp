@@ -26,8 +26,8 @@ void copy_choices(const FromValues& from, ToValues& to) {
   }
 }
 
-/// Parameters in another scalar: every field by value, options, tables and
-/// activity as they are. The derivatives of a dual number are left at zero.
+/// Parameters in another scalar: every field by value, options, tables and activity as they are. The derivatives of a dual
+/// number are left at zero.
 template <class To, class From>
 To with_scalar(const From& from) {
   To to;

@@ -16,8 +16,7 @@ namespace hotfire {
 
 namespace {
 
-/// Position error of a mass over the first rows as a function of its initial
-/// position and velocity, for TinySolver.
+/// Position error of a mass over the first rows as a function of its initial position and velocity, for TinySolver.
 struct StartError {
   // The names are TinySolver's.
   using Scalar = double;
@@ -94,10 +93,8 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
   });
   if (!finite) {
     throw FileError(fmt::format(
-        "{}: the model runs away at {:.6g} s: its parameters make it unstable "
-        "for this {}",
-        inputs.path.string(), inputs.start + static_cast<double>(outputs.channels[1].values.size()) * inputs.period,
-        Plant::input_channel));
+        "{}: the model runs away at {:.6g} s: its parameters make it unstable for this {}", inputs.path.string(),
+        inputs.start + static_cast<double>(outputs.channels[1].values.size()) * inputs.period, Plant::input_channel));
   }
   return outputs;
 }
@@ -121,8 +118,7 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
   }
   if (fit_start_rows > 0) {
     throw UsageError(
-        "--fit-start is for a direct model; a hydraulic axis "
-        "starts in the steady state under its first command");
+        "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command");
   }
   require_channel(inputs, "command", "the model is driven by it");
   const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), step);

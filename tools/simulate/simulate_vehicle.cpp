@@ -21,8 +21,7 @@ namespace {
 constexpr std::string_view kCommand = "command.";
 constexpr std::string_view kVibration = "vibration.";
 
-/// The channel `kind` of every axis; null where the record has none. Refuses
-/// one of an axis that the model has not.
+/// The channel `kind` of every axis; null where the record has none. Refuses one of an axis that the model has not.
 std::vector<const Channel*> channels_of(const Record& inputs, std::string_view kind, const std::vector<std::string>& axes) {
   std::vector<const Channel*> channels;
   channels.reserve(axes.size());
@@ -48,8 +47,7 @@ std::vector<const Channel*> command_channels(const Record& inputs, const std::ve
   return channels;
 }
 
-/// The slip velocity that a recorded vibration adds to the bearings: a sampled
-/// signal, interpolated between rows.
+/// The slip velocity that a recorded vibration adds to the bearings: a sampled signal, interpolated between rows.
 class RecordedVibration {
  public:
   /// Refuses a record of a vibration for a bearing whose law has it already.
@@ -62,8 +60,7 @@ class RecordedVibration {
       }
       if (parameters.gimbals[i / 2].friction.option == model::BearingFriction<double>::kVibrated) {
         throw FileError(
-            fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a "
-                        "recorded vibration are two ways "
+            fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a recorded vibration are two ways "
                         "to the same physics; give one of them",
                         inputs.path.string(), channels[i]->name));
       }
@@ -83,8 +80,7 @@ class RecordedVibration {
   std::vector<std::pair<std::size_t, Excitation>> axes_;
 };
 
-/// A record with a channel for all that a run gives, and the commands filled
-/// in.
+/// A record with a channel for all that a run gives, and the commands filled in.
 template <class Plant>
 Record empty_outputs(const VehicleFile& model, const Record& inputs) {
   const std::vector<std::string> axes = axis_names(Plant::kEngines);

@@ -11,30 +11,23 @@ namespace hotfire {
 /// What a run of a model of several axes has beside its commands.
 struct VehicleRun {
   unsigned seed = 1;  ///< of the sensors' noise and of the strings' placement errors
-  /// Angular momentum that each axis's engine is given after each row [N m s];
-  /// empty: none.
+  /// Angular momentum that each axis's engine is given after each row [N m s]; empty: none.
   std::vector<std::vector<double>> impulses = {};
 };
 
-/// Runs a model of several axes open loop on the channels `command.pitch`,
-/// `command.yaw` (several engines: `command.pitch1`
-/// ...) of `inputs`, held between rows; an axis without a channel is commanded
-/// zero. Channels `vibration.pitch` ... [rad/s] are what a recorded vibration
-/// adds to the slip of the bearings. Starts in the steady state under the first
-/// row. Returns time, every axis's command, its piston as its potentiometer
-/// reads it, its engine's true angle and load pressure, and, of a model with
-/// strings, `string1` .. `string4` (several engines: `string1.engine1` ...):
-/// the change of each length from zero angles. Throws FileError for a record
-/// without any command or with that of an axis the model has not, and for a
-/// model that runs away.
+/// Runs a model of several axes open loop on the channels `command.pitch`, `command.yaw` (several engines: `command.pitch1`
+/// ...) of `inputs`, held between rows; an axis without a channel is commanded zero. Channels `vibration.pitch` ... [rad/s]
+/// are what a recorded vibration adds to the slip of the bearings. Starts in the steady state under the first row. Returns
+/// time, every axis's command, its piston as its potentiometer reads it, its engine's true angle and load pressure, and, of
+/// a model with strings, `string1` .. `string4` (several engines: `string1.engine1` ...): the change of each length from
+/// zero angles. Throws FileError for a record without any command or with that of an axis the model has not, and for a model
+/// that runs away.
 Record simulate(const VehicleFile& model, const Record& inputs, const VehicleRun& run = {});
 
-/// The moment arm of an axis, the one of its attach points at zero angles [m].
-/// Throws UsageError for an axis it has not.
+/// The moment arm of an axis, the one of its attach points at zero angles [m]. Throws UsageError for an axis it has not.
 double moment_arm_of(const VehicleFile& model, const std::string& axis);
 
-/// Where an axis stands among those of the model. Throws UsageError for an axis
-/// it has not.
+/// Where an axis stands among those of the model. Throws UsageError for an axis it has not.
 std::size_t axis_index(const VehicleFile& model, const std::string& axis);
 
 }  // namespace hotfire

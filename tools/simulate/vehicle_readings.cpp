@@ -52,8 +52,7 @@ std::vector<double> VehicleReadings<Plant>::lengths(const typename Plant::State&
   for (std::size_t e = 0; e < geometry_.size(); ++e) {
     const double pitch = state.axes[2 * e].y(Plant::AxisModel::kAngle);
     const double yaw = state.axes[2 * e + 1].y(Plant::AxisModel::kAngle);
-    // The bearing's translation carries the engine's end: the same as the
-    // anchors carried the other way.
+    // The bearing's translation carries the engine's end: the same as the anchors carried the other way.
     const Eigen::Vector3d bearing = state.gimbals[e].displacement.template head<3>();
     for (const double length : geometry_[e].lengths(pitch, yaw, -bearing)) {
       lengths.push_back(length);

@@ -8,14 +8,12 @@
 
 namespace hotfire {
 
-/// What the sensors of a model of several axes read of its states, row by row.
-/// A string sees its engine's angles, the bearing give way, and the structure
-/// carry its anchor away; none of them can it tell from the others.
+/// What the sensors of a model of several axes read of its states, row by row. A string sees its engine's angles, the
+/// bearing give way, and the structure carry its anchor away; none of them can it tell from the others.
 template <class Plant>
 class VehicleReadings {
  public:
-  /// Draws the placement errors; noise comes from the same `seed`. At rest in
-  /// `start`.
+  /// Draws the placement errors; noise comes from the same `seed`. At rest in `start`.
   VehicleReadings(const VehicleSensors& sensors, const typename Plant::State& start, unsigned seed);
 
   /// Reads a state, `h` seconds after the last one.

@@ -31,8 +31,8 @@ std::vector<SineBand> green_run_sines(bool yaw = false);
 /// `highest` [Hz], equal amplitudes, random phases from `seed`, scaled to a peak of `amplitude` [rad].
 std::vector<double> multisine(double amplitude, double lowest, double highest, double length, int repeats, unsigned seed);
 
-/// Steps from zero to each amplitude and back, then to its negative and back, each held for `hold` seconds
-/// [GF slide Green Run Hot Fire: 0.6, 0.4 and 0.2 deg].
+/// Steps from zero to each amplitude and back, then to its negative and back, each held for `hold` seconds [GF slide Green
+/// Run Hot Fire: 0.6, 0.4 and 0.2 deg].
 std::vector<double> steps(const std::vector<double>& amplitudes, double hold);
 
 /// A record that has one command channel.

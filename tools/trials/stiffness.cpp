@@ -65,8 +65,8 @@ LoadSpring load_spring_of(const ModelFile& model) {
   const auto* axis = std::get_if<SimplexParameters>(&model.parameters);
   if (axis == nullptr) {
     throw FileError(
-        fmt::format("{}: topology = \"direct\": a mass has no actuator in series with its load; allowed: "
-                    "\"simplex\", \"taos\", \"masv\"",
+        fmt::format("{}: topology = \"direct\": a mass has no actuator in series with its load; allowed: \"simplex\", "
+                    "\"taos\", \"masv\"",
                     model.path.string()));
   }
   return spring_of(*axis, axis->actuator.moment_arm, 0.0);

@@ -30,8 +30,7 @@ double mean_of(const std::vector<double>& values, std::size_t from, std::size_t 
   return sum / static_cast<double>(to - from);
 }
 
-/// Puts angles into their channel. Returns the rms of what they differ by from
-/// what was there; negative if nothing was.
+/// Puts angles into their channel. Returns the rms of what they differ by from what was there; negative if nothing was.
 double replace(Record& record, const std::string& name, std::vector<double> angles) {
   const auto found = std::find_if(record.channels.begin(), record.channels.end(),
                                   [&name](const Channel& channel) { return channel.name == name; });
