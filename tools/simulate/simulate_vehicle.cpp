@@ -125,20 +125,26 @@ Record simulate_on(const typename Plant::Parameters& parameters, const VehicleFi
     }
     vibration.put(row, step, driven.vibration);
   };
-  std::optional<VehicleReadings<Plant>> readings;
+  Normal normal(run.seed);
+  const model::VehicleSensors<Plant> sensors = sensors_in_place<Plant>(model.sensors, normal);
+  const std::size_t strings = model.sensors.strings.size() * VehicleSensors::Strings::kStrings;
+  std::optional<model::VehicleReadings<Plant>> readings;
   std::size_t rows = 0;
   const bool finite = run_vehicle(plant, held, inputs.start, steps, disturb, [&](std::size_t row, const auto& state) {
     if (!readings) {
-      readings.emplace(model.sensors, state, run.seed);
+      readings.emplace(sensors, state);
     }
-    readings->read(state, inputs.period);
+    readings->read_pistons(state, inputs.period, normal);
+    if (strings > 0) {
+      readings->read_strings(state, inputs.period, normal);
+    }
     const auto& measured = Plant::measured(state);
     for (std::size_t r = 0; r < measured.size(); ++r) {
       const std::size_t axis = r / Plant::kChannels;
       const std::size_t channel = r % Plant::kChannels;
       outputs.channels[axis * kColumns + 1 + channel].values[row] = channel == 0 ? readings->pistons()[axis] : measured[r];
     }
-    for (std::size_t k = 0; k < readings->strings().size(); ++k) {
+    for (std::size_t k = 0; k < strings; ++k) {
       outputs.channels[kStrings + k].values[row] = readings->strings()[k];
     }
     rows = row + 1;
