@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/white_noise.hpp"
 #include "hal/plant_bus.hpp"
 
 namespace hotfire::firmware {
@@ -41,6 +42,14 @@ struct PlayedFault {
 
   bool is_of(std::size_t one) const noexcept { return actuator == 0 || static_cast<std::size_t>(actuator) == one + 1; }
 };
+
+/// The parameters of an axis while a fault of its actuator lasts. One without hydraulics stays what it is.
+template <class Parameters>
+void put_into(Parameters& axis, const PlayedFault& fault) {
+  if constexpr (requires { axis.actuator.leakage; }) {
+    (fault.kind == PlayedKind::leak ? axis.actuator.leakage : axis.actuator.supply_pressure) = fault.value;
+  }
+}
 
 /// A span of cycles.
 struct CycleSpan {
@@ -93,7 +102,7 @@ class PlayedSensors {
           reading += one.value;
           break;
         case PlayedKind::noisy:
-          reading += one.value * one.normal();
+          reading += one.value * one.noise();
           break;
         case PlayedKind::delayed:
           reading = late;
@@ -112,7 +121,7 @@ class PlayedSensors {
  private:
   struct Played {
     Played(const PlayedFault& fault, double period, std::size_t place)
-        : kind(fault.kind), cycles(fault, period), reading(place), value(fault.value), random(place + 1) {
+        : kind(fault.kind), cycles(fault, period), reading(place), value(fault.value), noise(place + 1) {
       if (kind == PlayedKind::delayed) {
         past.resize(static_cast<std::size_t>(std::llround(std::min(value, kLongestSensorDelay) / period)));
       }
@@ -133,20 +142,6 @@ class PlayedSensors {
       return late;
     }
 
-    /// Of mean 0 and variance 1: the sum of twelve uniform numbers, which needs no function that a C library may round its
-    /// own way. Uniform numbers by xorshift64* [Vigna 2016].
-    double normal() noexcept {
-      constexpr std::uint64_t kMultiplier = 0x2545f4914f6cdd1d;
-      double sum = -6.0;
-      for (int i = 0; i < 12; ++i) {
-        random ^= random >> 12;
-        random ^= random << 25;
-        random ^= random >> 27;
-        sum += static_cast<double>((random * kMultiplier) >> 11) * 0x1p-53;
-      }
-      return sum;
-    }
-
     PlayedKind kind;
     CycleSpan cycles;
     std::size_t reading;
@@ -155,10 +150,45 @@ class PlayedSensors {
     std::vector<double> past{};
     std::size_t next = 0;
     bool filled = false;
-    std::uint64_t random;
+    WhiteNoise noise;
   };
 
   std::vector<Played> played_;
+};
+
+/// What the sensors of a plant read, with what its faults make of that, cycle by cycle.
+class PlayedReadings {
+ public:
+  /// `period` in s, `channels` an actuator.
+  PlayedReadings(const std::vector<PlayedFault>& faults, double period, std::size_t actuators, std::size_t channels)
+      : readings_(actuators * channels), before_(readings_.size()), sensors_(faults, period, actuators, channels) {}
+
+  /// Before the first cycle, without faults. `measure(readings)` fills in what the sensors read.
+  template <class Measure>
+  void start(Measure&& measure) noexcept {
+    measure(std::span(readings_));
+  }
+
+  /// At the end of a cycle. Real-time.
+  template <class Measure>
+  void take(Measure&& measure) noexcept {
+    before_.swap(readings_);
+    measure(std::span(readings_));
+    missing_ = sensors_.play(cycle_++, before_, readings_);
+  }
+
+  /// The cycle that is under way, from 0.
+  std::uint64_t cycle() const noexcept { return cycle_; }
+  std::span<const double> values() const noexcept { return readings_; }
+  /// Which of them are not sent, one bit each.
+  std::uint32_t missing() const noexcept { return missing_; }
+
+ private:
+  std::vector<double> readings_;
+  std::vector<double> before_;  ///< what was sent in the cycle before
+  PlayedSensors sensors_;
+  std::uint64_t cycle_ = 0;
+  std::uint32_t missing_ = 0;
 };
 
 /// A bus that is off while its faults say so: what arrives is lost, nothing is sent (`hal::PlantBus`).

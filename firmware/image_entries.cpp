@@ -1,15 +1,32 @@
 #include "firmware/image_entries.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <system_error>
 
 namespace hotfire::firmware {
 
 double read_bounded(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit) {
   double value = lower;
   read_list(entries, key, lower, upper, unit, std::span(&value, 1));
+  return value;
+}
+
+int read_whole(Entries& entries, const std::string& key, int least, int most) {
+  const Entry* entry = entries.take(key);
+  int value = least;
+  if (entry == nullptr) {
+    return value;
+  }
+  const char* const end = entry->value.data() + entry->value.size();
+  const auto [stop, error] = std::from_chars(entry->value.data(), end, value);
+  if (error != std::errc{} || stop != end || value < least || value > most) {
+    entries.refuse(*entry, text("allowed is a whole number from %d to %d", least, most));
+    return least;
+  }
   return value;
 }
 

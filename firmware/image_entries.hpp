@@ -116,6 +116,9 @@ int read_word(Entries& entries, const std::string& key, const Words& words) {
 /// A number within bounds; refuses any other, NaN too.
 double read_bounded(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit);
 
+/// A whole number from `least` to `most`; refuses any other. `least` after a refusal.
+int read_whole(Entries& entries, const std::string& key, int least, int most);
+
 /// Numbers within bounds, commas between them, exactly as many as `values` has; refuses any other.
 void read_list(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit,
                std::span<double> values);

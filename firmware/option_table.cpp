@@ -120,8 +120,11 @@ constexpr OptionLine kLines[] = {
      [](const std::string& value, Options& o) {
        return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
      }},
-    {"--actuators", "N", "plants of that model, 1 to 8, each with a command of its own; default 1",
+    {"--actuators", "N",
+     "plants of a model of one axis, 1 to 8, each with a command of its own; default 1. A vehicle (taos,\n"
+     "masv) has as many as it has axes, and needs no --actuators",
      [](const std::string& value, Options& o) {
+       o.actuators_given = true;
        return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
      }},
     {"--strings", "",

@@ -16,6 +16,7 @@ std::string help() {
       "  hotfire timing --cycles 60000 --max-latency-us 100 --json\n"
       "  hotfire plant --model simplex.toml --record run.hfr\n"
       "  hotfire plant --model simplex.toml --bus can0 --sync can --actuators 8\n"
+      "  hotfire plant --model vehicle.toml --bus can0 --sync can --strings\n"
       "  hotfire lab --profile sweep.toml --bus can0 --gpio rig --record run.hfr\n"
       "  hotfire-rt controller --bus can0 --actuators 8 --cycles 10000\n"
       "  hotfire-rt plant --image plant.image --period-us 500\n"

@@ -31,7 +31,8 @@ struct Options {
   double data_bit_rate = 0.0;
   std::optional<std::uint64_t> max_lost;
   std::size_t actuators = 1;
-  bool strings = false;  ///< of a plant on a CAN bus: string potentiometers too
+  bool actuators_given = false;  ///< else a vehicle says how many there are
+  bool strings = false;          ///< of a plant on a CAN bus: string potentiometers too
   LoopSettings loop;
   PaceKind pace = PaceKind::clock;
   std::uint64_t most_missed_syncs = 10;    ///< in a row

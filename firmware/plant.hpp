@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "firmware/declared_faults.hpp"
@@ -22,21 +23,24 @@ template <class Model>
 class Plant {
  public:
   using Parameters = typename Model::Parameters;
+  static constexpr std::string_view topology = Model::topology;
+  static constexpr auto channels = Model::channels;
+  static constexpr auto channel_units = Model::channel_units;
+  static constexpr std::string_view input_channel = Model::input_channel;
+  static constexpr std::string_view input_unit = Model::input_unit;
 
   /// `period` in s.
   Plant(const Parameters& parameters, double period, std::size_t actuators = 1, const std::vector<PlayedFault>& faults = {})
       : steps_(model::steps_per_period(period)),
         model_(parameters, period / steps_),
         states_(actuators, start()),
-        readings_(actuators * Model::channels.size()),
-        before_(readings_.size()),
-        sensors_(faults, period, actuators, Model::channels.size()) {
+        readings_(faults, period, actuators, channels.size()) {
     for (const PlayedFault& fault : faults) {
       if (is_of_actuator(fault.kind)) {
         broken_.emplace_back(fault, period, Model(broken(parameters, fault), period / steps_));
       }
     }
-    measure();
+    readings_.start([this](std::span<double> readings) noexcept { measure(readings); });
   }
 
   void step(const hal::Command& command) noexcept {
@@ -46,15 +50,14 @@ class Plant {
         model.step(states_[actuator], command.values[actuator]);
       }
     }
-    before_.swap(readings_);
-    measure();
-    missing_ = sensors_.play(cycle_++, before_, readings_);
+    readings_.take([this](std::span<double> readings) noexcept { measure(readings); });
+    measure_strings();
   }
 
   std::size_t actuators() const noexcept { return states_.size(); }
 
   /// What the sensors read, actuator after actuator, in the order of `Model::channels`.
-  std::span<const double> measured() const noexcept { return readings_; }
+  std::span<const double> measured() const noexcept { return readings_.values(); }
 
   /// Gives every engine its four string potentiometers, at their representative places on a structure that stands still.
   /// Actuators 1 and 2 are the pitch and the yaw of the first engine, and so on; an angle without an actuator is zero. For a
@@ -69,7 +72,7 @@ class Plant {
   std::span<const double> strings() const noexcept { return strings_; }
 
   /// Which of the readings of `measured` are not sent, one bit each.
-  std::uint32_t missing() const noexcept { return missing_; }
+  std::uint32_t missing() const noexcept { return readings_.missing(); }
 
   /// Adds the continuous state of every actuator and what its sensors read. What an effect remembers is not in it: it acts
   /// on the state in the next step.
@@ -92,15 +95,13 @@ class Plant {
   };
 
   static Parameters broken(Parameters parameters, const PlayedFault& fault) {
-    if constexpr (requires { parameters.actuator.leakage; }) {
-      (fault.kind == PlayedKind::leak ? parameters.actuator.leakage : parameters.actuator.supply_pressure) = fault.value;
-    }
+    put_into(parameters, fault);
     return parameters;
   }
 
   const Model& model_of(std::size_t actuator) const noexcept {
     for (const Broken& one : broken_) {
-      if (one.fault.is_of(actuator) && one.cycles.has(cycle_)) {
+      if (one.fault.is_of(actuator) && one.cycles.has(readings_.cycle())) {
         return one.model;
       }
     }
@@ -130,26 +131,21 @@ class Plant {
     }
   }
 
-  void measure() noexcept {
-    auto next = readings_.begin();
+  void measure(std::span<double> readings) const noexcept {
+    auto next = readings.begin();
     for (const typename Model::State& state : states_) {
       const auto& measured = Model::measured(state);
       next = std::copy(measured.begin(), measured.end(), next);
     }
-    measure_strings();
   }
 
   int steps_;
   Model model_;
   std::vector<typename Model::State> states_;
-  std::vector<double> readings_;
+  PlayedReadings readings_;
   StringPotentiometers geometry_{StringPotentiometers::representative()};
   std::vector<double> strings_;
-  std::vector<double> before_;  ///< what was sent in the cycle before
   std::vector<Broken> broken_;
-  PlayedSensors sensors_;
-  std::uint64_t cycle_ = 0;
-  std::uint32_t missing_ = 0;
 };
 
 }  // namespace hotfire::firmware

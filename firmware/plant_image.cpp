@@ -8,12 +8,12 @@
 
 #include "firmware/image_entries.hpp"
 #include "firmware/text.hpp"
-#include "model/key_text.hpp"
+#include "model/vehicle_keys.hpp"
 
 namespace hotfire::firmware {
 namespace {
 
-/// Fills the parameters it is shown (`model::visit_keys`) from the entries.
+/// Fills the parameters it is shown (`model::visit_keys`, `model::visit_vehicle_keys`) from the entries.
 class Filler {
  public:
   explicit Filler(Entries& entries) : entries_(entries) {}
@@ -49,12 +49,26 @@ class Filler {
     }
   }
 
+  void list(const model::KeyText& key, double lower, double upper, std::span<double> values) {
+    read_list(entries_, std::string(key.view()), lower, upper, "", values);
+  }
+
+  void count(const model::KeyText& key, int most, int& count) {
+    count = read_whole(entries_, std::string(key.view()), 0, most);
+  }
+
  private:
   Entries& entries_;
 };
 
-PlayedFault read_fault(Entries& entries, const std::string& prefix, std::span<const std::string_view> channels,
-                       bool hydraulic) {
+/// What the faults of a plant are declared on.
+struct FaultyPlant {
+  std::span<const std::string_view> channels;
+  bool hydraulic;
+  std::size_t actuators;  ///< at most
+};
+
+PlayedFault read_fault(Entries& entries, const std::string& prefix, const FaultyPlant& plant) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   constexpr double kForGood = std::numeric_limits<double>::infinity();
   PlayedFault fault;
@@ -64,10 +78,10 @@ PlayedFault read_fault(Entries& entries, const std::string& prefix, std::span<co
   if (fault.kind == PlayedKind::bus_off) {
     return fault;
   }
-  fault.actuator = static_cast<int>(read_bounded(entries, prefix + "actuator", 0.0, hal::kMaxActuators, ""));
+  fault.actuator = read_whole(entries, prefix + "actuator", 0, static_cast<int>(plant.actuators));
   if (is_of_sensor(fault.kind)) {
-    fault.channel = read_word(entries, prefix + "channel", channels);
-  } else if (!hydraulic) {
+    fault.channel = read_word(entries, prefix + "channel", plant.channels);
+  } else if (!plant.hydraulic) {
     entries.refuse(prefix + "kind: leak and lost_supply are faults of a hydraulic axis");
   }
   switch (fault.kind) {
@@ -98,12 +112,10 @@ bool are_at_odds(const PlayedFault& one, const PlayedFault& other) {
          (one.actuator == 0 || other.actuator == 0 || one.actuator == other.actuator);
 }
 
-template <class Model>
-std::vector<PlayedFault> read_faults(Entries& entries) {
+std::vector<PlayedFault> read_faults(Entries& entries, const FaultyPlant& plant) {
   std::vector<PlayedFault> faults;
-  constexpr bool kHydraulic = requires(typename Model::Parameters parameters) { parameters.actuator.leakage; };
   for (std::string prefix = "fault.0."; entries.has_prefix(prefix); prefix = text("fault.%zu.", faults.size())) {
-    const PlayedFault fault = read_fault(entries, prefix, Model::channels, kHydraulic);
+    const PlayedFault fault = read_fault(entries, prefix, plant);
     if (std::any_of(faults.begin(), faults.end(), [&](const PlayedFault& other) { return are_at_odds(fault, other); })) {
       entries.refuse(prefix + "kind: a leak or lost supply of an actuator that has another one at that time");
     }
@@ -112,25 +124,69 @@ std::vector<PlayedFault> read_faults(Entries& entries) {
   return faults;
 }
 
+/// Refuses what of some values contradicts the rest; `broken` is empty if nothing does.
+void refuse_broken(Entries& entries, const std::string& key, std::string_view broken) {
+  if (!broken.empty()) {
+    entries.refuse(key + ": " + std::string(broken));
+  }
+}
+
+template <class Parameters>
+void refuse_broken_effects(Entries& entries, const std::string& prefix, const Parameters& axis) {
+  model::visit_effects(axis, [&]<class E>(std::size_t index, const auto& values) {
+    if constexpr (requires { E::broken_relation(values); }) {
+      refuse_broken(entries, prefix + "effects." + std::string(E::name),
+                    axis.effects.active[index] ? E::broken_relation(values) : std::string_view{});
+    }
+  });
+}
+
 template <class Model>
 PlantImage fill(Entries& entries) {
   typename Model::Parameters parameters;
   Filler filler(entries);
   model::visit_keys(parameters, filler);
-  std::vector<PlayedFault> faults = read_faults<Model>(entries);
+  constexpr bool kHydraulic = requires { parameters.actuator.leakage; };
+  std::vector<PlayedFault> faults = read_faults(entries, {Model::channels, kHydraulic, hal::kMaxActuators});
   entries.refuse_unused();
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
-    if constexpr (requires { E::broken_relation(values); }) {
-      const std::string_view broken = parameters.effects.active[index] ? E::broken_relation(values) : std::string_view{};
-      if (!broken.empty()) {
-        entries.refuse("effects." + std::string(E::name) + ": " + std::string(broken));
-      }
-    }
-  });
+  refuse_broken_effects(entries, "", parameters);
   if (!entries.error().empty()) {
     return {std::nullopt, entries.error()};
   }
   return {parameters, {}, std::move(faults)};
+}
+
+template <class Vehicle>
+void refuse_broken_vehicle(Entries& entries, const model::InstrumentedVehicle<Vehicle>& instrumented) {
+  const auto& vehicle = instrumented.vehicle;
+  for (std::size_t e = 0; e < vehicle.gimbals.size(); ++e) {
+    const std::string number = std::to_string(e + 1);
+    refuse_broken_effects(entries, "pitch" + number + ".", vehicle.axes[2 * e]);
+    refuse_broken_effects(entries, "yaw" + number + ".", vehicle.axes[2 * e + 1]);
+    if (!vehicle.constant_arms[e]) {
+      refuse_broken(entries, "attach points of engine " + number,
+                    model::broken_relation(vehicle.attach[2 * e], vehicle.attach[2 * e + 1]));
+    }
+    refuse_broken(entries, "gimbal of engine " + number, model::broken_relation(vehicle.gimbals[e]));
+    refuse_broken(entries, "strings of engine " + number,
+                  model::StringPotentiometers<double>::broken_relation(instrumented.sensors.anchors[e]));
+  }
+}
+
+template <class Vehicle>
+PlantImage fill_vehicle(Entries& entries) {
+  PlantImage image;
+  auto& instrumented = std::get<model::InstrumentedVehicle<Vehicle>>(
+      image.parameters.emplace(std::in_place_type<model::InstrumentedVehicle<Vehicle>>));
+  Filler filler(entries);
+  model::visit_vehicle_keys(instrumented, filler);
+  image.faults = read_faults(entries, {Vehicle::AxisModel::channels, true, Vehicle::kAxes});
+  entries.refuse_unused();
+  refuse_broken_vehicle(entries, instrumented);
+  if (!entries.error().empty()) {
+    return {std::nullopt, entries.error()};
+  }
+  return image;
 }
 
 }  // namespace
@@ -142,15 +198,22 @@ PlantImage parse_plant_image(const std::string& text, const std::string& name) {
     entries.refuse(*schema, "this build reads schema 1; use hotfire and hotfire-rt of the same version");
   }
   const Entry* topology = entries.take("topology");
-  if (entries.error().empty() && topology->value == model::Simplex<double>::topology) {
+  if (!entries.error().empty()) {
+    return {std::nullopt, entries.error()};
+  }
+  if (topology->value == model::Simplex<double>::topology) {
     return fill<model::Simplex<double>>(entries);
   }
-  if (entries.error().empty() && topology->value == model::Direct<double>::topology) {
+  if (topology->value == model::Direct<double>::topology) {
     return fill<model::Direct<double>>(entries);
   }
-  if (topology != nullptr) {
-    entries.refuse(*topology, "allowed are direct simplex");
+  if (topology->value == model::Taos<double>::topology) {
+    return fill_vehicle<model::Taos<double>>(entries);
   }
+  if (topology->value == model::Masv<double>::topology) {
+    return fill_vehicle<model::Masv<double>>(entries);
+  }
+  entries.refuse(*topology, "allowed are direct simplex taos masv");
   return {std::nullopt, entries.error()};
 }
 

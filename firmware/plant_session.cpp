@@ -3,10 +3,10 @@
 #include "firmware/can/plant_bus.hpp"
 #include "firmware/can/sync_source.hpp"
 #include "firmware/can_session.hpp"
-#include "firmware/plant.hpp"
-#include "firmware/plant_image.hpp"
+#include "firmware/image_plant.hpp"
 #include "firmware/reference_plant.hpp"
 #include "firmware/run_loop.hpp"
+#include "firmware/text.hpp"
 #include "hal/denormals.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/linux/socket_can_listener.hpp"
@@ -20,16 +20,19 @@ using Clock = hal::PosixClock;
 using Complete = std::function<void(Session&)>;
 using CanPlantBus = can::PlantBus<hal::SocketCan, Clock>;
 
+/// [s]
+double period_of(const Options& options) { return static_cast<double>(options.loop.period_ns) * 1e-9; }
+
 /// A plant between its bus and its recording.
-template <class Model>
+template <class Plant>
 class PlantSession {
  public:
-  PlantSession(const Options& options, const typename Model::Parameters& parameters, const PlantImage& image)
+  PlantSession(const Options& options, const PlantImage& image, std::unique_ptr<Plant> plant)
       : options_(options),
         image_(image),
-        period_(static_cast<double>(options.loop.period_ns) * 1e-9),
+        period_(period_of(options)),
         steps_(model::steps_per_period(period_)),
-        plant_(std::make_unique<Plant<Model>>(parameters, period_, options.actuators, image.faults)) {}
+        plant_(std::move(plant)) {}
 
   int run_without_wire() {
     hal::sim::SimulatedPlantBus wire(options_.source, period_);
@@ -45,7 +48,7 @@ class PlantSession {
       plant_->string_up();
     }
     CanPlantBus wire(session.socket(), clock_,
-                     {options_.frame_layout(), options_.actuators, Model::channels.size(), options_.command_per_current,
+                     {options_.frame_layout(), options_.actuators, Plant::channels.size(), options_.command_per_current,
                       options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6)});
     const Complete complete = [&](Session& result) {
       BusAccount account = session.account();
@@ -91,15 +94,16 @@ class PlantSession {
     Bus bus(wire, image_.faults, period_);
     std::unique_ptr<RecordingSession> recording;
     if (!options_.recording.empty()) {
-      recording = std::make_unique<RecordingSession>(options_, RecordedPlant::of<Model>(*plant_, steps_, image_.text));
+      recording = std::make_unique<RecordingSession>(options_, RecordedPlant::of(*plant_, steps_, image_.text));
       if (const auto failure = recording->start()) {
         complain(*failure);
         return kWrongUse;
       }
     }
-    const auto loop = std::make_unique<Loop<Plant<Model>, Bus, Clock, Pace, Recorder>>(
+    const auto loop = std::make_unique<Loop<Plant, Bus, Clock, Pace, Recorder>>(
         *plant_, bus, clock_, options_.loop, pace, recording ? &recording->recorder() : nullptr);
-    Session session{options_, loop->result(), Model::topology, Model::channels, Model::channel_units, steps_};
+    Session session{options_, loop->result(), Plant::topology, Plant::channels, Plant::channel_units, steps_};
+    session.is_vehicle = actuators_of(*image_.parameters) != 0;
     return run_loop(*loop, session, recording.get(), complete);
   }
 
@@ -112,37 +116,60 @@ class PlantSession {
   const PlantImage& image_;
   double period_;
   int steps_;
-  hal::FlushDenormals flush_;
   Clock clock_;
-  std::unique_ptr<Plant<Model>> plant_;
+  std::unique_ptr<Plant> plant_;
 };
 
-int run_simplex(const Options& options, const model::Simplex<double>::Parameters& parameters, const PlantImage& image) {
-  PlantSession<model::Simplex<double>> session(options, parameters, image);
-  return options.on_can() ? session.run_on_can() : session.run_without_wire();
+/// The image that the options name, or the reference plant.
+PlantImage image_of(const Options& options) {
+  if (!options.image.empty()) {
+    return read_plant_image(options.image);
+  }
+  PlantImage reference;
+  reference.parameters = reference_plant_with_every_effect();
+  return reference;
+}
+
+/// What of the options the plant of the image cannot be.
+std::optional<hal::Failure> refuse_options(const Options& options, const PlantImage& image) {
+  const std::size_t own = actuators_of(*image.parameters);
+  if (own != 0 && options.actuators_given && options.actuators != own) {
+    return hal::Failure{text("--actuators %zu: the model is a vehicle of %zu actuators", options.actuators, own),
+                        "leave --actuators out: a vehicle says itself how many it has"};
+  }
+  if (options.on_can() && own > can::most_actuators(options.layout.value_or(can::Layout::fd))) {
+    return hal::Failure{text("--layout %s has no room for the %zu actuators of the model",
+                             can::kLayouts[static_cast<std::size_t>(*options.layout)].data(), own),
+                        "leave --layout out"};
+  }
+  if (options.on_can() && std::holds_alternative<model::Direct<double>::Parameters>(*image.parameters)) {
+    return hal::Failure{"a model of topology direct has no servovalve that a CAN bus could command",
+                        "a model of topology simplex, taos or masv, or --bus sim"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-int run_plant(const Options& options) {
-  if (options.image.empty()) {
-    return run_simplex(options, reference_plant_with_every_effect(), {});
-  }
-  const PlantImage image = read_plant_image(options.image);
+int run_plant(const Options& asked) {
+  const PlantImage image = image_of(asked);
   if (!image.parameters) {
     std::fprintf(stderr, "hotfire-rt: %s\n", image.error.c_str());
     return kBadData;
   }
-  if (const auto* simplex = std::get_if<model::Simplex<double>::Parameters>(&*image.parameters)) {
-    return run_simplex(options, *simplex, image);
-  }
-  if (options.on_can()) {
-    complain({"a model of topology direct has no servovalve that a CAN bus could command",
-              "a model of topology simplex, or --bus sim"});
+  if (const auto refused = refuse_options(asked, image)) {
+    complain(*refused);
     return kWrongUse;
   }
-  const auto& parameters = std::get<model::Direct<double>::Parameters>(*image.parameters);
-  return PlantSession<model::Direct<double>>(options, parameters, image).run_without_wire();
+  Options options = asked;
+  if (const std::size_t own = actuators_of(*image.parameters); own != 0) {
+    options.actuators = own;
+  }
+  const hal::FlushDenormals flush;
+  return with_plant(image, period_of(options), options.actuators, [&]<class Plant>(std::unique_ptr<Plant> plant) {
+    PlantSession<Plant> session(options, image, std::move(plant));
+    return options.on_can() ? session.run_on_can() : session.run_without_wire();
+  });
 }
 
 }  // namespace hotfire::firmware

@@ -20,14 +20,14 @@ struct RecordedPlant {
   int steps_per_cycle = 1;
   std::string image;
 
-  template <class Model, class Plant>
+  template <class Plant>
   static RecordedPlant of(const Plant& plant, int steps_per_cycle, const std::string& image) {
     const auto unit = [](std::string_view own) { return std::string(own.empty() ? "1" : own); };
     RecordedPlant result;
-    result.topology = Model::topology;
-    result.input = {std::string(Model::input_channel), unit(Model::input_unit)};
-    for (std::size_t i = 0; i < Model::channels.size(); ++i) {
-      result.channels.push_back({std::string(Model::channels[i]), unit(Model::channel_units[i])});
+    result.topology = Plant::topology;
+    result.input = {std::string(Plant::input_channel), unit(Plant::input_unit)};
+    for (std::size_t i = 0; i < Plant::channels.size(); ++i) {
+      result.channels.push_back({std::string(Plant::channels[i]), unit(Plant::channel_units[i])});
     }
     result.start.assign(plant.measured().begin(), plant.measured().end());
     result.steps_per_cycle = steps_per_cycle;

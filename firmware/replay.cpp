@@ -3,10 +3,9 @@
 #include <bit>
 #include <cstdio>
 
+#include "firmware/image_plant.hpp"
 #include "firmware/json.hpp"
 #include "firmware/lab_replay.hpp"
-#include "firmware/plant.hpp"
-#include "firmware/plant_image.hpp"
 #include "firmware/status.hpp"
 #include "firmware/text.hpp"
 #include "hal/denormals.hpp"
@@ -27,14 +26,12 @@ std::string differing(const hal::RecordingHeader& header, std::span<const double
   return what;
 }
 
-template <class Model>
-Replay replay_model(Reader& reader, const typename Model::Parameters& parameters, const std::vector<PlayedFault>& faults) {
+template <class Plant>
+Replay replay_plant(Reader& reader, Plant& plant) {
   const hal::RecordingHeader& header = reader.header();
-  const hal::FlushDenormals flush;
-  Plant<Model> plant(parameters, static_cast<double>(header.period_ns) * 1e-9, header.actuators, faults);
   Replay result;
-  if (plant.measured().size() != header.start.size()) {
-    result.error = "its channels are not those of topology " + std::string(Model::topology);
+  if (plant.actuators() != header.actuators || plant.measured().size() != header.start.size()) {
+    result.error = "its actuators and channels are not those of topology " + std::string(Plant::topology);
     return result;
   }
   const std::string at_start = differing(header, header.start, plant.measured());
@@ -159,11 +156,10 @@ Replay replay(Reader& reader) {
     refused.error = image.error;
     return refused;
   }
-  if (const auto* simplex = std::get_if<model::Simplex<double>::Parameters>(&*image.parameters)) {
-    return replay_model<model::Simplex<double>>(reader, *simplex, image.faults);
-  }
-  return replay_model<model::Direct<double>>(reader, std::get<model::Direct<double>::Parameters>(*image.parameters),
-                                             image.faults);
+  const hal::FlushDenormals flush;
+  const double period = static_cast<double>(reader.header().period_ns) * 1e-9;
+  return with_plant(image, period, reader.header().actuators,
+                    [&](const auto& plant) { return replay_plant(reader, *plant); });
 }
 
 int run_replay(const std::string& path, bool json) {

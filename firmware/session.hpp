@@ -43,6 +43,7 @@ struct Session {
   std::optional<LabAccount> lab{};
   std::string_view input = "commands";  ///< what the loop takes in every cycle, and what it sends
   std::string_view output = "readings";
+  bool is_vehicle = false;  ///< one plant of all actuators, not a copy for each
   hal::CpuPlace place{};
   std::time_t started = 0;
   std::time_t ended = 0;

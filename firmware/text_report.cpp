@@ -123,9 +123,10 @@ std::string text_report(const Session& session) {
   const double period_us = us(session.options.loop.period_ns);
   const std::size_t actuators = session.options.actuators;
   std::string report =
-      text("%s%s on bus %s, period %.0f us, %d %s a cycle, after an overrun: %s\n",
-           actuators == 1 ? "" : text("%zu times ", actuators).c_str(), session.topology.data(), session.options.bus.c_str(),
-           period_us, session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
+      text("%s%s%s on bus %s, period %.0f us, %d %s a cycle, after an overrun: %s\n",
+           actuators == 1 || session.is_vehicle ? "" : text("%zu times ", actuators).c_str(), session.topology.data(),
+           session.is_vehicle ? text(" of %zu actuators", actuators).c_str() : "", session.options.bus.c_str(), period_us,
+           session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
            kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
   report += scheduling(session);
   report += text("  cycles        %llu at %.4f Hz, %s; before them %llu of warm-up, %llu of these overran\n",

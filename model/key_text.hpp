@@ -9,14 +9,26 @@
 namespace hotfire::model {
 
 /// The full name of a parameter as plant images and messages write it: "engine.inertia",
-/// "effects.gimbal_friction.coulomb_torque". Without heap, so that the model can hand it out.
+/// "effects.gimbal_friction.coulomb_torque", "pitch2.engine.inertia". Without heap, so that the model can hand it out.
 class KeyText {
  public:
-  constexpr KeyText(bool is_effect, std::string_view section, std::string_view name) {
+  /// `prefix` is of whoever has several of such sections, "pitch2." say, or empty.
+  constexpr KeyText(std::string_view prefix, bool is_effect, std::string_view section, std::string_view name) {
+    append(prefix);
     append(is_effect ? "effects." : "");
     append(section);
     append(".");
     append(name);
+  }
+
+  /// A name with a number from 0 to 99, "string1", and what follows it.
+  constexpr KeyText(std::string_view name, int number, std::string_view end) {
+    append(name);
+    if (number >= 10) {
+      text_.at(size_++) = static_cast<char>('0' + number / 10);
+    }
+    text_.at(size_++) = static_cast<char>('0' + number % 10);
+    append(end);
   }
 
   constexpr std::string_view view() const noexcept { return {text_.data(), size_}; }
@@ -35,14 +47,14 @@ class KeyText {
 namespace detail {
 
 template <class Owner, class Visitor>
-void visit_owner(bool is_effect, std::string_view section, Owner& owner, Visitor& visitor) {
+void visit_owner(std::string_view prefix, bool is_effect, std::string_view section, Owner& owner, Visitor& visitor) {
   for (const auto& field : std::remove_cvref_t<Owner>::fields()) {
-    visitor.number(KeyText(is_effect, section, field.name), field, owner.*field.member);
+    visitor.number(KeyText(prefix, is_effect, section, field.name), field, owner.*field.member);
   }
   if constexpr (requires { std::remove_cvref_t<Owner>::tables(); }) {
     for (const auto& field : std::remove_cvref_t<Owner>::tables()) {
-      visitor.table(KeyText(is_effect, section, field.x_name), KeyText(is_effect, section, field.y_name), field,
-                    owner.*field.member);
+      visitor.table(KeyText(prefix, is_effect, section, field.x_name), KeyText(prefix, is_effect, section, field.y_name),
+                    field, owner.*field.member);
     }
   }
 }
@@ -55,19 +67,19 @@ void visit_owner(bool is_effect, std::string_view section, Owner& owner, Visitor
 /// - `effect<E>(prefix, active)`: before an effect's own parameters, which are shown if it returns true; `prefix` is
 ///   "effects.gimbal_friction.";
 /// - `option(key, options, option)`: an effect's law or channel.
-/// Set-up only. The values that the visitor sees are const if `parameters` is.
+/// Set-up only. The values that the visitor sees are const if `parameters` is. Every key begins with `prefix`.
 template <class Parameters, class Visitor>
-void visit_keys(Parameters& parameters, Visitor& visitor) {
-  std::remove_const_t<Parameters>::for_each_part(parameters,
-                                                 [&](auto& part) { detail::visit_owner(false, part.name, part, visitor); });
+void visit_keys(Parameters& parameters, Visitor& visitor, std::string_view prefix = {}) {
+  std::remove_const_t<Parameters>::for_each_part(
+      parameters, [&](auto& part) { detail::visit_owner(prefix, false, part.name, part, visitor); });
   visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
-    if (!visitor.template effect<E>(KeyText(true, E::name, ""), parameters.effects.active[index])) {
+    if (!visitor.template effect<E>(KeyText(prefix, true, E::name, ""), parameters.effects.active[index])) {
       return;
     }
     if constexpr (E::options.size() > 0) {
-      visitor.option(KeyText(true, E::name, E::option_key), E::options, values.option);
+      visitor.option(KeyText(prefix, true, E::name, E::option_key), E::options, values.option);
     }
-    detail::visit_owner(true, E::name, values, visitor);
+    detail::visit_owner(prefix, true, E::name, values, visitor);
   });
 }
 

@@ -13,7 +13,9 @@ TEST_GROUP(FaultFile) {
 
   void setup() override { model.parameters = SimplexParameters{}; }
 
-  std::string lines(const std::string& text) const { return load_faults(scratch.write("faults.toml", text), model); }
+  std::string lines(const std::string& text) const {
+    return load_faults(scratch.write("faults.toml", text), faulty_plant(model));
+  }
 
   void refused(const std::string& fault, std::initializer_list<const char*> parts) const {
     const std::string text = "schema = 1\n[[fault]]\n" + fault;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdio>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -10,7 +11,8 @@
 
 namespace hotfire {
 
-/// Writes what it is shown (`model::visit_keys`) as lines `key value`, numbers in hexadecimal floating point.
+/// Writes what it is shown (`model::visit_keys`, `model::visit_vehicle_keys`) as lines `key value`, numbers in hexadecimal
+/// floating point.
 class PlantImageWriter {
  public:
   explicit PlantImageWriter(std::string_view topology) {
@@ -41,6 +43,16 @@ class PlantImageWriter {
       line(std::string(y_key.view()) + index, exact(table.y[static_cast<std::size_t>(i)]));
     }
   }
+
+  void list(const model::KeyText& key, double, double, std::span<const double> values) {
+    std::string numbers;
+    for (const double value : values) {
+      numbers.append(numbers.empty() ? "" : ",").append(exact(value));
+    }
+    line(key.view(), numbers);
+  }
+
+  void count(const model::KeyText& key, int, int count) { line(key.view(), std::to_string(count)); }
 
   const std::string& text() const { return text_; }
 

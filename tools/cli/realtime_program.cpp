@@ -11,12 +11,26 @@
 #include <filesystem>
 #include <memory>
 
-#include "tools/cli/plant_image_text.hpp"
+#include "tools/cli/vehicle_image_text.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/fault_file.hpp"
 #include "tools/files/model_file.hpp"
 
 namespace hotfire {
+
+namespace {
+
+/// The image of a model of one axis or of a vehicle, and of the faults that its plant plays.
+std::string image_of(const std::string& model_path, const std::string& faults_path) {
+  if (is_vehicle(model_path)) {
+    const VehicleFile vehicle = load_vehicle(model_path);
+    return plant_image_text(vehicle) + (faults_path.empty() ? "" : load_faults(faults_path, faulty_plant(vehicle)));
+  }
+  const ModelFile model = load_model(model_path);
+  return plant_image_text(model) + (faults_path.empty() ? "" : load_faults(faults_path, faulty_plant(model)));
+}
+
+}  // namespace
 
 std::string share_image(const std::string& image) {
   const int file = memfd_create("image", 0);
@@ -54,16 +68,14 @@ void add_realtime_command(CLI::App& program, const std::string& name, const std:
   CLI::App* command = program.add_subcommand(name, description);
   command->set_help_flag();
   command->allow_extras();
-  command->add_option("--model", *path, "model file (.toml)");
+  command->add_option("--model", *path, "model file (.toml), of one axis or of a vehicle");
   command->add_option("--faults", *faults, "faults to play (.toml)");
   command->callback([command, path, faults, name, needs_model] {
     std::vector<std::string> arguments = command->remaining();
     arguments.insert(arguments.begin(), name);
     if (!asks_for_text_only(arguments)) {
       if (!path->empty()) {
-        const ModelFile model = load_model(*path);
-        const std::string played = faults->empty() ? "" : load_faults(*faults, model);
-        arguments.insert(arguments.end(), {"--image", share_image(plant_image_text(model) + played)});
+        arguments.insert(arguments.end(), {"--image", share_image(image_of(*path, *faults))});
       } else if (needs_model) {
         throw UsageError("--model FILE is needed");
       } else if (!faults->empty()) {

@@ -25,7 +25,8 @@ void add_replay(CLI::App& program) {
       ->add_option("RECORDING", options->recording,
                    "file that `hotfire plant --record` or `hotfire lab --record` has written")
       ->required();
-  CLI::Option* csv = command->add_option("--csv", options->csv, "write one actuator as a record (.csv) instead");
+  CLI::Option* csv =
+      command->add_option("--csv", options->csv, "write one actuator, or all axes of a vehicle, as a record (.csv) instead");
   command->add_option("--actuator", options->part.actuator, "which one, from 1")->needs(csv);
   command->add_option("--from", options->part.from, "begin with this cycle; ends where cycles were dropped")->needs(csv);
   command->add_flag("--json", options->json, "print the result as JSON")->excludes(csv);

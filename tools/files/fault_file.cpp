@@ -11,7 +11,6 @@
 
 #include "tools/files/error.hpp"
 #include "tools/files/model_group.hpp"
-#include "tools/files/model_layout.hpp"
 #include "tools/files/suggestion.hpp"
 #include "tools/files/toml_source.hpp"
 
@@ -41,8 +40,8 @@ constexpr std::array<Kind, 8> kKinds{{{"stuck", true, std::nullopt},
 /// One table `[[fault]]`.
 class FaultTable {
  public:
-  FaultTable(const TomlSource& source, const toml::table& table, const ModelLayout& layout, std::size_t index)
-      : source_(source), table_(table), layout_(layout), prefix_(fmt::format("fault.{}.", index)) {}
+  FaultTable(const TomlSource& source, const toml::table& table, const FaultyPlant& plant, std::size_t index)
+      : source_(source), table_(table), plant_(plant), prefix_(fmt::format("fault.{}.", index)) {}
 
   std::string lines() {
     const Kind& kind = read_kind();
@@ -94,8 +93,7 @@ class FaultTable {
     if (found == kKinds.end()) {
       source_.refuse(node, prefix_ + "kind", suggestion(name, names));
     }
-    const bool hydraulic = !layout_.channels.front().unit.empty();
-    if ((name == "leak" || name == "lost_supply") && !hydraulic) {
+    if ((name == "leak" || name == "lost_supply") && !plant_.hydraulic) {
       source_.refuse(node, prefix_ + "kind", "a fault of a hydraulic axis, and this model has none");
     }
     return *found;
@@ -117,19 +115,20 @@ class FaultTable {
       return 0;
     }
     const auto number = node->value_exact<std::int64_t>();
-    if (!number || *number < 1 || *number > 8) {
-      source_.refuse(*node, prefix_ + "actuator", "allowed: 1 to 8; leave it out for every actuator");
+    if (!number || *number < 1 || *number > plant_.actuators) {
+      source_.refuse(*node, prefix_ + "actuator",
+                     fmt::format("allowed: 1 to {}; leave it out for every actuator", plant_.actuators));
     }
     return *number;
   }
 
   const ModelChannel& read_channel() {
-    const Words names = names_of(layout_.channels);
+    const Words names = names_of(plant_.channels);
     const toml::node& node = needed("channel", fmt::format("{}", fmt::join(names, ", ")));
     const std::string name = source_.text(node, prefix_ + "channel");
-    const auto found = std::find_if(layout_.channels.begin(), layout_.channels.end(),
+    const auto found = std::find_if(plant_.channels.begin(), plant_.channels.end(),
                                     [&](const ModelChannel& channel) { return channel.name == name; });
-    if (found == layout_.channels.end()) {
+    if (found == plant_.channels.end()) {
       source_.refuse(node, prefix_ + "channel", suggestion(name, names));
     }
     line("channel", name);
@@ -142,14 +141,19 @@ class FaultTable {
 
   const TomlSource& source_;
   const toml::table& table_;
-  const ModelLayout& layout_;
+  const FaultyPlant& plant_;
   std::string prefix_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string load_faults(const std::filesystem::path& path, const ModelFile& model) {
+FaultyPlant faulty_plant(const ModelFile& model) {
+  ModelFile copy = model;
+  return {layout_of(copy).channels, std::holds_alternative<SimplexParameters>(model.parameters)};
+}
+
+std::string load_faults(const std::filesystem::path& path, const FaultyPlant& plant) {
   const TomlSource source(path);
   refuse_unknown_keys(source, source.root(), "", {"schema", "fault"});
   require_schema(source);
@@ -158,13 +162,11 @@ std::string load_faults(const std::filesystem::path& path, const ModelFile& mode
   if (tables == nullptr) {
     source.refuse_missing(source.root(), "fault", "missing; declare at least one: [[fault]]");
   }
-  ModelFile copy = model;
-  const ModelLayout layout = layout_of(copy);
   std::string lines;
   std::size_t index = 0;
   for (const toml::node& one : *tables) {
     const std::string key = fmt::format("fault.{}", index);
-    lines += FaultTable(source, source.table(one, key), layout, index).lines();
+    lines += FaultTable(source, source.table(one, key), plant, index).lines();
     ++index;
   }
   return lines;

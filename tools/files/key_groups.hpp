@@ -79,13 +79,20 @@ KeyGroup part_group(Part& part) {
 }
 
 template <class Plant>
+std::vector<ModelChannel> channels_of_plant() {
+  std::vector<ModelChannel> channels;
+  for (std::size_t channel = 0; channel < Plant::channels.size(); ++channel) {
+    channels.push_back({Plant::channels[channel], Plant::channel_units[channel]});
+  }
+  return channels;
+}
+
+template <class Plant>
 ModelLayout layout_of_plant(typename Plant::Parameters& parameters) {
   ModelLayout layout;
   layout.topology = Plant::topology;
   layout.input_channel = Plant::input_channel;
-  for (std::size_t channel = 0; channel < Plant::channels.size(); ++channel) {
-    layout.channels.push_back({Plant::channels[channel], Plant::channel_units[channel]});
-  }
+  layout.channels = channels_of_plant<Plant>();
   Plant::Parameters::for_each_part(parameters, [&layout](auto& part) { layout.parts.push_back(part_group(part)); });
   model::visit_effects(parameters, [&]<class Effect>(std::size_t index, auto& values) {
     layout.effects.push_back(effect_group<Effect>(values, parameters.effects.active[index]));

@@ -4,8 +4,13 @@
 
 #include <array>
 #include <fstream>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include "hal/recording/reader.hpp"
+#include "model/vehicle.hpp"
+#include "tools/files/axis_names.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/record_channels.hpp"
 
@@ -13,49 +18,72 @@ namespace hotfire {
 
 namespace {
 
-/// The actuator asked for, from 0.
-std::size_t chosen_actuator(const hal::RecordingHeader& header, const std::filesystem::path& path, unsigned actuator) {
+/// A plant whose actuators are the axes of one model: a record is of all of them.
+bool is_of_several_axes(const hal::RecordingHeader& header) {
+  return header.topology == model::Taos<double>::topology || header.topology == model::Masv<double>::topology;
+}
+
+/// The actuators that a record is made of, from 0.
+std::vector<std::size_t> chosen_actuators(const hal::RecordingHeader& header, const std::filesystem::path& path,
+                                          unsigned actuator) {
   if (actuator > header.actuators) {
     throw FileError(fmt::format("{}: no actuator {}; allowed: 1 to {}", path.string(), actuator, header.actuators));
   }
-  if (actuator == 0 && header.actuators > 1) {
+  if (actuator > 0) {
+    return {actuator - 1};
+  }
+  if (header.actuators > 1 && !is_of_several_axes(header)) {
     throw FileError(
         fmt::format("{}: {} actuators, and a record is of one; write the record of one with 'hotfire replay {} --actuator 1 "
                     "--csv actuator1.csv'",
                     path.string(), header.actuators, path.string()));
   }
-  return actuator == 0 ? 0 : actuator - 1;
+  std::vector<std::size_t> all(header.actuators);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
 }
 
 /// Rows in the making.
 class Rows {
  public:
-  Rows(const hal::RecordingHeader& header, std::size_t actuator) : actuator_(actuator) {
+  Rows(const hal::RecordingHeader& header, const std::vector<std::size_t>& actuators)
+      : begins_at_rest_(!is_of_several_axes(header)) {
     record_.period = static_cast<double>(header.period_ns) * 1e-9;
-    record_.channels.push_back({header.input.name, header.input.unit, {}});
-    for (std::size_t i = 0; i < header.channels.size(); ++i) {
-      const hal::RecordedChannel& channel = header.channels[i];
-      if (is_record_channel(channel.name)) {
-        record_.channels.push_back({channel.name, channel.unit, {}});
-        places_.push_back(actuator * header.channels.size() + i);
+    const std::vector<std::string> axes = axis_names(static_cast<int>(header.actuators) / 2);
+    for (const std::size_t actuator : actuators) {
+      const std::string axis = actuators.size() > 1 ? "." + axes[actuator] : "";
+      commands_.push_back(actuator);
+      record_.channels.push_back({header.input.name + axis, header.input.unit, {}});
+      for (std::size_t i = 0; i < header.channels.size(); ++i) {
+        const hal::RecordedChannel& channel = header.channels[i];
+        if (is_record_channel(channel.name)) {
+          record_.channels.push_back({channel.name + axis, channel.unit, {}});
+          readings_.emplace_back(record_.channels.size() - 1, actuator * header.channels.size() + i);
+        }
       }
     }
   }
 
-  void add(double command, std::span<const double> readings) {
-    record_.channels.front().values.push_back(command);
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      record_.channels[i + 1].values.push_back(readings[places_[i]]);
+  void add(std::span<const double> commands, std::span<const double> readings) {
+    for (std::size_t i = 0; i < commands_.size(); ++i) {
+      const std::size_t channel = i * (record_.channels.size() / commands_.size());
+      record_.channels[channel].values.push_back(commands[commands_[i]]);
+    }
+    for (const auto& [channel, reading] : readings_) {
+      record_.channels[channel].values.push_back(readings[reading]);
     }
     ++record_.rows;
   }
 
-  std::size_t actuator() const { return actuator_; }
+  /// Whether the first row is a period at rest before the first cycle. A plant of several axes has none: what holds it at
+  /// rest is not at rest itself (a bearing vibrates, friction creeps), so that the period would change what follows.
+  bool begins_at_rest() const { return begins_at_rest_; }
   Record& record() { return record_; }
 
  private:
-  std::size_t actuator_;
-  std::vector<std::size_t> places_;  ///< of the actuator's channels among the readings
+  bool begins_at_rest_;
+  std::vector<std::size_t> commands_;                          ///< place among a cycle's commands, by actuator
+  std::vector<std::pair<std::size_t, std::size_t>> readings_;  ///< channel of the record, place among a cycle's readings
   Record record_;
 };
 
@@ -69,9 +97,10 @@ class Rows {
 void read_rows(hal::RecordingReader& reader, const std::filesystem::path& path, const RecordingPart& part, Rows& rows) {
   const double period = rows.record().period;
   std::vector<double> before = reader.header().start;
+  const std::vector<double> no_commands(reader.header().actuators, 0.0);
   bool begun = part.from == 0;
-  if (begun) {
-    rows.add(0.0, before);
+  if (begun && rows.begins_at_rest()) {
+    rows.add(no_commands, before);
   }
   hal::RecordedCycle cycle;
   while (reader.next(cycle)) {
@@ -87,9 +116,9 @@ void read_rows(hal::RecordingReader& reader, const std::filesystem::path& path, 
     }
     if (begun) {
       if (rows.record().rows == 0) {
-        rows.record().start = static_cast<double>(cycle.head.cycle + 1) * period;
+        rows.record().start = static_cast<double>(cycle.head.cycle + (rows.begins_at_rest() ? 1 : 0)) * period;
       }
-      rows.add(cycle.commands[rows.actuator()], before);
+      rows.add(cycle.commands, before);
     }
     // What the sensors read where a row begins is what the cycle before had sent.
     begun = begun || cycle.head.cycle >= part.from;
@@ -114,7 +143,7 @@ Record load_recording(const std::filesystem::path& path, const RecordingPart& pa
   if (!reader.error().empty()) {
     throw FileError(reader.error());
   }
-  Rows rows(reader.header(), chosen_actuator(reader.header(), path, part.actuator));
+  Rows rows(reader.header(), chosen_actuators(reader.header(), path, part.actuator));
   read_rows(reader, path, part, rows);
   Record& record = rows.record();
   if (record.rows < 2) {

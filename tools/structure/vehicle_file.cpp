@@ -17,15 +17,6 @@ namespace {
 constexpr std::string_view kTaos = model::Taos<double>::topology;
 constexpr std::string_view kMasv = model::Masv<double>::topology;
 
-/// The tables that may stand for an axis, from general to particular: pitch, then pitch2.
-std::vector<std::string> tables_of_axis(int axis, int engines) {
-  std::vector<std::string> names{axis % 2 == 0 ? "pitch" : "yaw"};
-  if (engines > 1) {
-    names.push_back(fmt::format("{}{}", names.front(), axis / 2 + 1));
-  }
-  return names;
-}
-
 std::vector<std::string> tables_of_all_axes(int engines) {
   std::vector<std::string> names;
   for (int axis = 0; axis < 2 * engines; ++axis) {
@@ -302,15 +293,6 @@ bool is_vehicle(const std::filesystem::path& path) {
   return topology == kTaos || topology == kMasv;
 }
 
-std::vector<std::string> axis_names(int engines) {
-  std::vector<std::string> names;
-  names.reserve(2 * static_cast<std::size_t>(engines));
-  for (int axis = 0; axis < 2 * engines; ++axis) {
-    names.push_back(tables_of_axis(axis, engines).back());
-  }
-  return names;
-}
-
 VehicleFile load_vehicle(const std::filesystem::path& path) {
   const TomlSource source(path);
   source.require_schema();
@@ -328,6 +310,12 @@ VehicleFile load_vehicle(const std::filesystem::path& path) {
                           fmt::format("\"{}\" is not one of several axes; allowed: \"{}\", \"{}\"", topology, kTaos, kMasv));
   }
   return vehicle;
+}
+
+FaultyPlant faulty_plant(const VehicleFile& vehicle) {
+  // An axis has these channels whatever its effects.
+  const auto axes = std::visit([](const auto& parameters) { return parameters.axes.size(); }, vehicle.parameters);
+  return {channels_of_plant<model::Taos<double>::AxisModel>(), true, static_cast<std::int64_t>(axes)};
 }
 
 }  // namespace hotfire

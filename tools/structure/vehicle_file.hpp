@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "model/vehicle.hpp"
+#include "tools/files/axis_names.hpp"
+#include "tools/files/fault_file.hpp"
 #include "tools/structure/vehicle_sensors.hpp"
 
 namespace hotfire {
@@ -34,9 +36,6 @@ struct VehicleFile {
 /// True for a TOML file whose topology is that of several axes, "taos" or "masv". Throws FileError if it cannot be read.
 bool is_vehicle(const std::filesystem::path& path);
 
-/// The names of the axes in order, as channels end and tables are named: pitch, yaw for one engine; pitch1, yaw1, pitch2 ...
-std::vector<std::string> axis_names(int engines);
-
 /// Reads and checks a model file of several axes (contract.md). The parts and effects of `[servovalve]`, `[actuator]`,
 /// `[structure]`, `[engine]` and `[effects.NAME]` are those of every axis; `[actuator.pitch]` is what differs on the pitch
 /// axes and `[actuator.pitch2]` on that of engine 2. So do `[effects.NAME.pitch]` and `[sensors.pitch]`; an effect that has
@@ -52,6 +51,9 @@ std::vector<std::string> axis_names(int engines);
 /// matrix that is not 6x6, symmetric and positive definite, attach points that coincide or have no arm, a mode table of
 /// another number of engines or with more modes than the plant has room for.
 VehicleFile load_vehicle(const std::filesystem::path& path);
+
+/// What faults can be declared on the plant of a vehicle: its actuators are its axes, in their order.
+FaultyPlant faulty_plant(const VehicleFile& vehicle);
 
 /// The TOML text of a vehicle: what its axes have in common once, what differs in tables of the axes; otherwise as
 /// `model_text`. `load_vehicle` reads it back bit for bit. A mode table is named by its full path.
