@@ -93,6 +93,8 @@ TEST(Options, RecordingAndItsLimitsAreRead) {
   CHECK(options.overwrite);
   UNSIGNED_LONGS_EQUAL(7, options.max_dropped);
   UNSIGNED_LONGS_EQUAL(8, options.actuators);
+  CHECK(options.actuators_given);
+  CHECK(!accepted({"plant", "--image", "p"}).actuators_given);
   CHECK(options.pace == PaceKind::sim);
   UNSIGNED_LONGS_EQUAL(0, options.most_missed_syncs);
   refused({"plant", "--image", "p", "--actuators", "9"}, "from 1 to 8");
