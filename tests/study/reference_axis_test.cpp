@@ -77,8 +77,8 @@ TEST(ReferenceAxisLaws, ADeadTimeByAmplitudeIsThatDelayForAStep) {
   CHECK_TRUE(largest_difference(a, rows_of({}, commands), 0) > 1e-4);
 }
 
-// What a saturated torque motor is asked for beyond its limit reaches neither spool nor play. Five degrees are four times the
-// limit, and the piston is a tenth of the way there at the end.
+// What a saturated torque motor is asked for beyond its limit reaches neither spool nor play. Five degrees are four times
+// the limit, and the piston is a tenth of the way there at the end.
 TEST(ReferenceAxisLaws, AJumpOfASaturatedTorqueMotorDoesNotMoveThePlay) {
   ReferenceAxis axis;
   axis.play = 0.02;
