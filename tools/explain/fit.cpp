@@ -15,6 +15,9 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// A fit that has converged is tried again under new derivatives if it took off more than this many times its tolerance.
+constexpr double kWayOn = 10.0;
+
 /// A least-squares problem of n values with the same cost, gradient and J^T J as one of any number of rows: n + 1 residuals
 /// whatever the length of the records, so that the solver's own work does not grow with them.
 struct Compressed {
@@ -109,6 +112,16 @@ class SimulationError : public ceres::CostFunction {
     return true;
   }
 
+  /// Drops derivatives that were not taken where the fit stands. False if they were.
+  bool renew() {
+    if (!tangent_.is_borrowed_at(simulated_at(fitted_.u))) {
+      return false;
+    }
+    tangent_.forget();
+    last_u_.clear();
+    return true;
+  }
+
  private:
   /// The parameters that are not frozen.
   std::vector<std::size_t> simulated() const {
@@ -118,12 +131,18 @@ class SimulationError : public ceres::CostFunction {
     return rest;
   }
 
-  /// Residuals over noise, with the frozen parameters moved linearly; leaves the derivatives of the others in the tangent.
-  bool simulate(std::span<const double> u, bool want_jacobian, Eigen::VectorXd& residual) const {
+  /// `u` with the frozen parameters where they are frozen.
+  std::vector<double> simulated_at(std::span<const double> u) const {
     std::vector<double> at(u.begin(), u.end());
     if (options_.frozen != nullptr) {
       std::copy(options_.frozen->u.begin(), options_.frozen->u.end(), at.begin());
     }
+    return at;
+  }
+
+  /// Residuals over noise, with the frozen parameters moved linearly; leaves the derivatives of the others in the tangent.
+  bool simulate(std::span<const double> u, bool want_jacobian, Eigen::VectorXd& residual) const {
+    const std::vector<double> at = simulated_at(u);
     if (!(want_jacobian ? tangent_.differentiate_at(at) : tangent_.move_to(at))) {
       return false;
     }
@@ -155,8 +174,9 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
     fitted.converged = true;
     return true;
   }
+  auto* error = new SimulationError<Family>(evaluator, fitted, options);  // the problem owns it
   ceres::Problem problem;
-  problem.AddResidualBlock(new SimulationError<Family>(evaluator, fitted, options), nullptr, fitted.u.data());
+  problem.AddResidualBlock(error, nullptr, fitted.u.data());
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
     const FreeParameter& parameter = fitted.free[k];
     const auto [low, high] = parameter.range();
@@ -172,9 +192,17 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
   solver.parameter_tolerance = 1e-7;
   solver.gradient_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;
+  // A fit ends where derivatives taken there find no way on: borrowed ones may see none where there is one.
   ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  fitted.converged = summary.termination_type == ceres::CONVERGENCE;
+  for (int left = options.iterations; left > 0; left -= summary.num_successful_steps + summary.num_unsuccessful_steps) {
+    solver.max_num_iterations = left;
+    ceres::Solve(solver, &problem, &summary);
+    fitted.converged = summary.termination_type == ceres::CONVERGENCE;
+    const double drop = summary.initial_cost - summary.final_cost;
+    if (!fitted.converged || !error->renew() || drop < kWayOn * options.tolerance * summary.initial_cost) {
+      break;
+    }
+  }
   return summary.IsSolutionUsable();
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 /// Share of a move that the derivatives may have missed. They are then off by twice as much, and a fit still closes in by a
 /// factor of five an iteration.
-constexpr double kMissed = 0.25;
+constexpr double kMissed = 0.1;
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,13 @@ class Tangent {
   bool move_to(std::span<const double> u);
   /// As `move_to`, with derivatives.
   bool differentiate_at(std::span<const double> u);
+
+  /// The derivatives were taken elsewhere than at `u`.
+  bool is_borrowed_at(std::span<const double> u) const {
+    return !std::equal(u.begin(), u.end(), taken_at_.begin(), taken_at_.end());
+  }
+  /// Takes them anew at the next call.
+  void forget() { taken_at_.clear(); }
 
   /// What the last call found: over noise, on the rows a fit sees.
   const Eigen::VectorXd& residual() const { return residual_; }
