@@ -16,8 +16,8 @@ namespace hotfire {
 inline constexpr double kRunaway = 1e12;
 
 /// Steps a plant through `rows` rows, `steps` plant steps a row by `advance(row, step)`, and hands every row's readings to
-/// `sink(row, readings)`: row 0 is the state as given. Denormal numbers are zero, as they are on the rig. Returns false at the
-/// first reading that is not finite or ran away.
+/// `sink(row, readings)`: row 0 is the state as given. Denormal numbers are zero, as they are on the rig. Returns false at
+/// the first reading that is not finite or ran away.
 template <class Plant, class Advance, class Sink>
 bool run_rows(std::size_t rows, const typename Plant::State& state, int steps, Advance&& advance, Sink&& sink) {
   using S = typename Plant::Scalar;
