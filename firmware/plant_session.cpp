@@ -7,7 +7,7 @@
 #include "firmware/reference_plant.hpp"
 #include "firmware/run_loop.hpp"
 #include "firmware/text.hpp"
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/linux/socket_can_listener.hpp"
 #include "hal/sim/plant_bus.hpp"

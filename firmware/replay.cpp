@@ -8,7 +8,7 @@
 #include "firmware/lab_replay.hpp"
 #include "firmware/status.hpp"
 #include "firmware/text.hpp"
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 
 namespace hotfire::firmware {
 namespace {

@@ -8,7 +8,7 @@
 #include "firmware/loop.hpp"
 #include "firmware/plant.hpp"
 #include "firmware/reference_plant.hpp"
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 #include "hal/sim/manual_clock.hpp"
 #include "hal/sim/plant_bus.hpp"
 

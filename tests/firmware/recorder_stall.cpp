@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "firmware/reference_plant.hpp"
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/recording/reader.hpp"
 #include "tests/firmware/recorded_run.hpp"

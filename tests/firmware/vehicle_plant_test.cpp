@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "firmware/loop.hpp"
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 #include "hal/sim/manual_clock.hpp"
 #include "hal/sim/plant_bus.hpp"
 #include "tests/model/vehicles.hpp"

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "firmware/vehicle_plant.hpp"
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 #include "hal/recording/reader.hpp"
 #include "tests/firmware/whole_vehicle.hpp"
 #include "tests/support/allocation_guard.hpp"

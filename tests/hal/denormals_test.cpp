@@ -1,4 +1,4 @@
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 
 #include <CppUTest/TestHarness.h>
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "hal/denormals.hpp"
+#include "hal/arithmetic/denormals.hpp"
 #include "model/scalar.hpp"
 #include "tools/simulate/excitation.hpp"
 

@@ -7,7 +7,7 @@ set(rooms model hal firmware tools tests)
 set(allowed_model model)
 set(allowed_hal hal)
 set(allowed_firmware firmware model hal)
-set(allowed_tools tools model hal/sim hal/recording hal/schedule)
+set(allowed_tools tools model hal/arithmetic hal/sim hal/recording hal/schedule)
 set(allowed_tests tests tools firmware model hal)
 
 # model/ has no operating system, clock, heap, lock or log: nothing beyond this list, and none of these words.
