@@ -93,7 +93,7 @@ class VehicleReadings {
   }
 
   std::array<S, Sensors::kStrings> lengths_of(const State& state) const noexcept {
-    std::array<S, Sensors::kStrings> lengths;
+    std::array<S, Sensors::kStrings> lengths{};
     for (std::size_t e = 0; e < geometry_.size(); ++e) {
       // The bearing's translation carries the engine's end: the same as the anchors carried the other way.
       const Vector3<S> bearing = state.gimbals[e].displacement.template head<3>();
