@@ -20,7 +20,7 @@ std::string key_of_axis(const std::string& key, const std::string& axis) {
 /// Adds `own` to `all`, each name ended by the axis.
 void add_named(const json& own, const std::string& axis, json& all) {
   for (const auto& [name, value] : own.items()) {
-    all[name + "." + axis] = value;
+    all[fmt::format("{}.{}", name, axis)] = value;
   }
 }
 
