@@ -178,6 +178,7 @@ std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::t
 void read_noise(const TomlSource& source, const toml::table& table, const std::string& prefix,
                 const std::vector<ModelChannel>& channels, const Words& others, std::map<std::string, double>& noise) {
   std::vector<std::string> keys;
+  keys.reserve(channels.size());
   for (const ModelChannel& channel : channels) {
     keys.push_back(fmt::format("{}_noise", channel.name));
   }
