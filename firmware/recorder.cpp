@@ -48,17 +48,17 @@ RecorderAccount Recorder::close() {
 }
 
 void Recorder::empty_until_closed() {
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point synced = Clock::now();
+  using SteadyClock = std::chrono::steady_clock;
+  SteadyClock::time_point synced = SteadyClock::now();
   for (bool closing = false; !closing;) {
     {
       std::unique_lock lock(mutex_);
       closing = close_asked_.wait_for(lock, std::chrono::nanoseconds(kEmptyEveryNs), [this] { return closing_; });
     }
     empty_ring();
-    if (Clock::now() - synced > std::chrono::nanoseconds(kSyncEveryNs)) {
+    if (SteadyClock::now() - synced > std::chrono::nanoseconds(kSyncEveryNs)) {
       sink_.sync();
-      synced = Clock::now();
+      synced = SteadyClock::now();
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstring>
 #include <string>
 
 namespace hotfire::hal {
@@ -9,5 +10,10 @@ struct Failure {
   std::string what;
   std::string mend;
 };
+
+/// That a call of the system failed with `error`, a value of errno.
+inline Failure failed_call(const std::string& call, int error, const std::string& mend) {
+  return {call + ": " + std::strerror(error), mend};
+}
 
 }  // namespace hotfire::hal

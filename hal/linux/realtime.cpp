@@ -20,10 +20,6 @@ namespace {
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kStackBlock = 64 * kPage;
 
-Failure failure(const std::string& call, int error, const std::string& mend) {
-  return {call + ": " + std::strerror(error), mend};
-}
-
 /// Touches one page after the other, a block a call. It uses its block after the call, so that the compiler cannot turn the
 /// recursion into a loop over one block.
 __attribute__((noinline)) char touch_stack(std::size_t bytes) noexcept {
@@ -41,9 +37,9 @@ std::optional<Failure> lock_memory(std::size_t stack_bytes) noexcept {
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    return failure("memory is not locked: mlockall", errno,
-                   "allow it: 'ulimit -l unlimited', or '@realtime - memlock unlimited' in /etc/security/limits.d, or "
-                   "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitMEMLOCK=infinity in a systemd unit");
+    return failed_call("memory is not locked: mlockall", errno,
+                       "allow it: 'ulimit -l unlimited', or '@realtime - memlock unlimited' in /etc/security/limits.d, or "
+                       "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitMEMLOCK=infinity in a systemd unit");
   }
   rlimit limit{};
   getrlimit(RLIMIT_STACK, &limit);
@@ -58,8 +54,9 @@ std::optional<Failure> run_on_cpu(int cpu) noexcept {
     CPU_SET(static_cast<std::size_t>(cpu), &set);
   }
   if (sched_setaffinity(0, sizeof set, &set) != 0) {
-    return failure("not bound to CPU " + std::to_string(cpu) + ": sched_setaffinity", errno,
-                   "name one of the CPUs that this process may use, see 'taskset -p $$' and /sys/devices/system/cpu/online");
+    return failed_call(
+        "not bound to CPU " + std::to_string(cpu) + ": sched_setaffinity", errno,
+        "name one of the CPUs that this process may use, see 'taskset -p $$' and /sys/devices/system/cpu/online");
   }
   return std::nullopt;
 }
@@ -69,9 +66,9 @@ std::optional<Failure> schedule_first(int priority) noexcept {
   prctl(PR_SET_TIMERSLACK, 1);
   const sched_param parameter{priority};
   if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0) {
-    return failure("no real-time scheduling at priority " + std::to_string(priority) + ": sched_setscheduler", errno,
-                   "allow it: 'ulimit -r 99', or '@realtime - rtprio 99' in /etc/security/limits.d, or "
-                   "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitRTPRIO=99 in a systemd unit");
+    return failed_call("no real-time scheduling at priority " + std::to_string(priority) + ": sched_setscheduler", errno,
+                       "allow it: 'ulimit -r 99', or '@realtime - rtprio 99' in /etc/security/limits.d, or "
+                       "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitRTPRIO=99 in a systemd unit");
   }
   return std::nullopt;
 }
@@ -88,11 +85,11 @@ std::optional<Failure> WakefulCpus::hold() noexcept {
       "wake-up latency is too long";
   file_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   if (file_ < 0) {
-    return failure("CPUs may fall into deep sleep: /dev/cpu_dma_latency", errno, mend);
+    return failed_call("CPUs may fall into deep sleep: /dev/cpu_dma_latency", errno, mend);
   }
   const std::int32_t longest_us = 0;
   if (write(file_, &longest_us, sizeof longest_us) != sizeof longest_us) {
-    return failure("CPUs may fall into deep sleep: write to /dev/cpu_dma_latency", errno, mend);
+    return failed_call("CPUs may fall into deep sleep: write to /dev/cpu_dma_latency", errno, mend);
   }
   return std::nullopt;
 }

@@ -25,10 +25,6 @@ static_assert(kReceiveBuffer / 768 <= kMostWaiting);
 
 constexpr can_err_mask_t kErrorClasses = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
 
-Failure failure(const std::string& what, int error, const std::string& mend) {
-  return {what + ": " + std::strerror(error), mend};
-}
-
 CanId our_id(canid_t id) {
   const bool extended = (id & CAN_EFF_FLAG) != 0;
   return {id & (extended ? CAN_EFF_MASK : CAN_SFF_MASK), extended};
@@ -74,9 +70,9 @@ std::optional<Failure> SocketCan::open() noexcept {
   socket_ = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (socket_ < 0) {
     const bool forbidden = errno == EPERM || errno == EACCES;
-    return forbidden ? failure("no permission to open a CAN socket", errno,
-                               "let the sandbox or container have AF_CAN sockets, or start without it")
-                     : failure("no CAN in this kernel: socket", errno, "load it: 'modprobe can-raw'");
+    return forbidden ? failed_call("no permission to open a CAN socket", errno,
+                                   "let the sandbox or container have AF_CAN sockets, or start without it")
+                     : failed_call("no CAN in this kernel: socket", errno, "load it: 'modprobe can-raw'");
   }
   if (auto refused = configure()) {
     return refused;
@@ -105,7 +101,7 @@ std::optional<Failure> SocketCan::configure() noexcept {
       !set_option(socket_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on) ||
       !set_option(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, fd) || !set_option(socket_, SOL_SOCKET, SO_RXQ_OVFL, on) ||
       !set_option(socket_, SOL_SOCKET, SO_TIMESTAMPNS, on) || !set_option(socket_, SOL_SOCKET, SO_RCVBUF, half)) {
-    return failure("a CAN socket cannot be set up: setsockopt", errno, "a kernel of Linux 5.10 or newer is needed");
+    return failed_call("a CAN socket cannot be set up: setsockopt", errno, "a kernel of Linux 5.10 or newer is needed");
   }
   return std::nullopt;
 }
@@ -123,7 +119,7 @@ std::optional<Failure> SocketCan::bind_to_interface() noexcept {
     return Failure{name + " is no CAN interface", "see 'ip -details link show type can', and type vcan"};
   }
   if (ioctl(socket_, SIOCGIFMTU, &request) != 0) {
-    return failure(name + " does not tell its MTU", errno, "see 'ip -details link show " + name + "'");
+    return failed_call(name + " does not tell its MTU", errno, "see 'ip -details link show " + name + "'");
   }
   if (settings_.fd && request.ifr_mtu < static_cast<int>(CANFD_MTU)) {
     return Failure{name + " is not set up for CAN FD (MTU " + std::to_string(request.ifr_mtu) + ")",
@@ -135,7 +131,7 @@ std::optional<Failure> SocketCan::bind_to_interface() noexcept {
   address.can_family = AF_CAN;
   address.can_ifindex = static_cast<int>(index);
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    return failure("bind to " + name, errno, "see 'ip -details link show " + name + "'");
+    return failed_call("bind to " + name, errno, "see 'ip -details link show " + name + "'");
   }
   if (!interface_is_up()) {
     return Failure{name + " is down", "'ip link set " + name + " up'"};

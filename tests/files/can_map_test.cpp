@@ -3,16 +3,16 @@
 #include <string>
 
 #include "tests/files/expect.hpp"
+#include "tests/files/own_map.hpp"
 #include "tests/files/scratch.hpp"
 
 namespace hotfire {
 
 using test::expect_message;
+using test::own_map;
 using test::refusal;
 
 namespace {
-
-const CanMap& own_map = own_can_map();  // read before the first test: it stays, and regular expressions keep their own
 
 const std::string kProtection =
     " SG_ crc8 : 0|8@1+ (1,0) [0|255] \"\" Plant\n SG_ counter : 8|8@1+ (1,0) [0|255] \"\" Plant\n";

@@ -5,16 +5,16 @@
 
 #include "hal/schedule/frame_time.hpp"
 #include "tests/files/expect.hpp"
+#include "tests/files/own_map.hpp"
 #include "tests/files/scratch.hpp"
 
 namespace hotfire {
 
 using test::expect_message;
+using test::own_map;
 using test::refusal;
 
 namespace {
-
-const CanMap& own_map = own_can_map();  // read before the first test: it stays
 
 /// Stuff bits of a string of bits: one of the other kind after five alike, which counts for the next five.
 unsigned stuff_bits(const std::vector<bool>& bits) {

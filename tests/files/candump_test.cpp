@@ -7,17 +7,17 @@
 #include <string>
 
 #include "tests/files/expect.hpp"
+#include "tests/files/own_map.hpp"
 #include "tests/files/scratch.hpp"
 #include "tools/files/candump_frame.hpp"
 
 namespace hotfire {
 
 using test::expect_message;
+using test::own_map;
 using test::refusal;
 
 namespace {
-
-const CanMap& own_map = own_can_map();  // read before the first test: it stays
 
 /// A line of a log: a good frame of the map with these values.
 std::string line(double time, const std::string& name, std::uint8_t counter,

@@ -13,8 +13,6 @@ namespace hotfire {
 
 namespace {
 
-constexpr std::size_t kBlock = 1 << 18;
-
 /// Frames of a record, row by row.
 class LogWriter {
  public:
@@ -90,10 +88,7 @@ void write_candump(const Record& record, const std::filesystem::path& path, cons
     }
     writer.append(text, reading, row, time, {{"piston_a", &piston}, {"piston_b", &piston}});
     writer.append(text, "SERVOVALVE_COMMAND", row, time, {{signal.c_str(), &current}});
-    if (text.size() > kBlock) {
-      file.write(text);
-      text.clear();
-    }
+    file.write_block(text);
   }
   file.write(text);
   file.commit();

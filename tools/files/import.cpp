@@ -11,8 +11,6 @@ namespace hotfire {
 
 namespace {
 
-constexpr std::size_t kBlock = 1 << 18;
-
 void write_columns(const ImportMap& map, const std::vector<std::vector<double>>& values,
                    const std::filesystem::path& output) {
   WholeFile file(output);
@@ -34,10 +32,7 @@ void write_columns(const ImportMap& map, const std::vector<std::vector<double>>&
       append(values[c][row] * map.columns[c].factor);
     }
     text += '\n';
-    if (text.size() > kBlock) {
-      file.write(text);
-      text.clear();
-    }
+    file.write_block(text);
   }
   file.write(text);
   file.commit();

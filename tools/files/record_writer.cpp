@@ -10,8 +10,6 @@ namespace hotfire {
 
 namespace {
 
-constexpr std::size_t kBlock = 1 << 18;
-
 void append_number(std::string& text, double value) {
   std::array<char, 32> digits{};
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
@@ -34,10 +32,7 @@ void write_record(const Record& record, const std::filesystem::path& path) {
       append_number(text, channel.values[row]);
     }
     text += '\n';
-    if (text.size() > kBlock) {
-      file.write(text);
-      text.clear();
-    }
+    file.write_block(text);
   }
   file.write(text);
   file.commit();

@@ -44,9 +44,9 @@ std::vector<std::size_t> chosen_actuators(const hal::RecordingHeader& header, co
 }
 
 /// Rows in the making.
-class Rows {
+class RecordedRows {
  public:
-  Rows(const hal::RecordingHeader& header, const std::vector<std::size_t>& actuators)
+  RecordedRows(const hal::RecordingHeader& header, const std::vector<std::size_t>& actuators)
       : begins_at_rest_(!is_of_several_axes(header)) {
     record_.period = static_cast<double>(header.period_ns) * 1e-9;
     const std::vector<std::string> axes = axis_names(static_cast<int>(header.actuators) / 2);
@@ -94,7 +94,8 @@ class Rows {
       path.string(), cycle.dropped_before, cycle.head.cycle, path.string(), cycle.head.cycle));
 }
 
-void read_rows(hal::RecordingReader& reader, const std::filesystem::path& path, const RecordingPart& part, Rows& rows) {
+void read_rows(hal::RecordingReader& reader, const std::filesystem::path& path, const RecordingPart& part,
+               RecordedRows& rows) {
   const double period = rows.record().period;
   std::vector<double> before = reader.header().start;
   const std::vector<double> no_commands(reader.header().actuators, 0.0);
@@ -143,7 +144,7 @@ Record load_recording(const std::filesystem::path& path, const RecordingPart& pa
   if (!reader.error().empty()) {
     throw FileError(reader.error());
   }
-  Rows rows(reader.header(), chosen_actuators(reader.header(), path, part.actuator));
+  RecordedRows rows(reader.header(), chosen_actuators(reader.header(), path, part.actuator));
   read_rows(reader, path, part, rows);
   Record& record = rows.record();
   if (record.rows < 2) {

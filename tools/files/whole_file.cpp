@@ -50,6 +50,14 @@ void WholeFile::write(std::string_view text) {
   }
 }
 
+void WholeFile::write_block(std::string& text) {
+  constexpr std::size_t block = 1 << 18;
+  if (text.size() > block) {
+    write(text);
+    text.clear();
+  }
+}
+
 void WholeFile::commit() {
   if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0 || std::rename(temporary_.c_str(), target_.c_str()) != 0) {
     fail();

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace hotfire {
@@ -18,6 +19,9 @@ class WholeFile {
 
   /// Appends. Throws FileError (disk full, say).
   void write(std::string_view text);
+
+  /// The same, and empties the text, once it is a block long: for a file that grows row by row.
+  void write_block(std::string& text);
 
   /// Flushes to the disk and renames. Throws FileError.
   void commit();

@@ -13,8 +13,6 @@
 namespace hotfire::study {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 /// v_d of physics.md section 3, half of the passivity bound.
 double damping_dies_at(double level, double damping) {
   return damping > 0.0 ? 2.0 * std::sqrt(2.0 * std::numbers::e) * level / damping : 1.0;

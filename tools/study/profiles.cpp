@@ -9,7 +9,6 @@
 namespace hotfire::study {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// Commands in parts that follow each other.

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "tools/study/random.hpp"
 
 namespace hotfire::study {
+
+/// One degree [rad].
+inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 inline constexpr double kSample = 2e-3;  ///< of every record [s]
 

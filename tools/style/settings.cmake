@@ -6,6 +6,11 @@ target_compile_options(hotfire_settings INTERFACE -Werror -Wall -Wextra -Wpedant
   -Wcast-qual -Woverloaded-virtual -Wold-style-cast -Wfloat-conversion -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough
   -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wundef -Wextra-semi -Wredundant-decls -Wmissing-declarations
   -Wzero-as-null-pointer-constant -Wsuggest-override -Wvla)
+# A build in batches compiles a few sources as one: each is then an included file, and its unnamed namespace is that of a header
+# to this warning.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(hotfire_settings INTERFACE -Wno-subobject-linkage)
+endif()
 # Contraction would make the same source give other bits on a machine with fused multiply-add.
 target_compile_options(hotfire_settings INTERFACE -ffp-contract=off)
 # Eigen aligns its members by the instruction set; a library built for AVX2 and one that is not would disagree on where the

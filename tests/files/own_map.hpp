@@ -1,0 +1,10 @@
+#pragma once
+
+#include "tools/files/can_map.hpp"
+
+namespace hotfire::test {
+
+/// The map of the project's own frames. Read before the first test: it stays, and regular expressions keep what is theirs.
+inline const CanMap& own_map = own_can_map();
+
+}  // namespace hotfire::test
