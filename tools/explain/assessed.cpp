@@ -10,6 +10,12 @@ namespace hotfire::explain {
 
 namespace {
 
+/// A residual whose part beyond noise is below this share of the noise rms is left alone: the model is then twice as close
+/// to the truth as the sensor is, and two friction laws of the same family differ by as much.
+constexpr double kImmaterialExcess = 0.5;
+/// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
+/// is left then is of the noise's own size, and there is nothing in it to be named.
+constexpr double kImmaterialWhereChaotic = 1.5;
 /// Change of the logarithm of a temper below which it stands.
 constexpr double kTemperStands = 0.2;
 /// A fit that ran out of iterations goes on where its last pass left less than this share of the error.
@@ -35,7 +41,7 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
   fitted.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
   double left = Goodness::combined(goodness(evaluator.data(), prediction).fitted);
   for (int pass = 0; pass < effort.passes; ++pass) {
-    if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, nullptr}) ||
+    if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, effort.slopes, nullptr}) ||
         !evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
       return {};
     }
@@ -51,6 +57,12 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
     }
   }
   return assess(fine, threads, fitted);
+}
+
+template <class Family>
+bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
+  return excess_over_noise(data, assessed.prediction) <=
+         (assessed.model.chaotic ? kImmaterialWhereChaotic : kImmaterialExcess);
 }
 
 template <class Family>
@@ -160,6 +172,7 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
   template Assessed<Family> assess(const Evaluator<Family>&, unsigned, const Fitted<Family>&);                        \
   template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
                                     const Effort&);                                                                   \
+  template bool reaches_noise(const Dataset&, const Assessed<Family>&);                                               \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
   template Fitted<Family> with_declared_values(Fitted<Family>);                                                       \
   template bool is_far_from_declared(const Fitted<Family>&);                                                          \

@@ -22,11 +22,13 @@ struct Effort {
   int iterations;
   int passes;
   double tolerance;
+  Slopes slopes = Slopes::exact;
 };
-inline constexpr Effort kCheck{6, 1, 1e-4};    ///< is an effect still needed
-inline constexpr Effort kRanking{8, 3, 1e-4};  ///< which finalist is best
-inline constexpr Effort kFinal{15, 3, 1e-5};   ///< what the report says
-inline constexpr Effort kAllRows{8, 1, 1e-5};  ///< a small move: to the rows that were held out
+inline constexpr Effort kCheck{6, 1, 1e-4};                      ///< is an effect still needed
+inline constexpr Effort kRanking{8, 3, 1e-4};                    ///< which finalist is best
+inline constexpr Effort kOverRipples{8, 2, 1e-4, Slopes::wide};  ///< out of a minimum that is a ripple
+inline constexpr Effort kFinal{15, 3, 1e-5};                     ///< what the report says
+inline constexpr Effort kAllRows{8, 1, 1e-5};                    ///< a small move: to the rows that were held out
 
 /// A model with what it predicts under fine steps.
 template <class Family>
@@ -37,6 +39,10 @@ Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const F
 template <class Family>
 Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
                          Fitted<Family> fitted, const Effort& effort);
+
+/// True if every channel's residual is noise but for a part that the sensor could not show.
+template <class Family>
+bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed);
 
 /// A model without one of its effects, the other parameters where they are.
 template <class Family>

@@ -53,7 +53,9 @@ template <class Family>
 class SimulationError : public ceres::CostFunction {
  public:
   SimulationError(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options)
-      : fitted_(fitted), options_(options), tangent_(evaluator, fitted.base, fitted.free, simulated(), options.threads) {
+      : fitted_(fitted),
+        options_(options),
+        tangent_(evaluator, fitted.base, fitted.free, simulated(), options.slopes, options.threads) {
     weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
     for (const Stretch& s : evaluator.stretches()) {
       weight_.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
@@ -147,7 +149,7 @@ class SimulationError : public ceres::CostFunction {
       return false;
     }
     if (want_jacobian) {
-      fitted_.chaotic = tangent_.slopes() == Slopes::wide;
+      fitted_.chaotic = options_.slopes == Slopes::exact && tangent_.slopes() == Slopes::wide;
     }
     residual = tangent_.residual();
     if (options_.frozen != nullptr && !options_.frozen->u.empty()) {

@@ -37,6 +37,7 @@ struct FitOptions {
   int iterations = 30;
   unsigned threads = 1;
   double tolerance = 1e-5;         ///< relative change of the cost at which a fit has converged
+  Slopes slopes = Slopes::exact;   ///< how derivatives are asked for
   const Frozen* frozen = nullptr;  ///< for the first frozen->u.size() parameters
 };
 

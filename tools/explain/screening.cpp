@@ -49,7 +49,8 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   std::vector<std::size_t> all(current.free.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   Eigen::VectorXd residual;
-  differentiate<Family>(evaluator, current.base, current.free, current.u, all, threads, residual, frozen_.jacobian);
+  differentiate<Family>(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, residual,
+                        frozen_.jacobian);
   Prediction prediction;
   evaluator.predict(current.base, current.free, current.u, threads, prediction);
   current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
@@ -304,7 +305,7 @@ void Screening<Family>::improve(Screened<Family>& screened, int iterations) cons
   }
   const Stopwatch stopwatch;
   Fitted<Family>& fitted = screened.fitted;
-  screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, &frozen_});
+  screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, Slopes::exact, &frozen_});
   Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
   if (residual.size() == 0) {
     screened.good = false;

@@ -8,6 +8,7 @@
 
 #include "tools/explain/channel_check.hpp"
 #include "tools/explain/finalists.hpp"
+#include "tools/explain/refiner.hpp"
 #include "tools/explain/stopwatch.hpp"
 #include "tools/explain/unlisted.hpp"
 
@@ -15,14 +16,8 @@ namespace hotfire::explain {
 
 namespace {
 
-/// A residual whose part beyond noise is below this share of the noise rms is left alone: the model is then twice as close
-/// to the truth as the sensor is, and two friction laws of the same family differ by as much.
-constexpr double kImmaterialExcess = 0.5;
 /// An effect is kept only if it lowers the held-out error by this share of it.
 constexpr double kLeastHeldOutDrop = 0.01;
-/// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
-/// is left then is of the noise's own size, and there is nothing in it to be named.
-constexpr double kImmaterialWhereChaotic = 1.5;
 /// What is left beyond the noise is larger than the noise: worth a table of unknown law, and any effect that is supported.
 constexpr double kLargerThanNoise = 1.0;
 /// How many unlisted terms are fitted jointly, and what share of the listed effects' held-out error a term of unknown law
@@ -36,16 +31,6 @@ constexpr double kRankingPeriod = 2e-3;
 template <class Family>
 constexpr bool kRankedCoarsely = !std::is_same_v<Family, DirectFamily>;
 
-}  // namespace
-
-template <class Family>
-bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
-  return excess_over_noise(data, assessed.prediction) <=
-         (assessed.model.chaotic ? kImmaterialWhereChaotic : kImmaterialExcess);
-}
-
-namespace {
-
 /// The state of one search.
 template <class Family>
 class Search {
@@ -56,7 +41,8 @@ class Search {
         options_(options),
         thin_(kRankedCoarsely<Family> ? thinned(data, kRankingPeriod) : data),
         fine_(data, Resolution::fine),
-        coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine) {}
+        coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine),
+        refiner_(data, coarse_, fine_, scales_, options.threads, options.watch) {}
 
   SearchResult<Family> run() {
     if constexpr (std::is_same_v<Family, DirectFamily>) {
@@ -104,21 +90,13 @@ class Search {
     return !options_.watch.interrupted() && keep_best(round, screened);
   }
 
-  /// Fitted as its rank needs it.
-  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const {
-    return refined(coarse_, fine_, options_.threads, fitted, effort);
-  }
-  /// Fitted as the report says it.
-  Assessed<Family> settled(const Fitted<Family>& fitted) const {
-    return refined(fine_, fine_, options_.threads, fitted, kFinal);
-  }
   /// The declared model within its tolerances: fast records are dear, so the way there is made on thinned ones.
   Assessed<Family> calibrated(const Fitted<Family>& declared) const {
     if (fine_.fit_rows() == coarse_.fit_rows()) {
-      return settled(declared);
+      return refiner_.settled(declared);
     }
-    const Assessed<Family> near = ranked(declared, kRanking);
-    return settled(near.good() ? near.model : declared);
+    const Assessed<Family> near = refiner_.ranked(declared, kRanking);
+    return refiner_.settled(near.good() ? near.model : declared);
   }
 
   /// False where what is left is of the noise's size already and a further effect takes away little of it: it then imitates
@@ -161,15 +139,15 @@ class Search {
       }
       options_.watch.progress(fmt::format("round {}: fitting {} with everything else", round, label(screened[i].candidate)));
       const Stopwatch stopwatch;
-      finalists[i] = ranked(screened[i].fitted, kRanking);
+      finalists[i] = refiner_.ranked(screened[i].fitted, kRanking);
       trials[i].seconds += stopwatch.seconds();
     }
     const std::optional<std::size_t> best = rank(trials, finalists, order);
     Assessed<Family> winner;
     if (best && clears_up(finalists[*best])) {
-      winner = polished(round, std::move(finalists[*best]), trials[*best].candidate);
+      winner = refiner_.polished(round, std::move(finalists[*best]), trials[*best].candidate);
       options_.watch.progress(fmt::format("round {}: fitting {} with fine steps", round, label(trials[*best].candidate)));
-      winner = simplest_law(fine_, scales_, options_.threads, settled(winner.model), trials[*best].candidate);
+      winner = simplest_law(fine_, scales_, options_.threads, refiner_.settled(winner.model), trials[*best].candidate);
       for (const std::size_t i : order) {
         const Assessed<Family>& finalist = i == *best ? winner : finalists[i];
         if (winner.good() && finalist.good()) {
@@ -208,7 +186,7 @@ class Search {
       }
       for (std::size_t i = 0; i < screened.size(); ++i) {
         if (label(screened[i].candidate) == label(other.candidate) && finalists[i].good()) {
-          const Assessed<Family> again = settled(finalists[i].model);
+          const Assessed<Family> again = refiner_.settled(finalists[i].model);
           return again.good() ? std::optional(Rival<Family>{kept.trial.candidate, other.candidate, again.model})
                               : std::nullopt;
         }
@@ -234,7 +212,7 @@ class Search {
         continue;
       }
       options_.watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
-      finalists.back() = ranked(s.fitted, kRanking);
+      finalists.back() = refiner_.ranked(s.fitted, kRanking);
       if (!finalists.back().good()) {
         continue;
       }
@@ -249,7 +227,7 @@ class Search {
       }
     }
     if (best) {
-      Assessed<Family> again = settled(finalists[*best].model);
+      Assessed<Family> again = refiner_.settled(finalists[*best].model);
       if (again.good()) {
         trials[*best].held_out_ratio = held_out_ratio(again, result_.calibrated);
         finalists[*best] = std::move(again);
@@ -279,44 +257,14 @@ class Search {
   /// What an effect looked like while another was missing may be a local minimum now.
   void polish_earlier(int round) {
     for (std::size_t i = 0; i + 1 < result_.kept.size(); ++i) {
-      Assessed<Family> again = polished(round, result_.explained, result_.kept[i].trial.candidate);
+      Assessed<Family> again = refiner_.from_other_starts(round, result_.explained, result_.kept[i].trial.candidate);
       if (Goodness::combined(again.goodness.fitted) < Goodness::combined(result_.explained.goodness.fitted)) {
-        again = settled(again.model);
+        again = refiner_.settled(again.model);
         if (again.good()) {
           result_.explained = std::move(again);
         }
       }
     }
-  }
-
-  /// A winner that does not reach the noise may sit in a local minimum: its effect is fitted again from other starts.
-  Assessed<Family> polished(int round, Assessed<Family> winner, const Candidate& candidate) const {
-    if (reaches_noise(data_, winner) || options_.watch.interrupted()) {
-      return winner;
-    }
-    options_.watch.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
-    if (is_far_from_declared(winner.model)) {
-      Assessed<Family> afresh = ranked(with_declared_values(winner.model), kRanking);
-      winner = better_of(std::move(winner), std::move(afresh));
-      if (reaches_noise(data_, winner)) {
-        return winner;
-      }
-    }
-    Fitted<Family> anchor = without_effect(winner.model, candidate);
-    anchor.base.effects.active[candidate.effect] = true;
-    std::vector<double> own;
-    const std::string prefix = "effects." + candidate.name + ".";
-    for (std::size_t k = 0; k < winner.model.free.size(); ++k) {
-      if (winner.model.free[k].key.starts_with(prefix)) {
-        own.push_back(winner.model.u[k]);
-      }
-    }
-    const Screening<Family> screening(coarse_, anchor, scales_, options_.threads);
-    const Screened<Family> again = screening.restart(candidate, own, options_.watch);
-    if (!again.good) {
-      return winner;
-    }
-    return better_of(std::move(winner), ranked(again.fitted, kRanking));
   }
 
   /// Sets how every finalist does, all on the effective samples of the one with the least error: a model that leaves a
@@ -350,26 +298,31 @@ class Search {
     trial.held_out_ratio = held_out_ratio(with, current);
   }
 
-  /// Takes out every earlier effect without which the model is as good.
+  /// Takes out every effect without which the model is as good, or reaches the noise, where the search would have ended:
+  /// earlier ones that the last has replaced, and the last if all it did was to lead the others out of a local minimum.
   void take_out_superfluous(int round) {
-    for (std::size_t i = 0; i + 1 < result_.kept.size();) {
-      Trial trial{round,       result_.kept[i].trial.candidate,
-                  false,       0.0,
-                  1.0,         0.0,
-                  "taken out", "the model is as good without it since a later effect was added"};
+    for (std::size_t i = result_.kept.size(); i-- > 0 && result_.kept.size() > 1;) {
+      const bool is_last = i + 1 == result_.kept.size();
+      Trial trial{round,
+                  result_.kept[i].trial.candidate,
+                  false,
+                  0.0,
+                  1.0,
+                  0.0,
+                  "taken out",
+                  is_last ? "the model is as good without it: it led the others to where they fit"
+                          : "the model is as good without it since a later effect was added"};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
       const Stopwatch stopwatch;
-      Assessed<Family> rest = ranked(without_effect(result_.explained.model, trial.candidate), kCheck);
+      Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);
       if (rest.good()) {
         compare(trial, rest, rest.goodness.fitted);
       }
       trial.seconds = stopwatch.seconds();
-      if (rest.good() && trial.delta_criterion < kStrongEvidence) {
+      if (rest.good() && (trial.delta_criterion < kStrongEvidence || reaches_noise(data_, rest))) {
         result_.trials.push_back(trial);
         result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
-        result_.explained = settled(rest.model);
-      } else {
-        ++i;
+        result_.explained = refiner_.settled(rest.model);
       }
     }
   }
@@ -381,6 +334,7 @@ class Search {
   Evaluator<Family> fine_;
   Evaluator<Family> coarse_;
   Scales scales_;
+  Refiner<Family> refiner_;
   SearchResult<Family> result_;
 };
 
@@ -391,8 +345,6 @@ SearchResult<Family> search(const Dataset& data, const ModelFile& model, const S
   return Search<Family>(data, model, options).run();
 }
 
-template bool reaches_noise(const Dataset&, const Assessed<SimplexFamily>&);
-template bool reaches_noise(const Dataset&, const Assessed<DirectFamily>&);
 template SearchResult<SimplexFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
 template SearchResult<DirectFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
 

@@ -27,10 +27,6 @@ struct SearchOptions {
   Watch watch;
 };
 
-/// True if every channel's residual is noise but for a part that the sensor could not show.
-template <class Family>
-bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed);
-
 /// Calibrates the declared model within its tolerances, then adds effects one by one while the data support them: every
 /// candidate is screened, the best are fitted jointly with everything else, and one is kept if it lowers the BIC and the
 /// error on held-out blocks. An effect that a later one makes superfluous is taken out again.

@@ -53,9 +53,9 @@ double wide_step(const FreeParameter& parameter) { return parameter.is_declared(
 template <class Family>
 std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
                                     std::span<const FreeParameter> free, std::span<const double> u,
-                                    std::span<const std::size_t> wanted, unsigned threads, Eigen::VectorXd& residual,
-                                    Eigen::MatrixXd& jacobian) {
-  if (evaluator.differentiate(base, free, u, wanted, threads, residual, jacobian) &&
+                                    std::span<const std::size_t> wanted, Slopes asked, unsigned threads,
+                                    Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
+  if (asked == Slopes::exact && evaluator.differentiate(base, free, u, wanted, threads, residual, jacobian) &&
       (jacobian.size() == 0 || jacobian.cwiseAbs().maxCoeff() < kRunawaySlope)) {
     return Slopes::exact;
   }
@@ -65,9 +65,11 @@ std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const Pl
 
 template std::optional<Slopes> differentiate(const Evaluator<SimplexFamily>&, const PlainParameters<SimplexFamily>&,
                                              std::span<const FreeParameter>, std::span<const double>,
-                                             std::span<const std::size_t>, unsigned, Eigen::VectorXd&, Eigen::MatrixXd&);
+                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::VectorXd&,
+                                             Eigen::MatrixXd&);
 template std::optional<Slopes> differentiate(const Evaluator<DirectFamily>&, const PlainParameters<DirectFamily>&,
                                              std::span<const FreeParameter>, std::span<const double>,
-                                             std::span<const std::size_t>, unsigned, Eigen::VectorXd&, Eigen::MatrixXd&);
+                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::VectorXd&,
+                                             Eigen::MatrixXd&);
 
 }  // namespace hotfire::explain

@@ -32,7 +32,7 @@ bool Tangent<Family>::differentiate_at(std::span<const double> u) {
   if (!taken_at_.empty() && move_to(u) && holds_at(u)) {
     return true;
   }
-  const auto taken = differentiate<Family>(evaluator_, base_, free_, u, wanted_, threads_, residual_, jacobian_);
+  const auto taken = differentiate<Family>(evaluator_, base_, free_, u, wanted_, asked_, threads_, residual_, jacobian_);
   if (!taken) {
     at_.clear();
     taken_at_.clear();

@@ -15,10 +15,11 @@ namespace hotfire::explain {
 template <class Family>
 class Tangent {
  public:
-  /// Of `evaluator` under `base` with the coordinates of `free`, with derivatives for the parameters `wanted`.
+  /// Of `evaluator` under `base` with the coordinates of `free`, with derivatives for the parameters `wanted`, taken as
+  /// `asked`.
   Tangent(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base, std::span<const FreeParameter> free,
-          std::vector<std::size_t> wanted, unsigned threads)
-      : evaluator_(evaluator), base_(base), free_(free), wanted_(std::move(wanted)), threads_(threads) {}
+          std::vector<std::size_t> wanted, Slopes asked, unsigned threads)
+      : evaluator_(evaluator), base_(base), free_(free), wanted_(std::move(wanted)), asked_(asked), threads_(threads) {}
 
   /// Simulates at `u`. False if a state did not stay finite.
   bool move_to(std::span<const double> u);
@@ -45,6 +46,7 @@ class Tangent {
   const PlainParameters<Family>& base_;
   std::span<const FreeParameter> free_;
   std::vector<std::size_t> wanted_;
+  Slopes asked_;
   unsigned threads_;
   std::vector<double> at_;  ///< where `residual_` holds
   Eigen::VectorXd residual_;

@@ -1,0 +1,88 @@
+#include "tools/explain/refiner.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/explain/trial.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Where an axis comes to rest in a play or a dead band depends on how it came there, and so the error of a model has
+/// ripples over its parameters. They are as high as such rests are apart: a few times the sensor noise, or nobody would see
+/// them.
+constexpr double kHighestRipple = 3.0;
+
+}  // namespace
+
+template <class Family>
+Assessed<Family> Refiner<Family>::polished(int round, Assessed<Family> winner, const Candidate& candidate) const {
+  return from_other_starts(round, over_ripples(std::move(winner)), candidate);
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const {
+  if (is_done(winner)) {
+    return winner;
+  }
+  watch_.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
+  if (is_far_from_declared(winner.model)) {
+    Assessed<Family> afresh = ranked(with_declared_values(winner.model), kRanking);
+    winner = better_of(std::move(winner), std::move(afresh));
+    if (is_done(winner)) {
+      return winner;
+    }
+  }
+  Assessed<Family> again = from_other_values(winner, candidate);
+  return better_of(std::move(winner), std::move(again));
+}
+
+template <class Family>
+bool Refiner<Family>::is_done(const Assessed<Family>& winner) const {
+  return reaches_noise(data_, winner) || watch_.interrupted();
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::without(const Fitted<Family>& model, const Candidate& candidate) const {
+  Assessed<Family> rest = ranked(without_effect(model, candidate), kCheck);
+  const bool is_near = rest.good() && excess_over_noise(data_, rest.prediction) < kHighestRipple;
+  return is_near ? over_ripples(std::move(rest)) : rest;
+}
+
+/// Along differences that are wider than a ripple, and then along exact derivatives, from where those ended.
+template <class Family>
+Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted) const {
+  if (is_done(fitted)) {
+    return fitted;
+  }
+  Assessed<Family> beyond = ranked(fitted.model, kOverRipples);
+  if (beyond.good()) {
+    beyond = ranked(beyond.model, kRanking);
+  }
+  return better_of(std::move(fitted), std::move(beyond));
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const {
+  Fitted<Family> anchor = without_effect(winner.model, candidate);
+  anchor.base.effects.active[candidate.effect] = true;
+  std::vector<double> own;
+  const std::string prefix = "effects." + candidate.name + ".";
+  for (std::size_t k = 0; k < winner.model.free.size(); ++k) {
+    if (winner.model.free[k].key.starts_with(prefix)) {
+      own.push_back(winner.model.u[k]);
+    }
+  }
+  const Screening<Family> screening(coarse_, anchor, scales_, threads_);
+  const Screened<Family> again = screening.restart(candidate, own, watch_);
+  return again.good ? ranked(again.fitted, kRanking) : Assessed<Family>{};
+}
+
+template class Refiner<SimplexFamily>;
+template class Refiner<DirectFamily>;
+
+}  // namespace hotfire::explain

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "tools/explain/assessed.hpp"
+#include "tools/explain/screening.hpp"
+
+namespace hotfire::explain {
+
+/// Joint fits of everything that is free, as a search needs them.
+template <class Family>
+class Refiner {
+ public:
+  /// `coarse` is for ranks (fewer rows and steps), `fine` for what the report says. All are to outlive the refiner.
+  Refiner(const Dataset& data, const Evaluator<Family>& coarse, const Evaluator<Family>& fine, const Scales& scales,
+          unsigned threads, const Watch& watch)
+      : data_(data), coarse_(coarse), fine_(fine), scales_(scales), threads_(threads), watch_(watch) {}
+
+  /// Fitted as its rank needs it.
+  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const {
+    return refined(coarse_, fine_, threads_, fitted, effort);
+  }
+  /// Fitted as the report says it.
+  Assessed<Family> settled(const Fitted<Family>& fitted) const { return refined(fine_, fine_, threads_, fitted, kFinal); }
+
+  /// A winner that does not reach the noise may sit in a local minimum: over the ripples of its error, if it is near the
+  /// noise, and then from other starts. The best of all.
+  Assessed<Family> polished(int round, Assessed<Family> winner, const Candidate& candidate) const;
+  /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
+  Assessed<Family> from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const;
+
+  /// Without an effect, the others fitted again from where they are.
+  Assessed<Family> without(const Fitted<Family>& model, const Candidate& candidate) const;
+
+ private:
+  bool is_done(const Assessed<Family>& winner) const;
+  Assessed<Family> over_ripples(Assessed<Family> fitted) const;
+  Assessed<Family> from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const;
+
+  const Dataset& data_;
+  const Evaluator<Family>& coarse_;
+  const Evaluator<Family>& fine_;
+  const Scales& scales_;
+  unsigned threads_;
+  const Watch& watch_;
+};
+
+extern template class Refiner<SimplexFamily>;
+extern template class Refiner<DirectFamily>;
+
+}  // namespace hotfire::explain
