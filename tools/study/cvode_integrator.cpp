@@ -34,7 +34,7 @@ CvodeIntegrator::CvodeIntegrator(Derivative derivative, void* user, const std::v
   require(CVodeSVtolerances(memory_, tolerance, tolerance_), "CVodeSVtolerances");
   require(CVodeSetUserData(memory_, user), "CVodeSetUserData");
   require(CVodeSetLinearSolver(memory_, solver_, matrix_), "CVodeSetLinearSolver");
-  require(CVodeSetMaxNumSteps(memory_, 1'000'000), "CVodeSetMaxNumSteps");
+  require(CVodeSetMaxNumSteps(memory_, 100'000), "CVodeSetMaxNumSteps");
   // A failure is answered in advance(), and told by an exception if that is no help.
   require(CVodeSetErrFile(memory_, nullptr), "CVodeSetErrFile");
 }
@@ -64,8 +64,9 @@ void CvodeIntegrator::advance(double end) {
   int restarts = 0;
   while (time_ < end) {
     const int flag = CVode(memory_, end, state_, &time_, CV_NORMAL);
-    // A corner can defeat the error test; from the corner itself it goes on.
-    if ((flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE) && ++restarts <= 20) {
+    // A corner can defeat the error test, or hold the steps at next to nothing where a play is just not taken up; from there
+    // itself it goes on.
+    if ((flag == CV_ERR_FAILURE || flag == CV_CONV_FAILURE || flag == CV_TOO_MUCH_WORK) && ++restarts <= 20) {
       count();
       start(end);
     } else {
