@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "tools/explain/candidates.hpp"
+#include "tools/explain/slopes.hpp"
 
 #include <CppUTest/TestHarness.h>
 
@@ -98,4 +99,40 @@ TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
   evaluator.differentiate(base, free, u, all, 2, two_residual, two);
   CHECK((one.array() == two.array()).all());
   CHECK((one_residual.array() == two_residual.array()).all());
+}
+
+TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARipple) {
+  const Dataset data = smooth_dataset();
+  const Evaluator<SimplexFamily> evaluator(data, Resolution::coarse);
+  PlainParameters<SimplexFamily> base;
+  std::vector<FreeParameter> free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.05}});
+  for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
+    if (candidate.name == "valve_hysteresis") {
+      activate<SimplexFamily>(base, candidate);
+      const auto own = effect_parameters<SimplexFamily>(base, candidate, {});
+      free.insert(free.end(), own.begin(), own.end());
+    }
+  }
+  LONGS_EQUAL(2, free.size());
+  const std::vector<double> u{0.2, free.back().coordinate(free.back().unit_size)};
+  const std::vector<std::size_t> all{0, 1};
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd wide;
+  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::wide, 2, residual, wide) == Slopes::wide);
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const double step = wide_step(free[k]);
+    std::vector<double> at = u;
+    Prediction high;
+    Prediction low;
+    at[k] = u[k] + step;
+    CHECK(evaluator.predict(base, free, at, 1, high));
+    at[k] = u[k] - step;
+    CHECK(evaluator.predict(base, free, at, 1, low));
+    const Eigen::VectorXd difference = (evaluator.residuals(high) - evaluator.residuals(low)) / (2.0 * step);
+    // The same simulations; the quotient's width is rounded once more.
+    CHECK((difference - wide.col(static_cast<Eigen::Index>(k))).norm() <= 1e-12 * difference.norm());
+  }
+  Eigen::MatrixXd exact;
+  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::exact, 2, residual, exact) == Slopes::exact);
+  CHECK((exact - wide).norm() > 0.0);
 }
