@@ -19,9 +19,9 @@ struct Assessed {
 /// How much is spent on a joint fit: `iterations` of the solver for each of up to `passes` tempers, until the cost changes
 /// by less than `tolerance`.
 struct Effort {
-  int iterations;
-  int passes;
-  double tolerance;
+  int iterations = 0;
+  int passes = 0;
+  double tolerance = 0.0;
   Slopes slopes = Slopes::exact;
 };
 inline constexpr Effort kCheck{6, 1, 1e-4};                      ///< is an effect still needed
