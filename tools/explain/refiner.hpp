@@ -21,13 +21,13 @@ class Refiner {
   /// Fitted as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted) const { return refined(fine_, fine_, threads_, fitted, kFinal); }
 
-  /// A winner that does not reach the noise may sit in a local minimum: over the ripples of its error, if it is near the
-  /// noise, and then from other starts. The best of all.
+  /// A winner that does not reach the noise may sit in a local minimum: it is fitted over the ripples of its error, and then
+  /// from other starts. The best of all.
   Assessed<Family> polished(int round, Assessed<Family> winner, const Candidate& candidate) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
   Assessed<Family> from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const;
 
-  /// Without an effect, the others fitted again from where they are.
+  /// Without an effect, the others fitted again from where they are; over the ripples too, if that ends near the noise.
   Assessed<Family> without(const Fitted<Family>& model, const Candidate& candidate) const;
 
  private:

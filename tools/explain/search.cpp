@@ -301,8 +301,8 @@ class Search {
   /// Takes out every effect without which the model is as good, or reaches the noise, where the search would have ended:
   /// earlier ones that the last has replaced, and the last if all it did was to lead the others out of a local minimum.
   void take_out_superfluous(int round) {
-    for (std::size_t i = result_.kept.size(); i-- > 0 && result_.kept.size() > 1;) {
-      const bool is_last = i + 1 == result_.kept.size();
+    const std::size_t newest = result_.kept.size() - 1;
+    for (std::size_t i = newest + 1; i-- > 0 && result_.kept.size() > 1;) {
       Trial trial{round,
                   result_.kept[i].trial.candidate,
                   false,
@@ -310,8 +310,8 @@ class Search {
                   1.0,
                   0.0,
                   "taken out",
-                  is_last ? "the model is as good without it: it led the others to where they fit"
-                          : "the model is as good without it since a later effect was added"};
+                  i == newest ? "the model is as good without it: it led the others to where they fit"
+                              : "the model is as good without it since a later effect was added"};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
       const Stopwatch stopwatch;
       Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);
@@ -321,6 +321,9 @@ class Search {
       trial.seconds = stopwatch.seconds();
       if (rest.good() && (trial.delta_criterion < kStrongEvidence || reaches_noise(data_, rest))) {
         result_.trials.push_back(trial);
+        if (i == newest) {
+          result_.rival.reset();
+        }
         result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
         result_.explained = refiner_.settled(rest.model);
       }
