@@ -24,11 +24,11 @@ struct Effort {
   double tolerance = 0.0;
   Slopes slopes = Slopes::exact;
 };
-inline constexpr Effort kCheck{6, 1, 1e-4};                      ///< is an effect still needed
-inline constexpr Effort kRanking{8, 3, 1e-4};                    ///< which finalist is best
-inline constexpr Effort kOverRipples{8, 2, 1e-4, Slopes::wide};  ///< out of a minimum that is a ripple
-inline constexpr Effort kFinal{15, 3, 1e-5};                     ///< what the report says
-inline constexpr Effort kAllRows{8, 1, 1e-5};                    ///< a small move: to the rows that were held out
+inline constexpr Effort kCheck{12, 1, 1e-4};                      ///< is an effect still needed
+inline constexpr Effort kRanking{16, 3, 1e-4};                    ///< which finalist is best
+inline constexpr Effort kOverRipples{16, 2, 1e-4, Slopes::wide};  ///< out of a minimum that is a ripple
+inline constexpr Effort kFinal{30, 3, 1e-5};                      ///< what the report says
+inline constexpr Effort kAllRows{16, 1, 1e-5};                    ///< a small move: to the rows that were held out
 
 /// A model with what it predicts under fine steps.
 template <class Family>

@@ -267,7 +267,8 @@ Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const
 template <class Family>
 int Evaluator<Family>::steps_of(const Experiment& experiment) const {
   const int fine = model::steps_per_period(experiment.period);
-  return resolution_ == Resolution::fine ? fine : (fine + 1) / 2;
+  const int times_longer = resolution_ == Resolution::fine ? 1 : resolution_ == Resolution::coarse ? 2 : 4;
+  return (fine + times_longer - 1) / times_longer;
 }
 
 template <class Family>

@@ -23,8 +23,9 @@ struct Stretch {
 };
 
 /// How finely experiments are stepped: `fine` is what `hotfire simulate` and the rig do; `coarse` takes half as many steps
-/// and ranks candidates, a step of 1 ms being right to a hundredth of sensor noise on smooth effects.
-enum class Resolution { fine, coarse };
+/// and ranks candidates, a step of 1 ms being right to a hundredth of sensor noise on smooth effects; `rough` takes a
+/// quarter and screens them, where what is left is far more than such steps are wrong by.
+enum class Resolution { fine, coarse, rough };
 
 /// Simulates every experiment of a dataset under given parameters, and differentiates the simulation exactly by dual
 /// numbers.

@@ -69,12 +69,6 @@ class SimulationError : public ceres::CostFunction {
     const auto count = static_cast<Eigen::Index>(fitted_.free.size());
     const std::span<const double> u(parameters[0], fitted_.free.size());
     const bool want_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
-    // With bounds, Ceres asks for the same point again after its line search; a simulation is dearer than a comparison.
-    if (want_jacobian && std::equal(u.begin(), u.end(), last_u_.begin(), last_u_.end())) {
-      Eigen::Map<Eigen::VectorXd>(residuals, count + 1) = last_.residual;
-      Eigen::Map<RowMajor>(jacobians[0], count + 1, count) = last_.jacobian;
-      return true;
-    }
     Eigen::VectorXd residual;
     if (!simulate(u, want_jacobian, residual)) {
       return false;
@@ -90,27 +84,18 @@ class SimulationError : public ceres::CostFunction {
       out(count) = std::sqrt(cost);
       return true;
     }
-    const Eigen::MatrixXd& own = tangent_.jacobian();
-    Eigen::MatrixXd full(residual.size(), count);
-    const Eigen::Index frozen = count - own.cols();
-    if (frozen > 0) {
-      full.leftCols(frozen) = weight_.asDiagonal() * options_.frozen->jacobian;
+    if (tangent_.revision() != weighted_revision_) {
+      weigh();
     }
-    full.rightCols(own.cols()) = weight_.asDiagonal() * own;
-    Eigen::MatrixXd normal = full.transpose() * full;
-    Eigen::VectorXd gradient = full.transpose() * residual;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const FreeParameter& parameter = fitted_.free[static_cast<std::size_t>(k)];
-      if (parameter.has_prior()) {
-        normal(k, k) += 1.0 / (parameter.prior_deviation * parameter.prior_deviation);
-        gradient(k) += parameter.surprise(u[static_cast<std::size_t>(k)]) / parameter.prior_deviation;
+    Eigen::VectorXd gradient = weighted_.transpose() * residual;
+    for (std::size_t k = 0; k < fitted_.free.size(); ++k) {
+      if (fitted_.free[k].has_prior()) {
+        gradient(static_cast<Eigen::Index>(k)) += fitted_.free[k].surprise(u[k]) / fitted_.free[k].prior_deviation;
       }
     }
-    last_ = compress(normal, gradient, cost);
-    last_u_.assign(u.begin(), u.end());
-    out = last_.residual;
-    Eigen::Map<RowMajor>(jacobians[0], count + 1, count) = last_.jacobian;
-    fitted_.normal = std::move(normal);
+    const Compressed compressed = compress(fitted_.normal, gradient, cost);
+    out = compressed.residual;
+    Eigen::Map<RowMajor>(jacobians[0], count + 1, count) = compressed.jacobian;
     return true;
   }
 
@@ -120,7 +105,6 @@ class SimulationError : public ceres::CostFunction {
       return false;
     }
     tangent_.forget();
-    last_u_.clear();
     return true;
   }
 
@@ -131,6 +115,26 @@ class SimulationError : public ceres::CostFunction {
     std::vector<std::size_t> rest(fitted_.free.size() - frozen);
     std::iota(rest.begin(), rest.end(), frozen);
     return rest;
+  }
+
+  /// Brings what depends on the derivatives alone up to them: the weighted Jacobian of all parameters, and J^T J with the
+  /// priors.
+  void weigh() const {
+    const auto count = static_cast<Eigen::Index>(fitted_.free.size());
+    const Eigen::MatrixXd& own = tangent_.jacobian();
+    weighted_.resize(weight_.size(), count);
+    if (count > own.cols()) {
+      weighted_.leftCols(count - own.cols()) = weight_.asDiagonal() * options_.frozen->jacobian;
+    }
+    weighted_.rightCols(own.cols()) = weight_.asDiagonal() * own;
+    fitted_.normal = weighted_.transpose() * weighted_;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const FreeParameter& parameter = fitted_.free[static_cast<std::size_t>(k)];
+      if (parameter.has_prior()) {
+        fitted_.normal(k, k) += 1.0 / (parameter.prior_deviation * parameter.prior_deviation);
+      }
+    }
+    weighted_revision_ = tangent_.revision();
   }
 
   /// `u` with the frozen parameters where they are frozen.
@@ -164,8 +168,8 @@ class SimulationError : public ceres::CostFunction {
   FitOptions options_;
   mutable Tangent<Family> tangent_;
   Eigen::VectorXd weight_;
-  mutable std::vector<double> last_u_;  ///< where `last_` holds
-  mutable Compressed last_;
+  mutable Eigen::MatrixXd weighted_;
+  mutable int weighted_revision_ = 0;  ///< the derivatives that `weighted_` is of
 };
 
 }  // namespace
@@ -194,6 +198,9 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
   solver.parameter_tolerance = 1e-7;
   solver.gradient_tolerance = 1e-12;
   solver.logging_type = ceres::SILENT;
+  // With bounds Ceres would search along every step, which takes derivatives wherever it looks and, where the error has
+  // ripples, settles for a move too small to count. A rejected step costs one simulation and turns the next one.
+  solver.max_num_line_search_step_size_iterations = 0;
   // A fit ends where derivatives taken there find no way on: borrowed ones may see none where there is one.
   ceres::Solver::Summary summary;
   for (int left = options.iterations; left > 0; left -= summary.num_successful_steps + summary.num_unsuccessful_steps) {

@@ -16,8 +16,37 @@ namespace {
 /// ripples over its parameters. They are as high as such rests are apart: a few times the sensor noise, or nobody would see
 /// them.
 constexpr double kHighestRipple = 3.0;
+/// Rough steps serve where they change the residuals by less than this share of them.
+constexpr double kLostToSteps = 0.1;
 
 }  // namespace
+
+template <class Family>
+const Evaluator<Family>& Refiner<Family>::for_screening(const Fitted<Family>& current) const {
+  Prediction by_rough;
+  Prediction by_coarse;
+  if (!rough_.predict(current.base, current.free, current.u, threads_, by_rough) ||
+      !coarse_.predict(current.base, current.free, current.u, threads_, by_coarse)) {
+    return coarse_;
+  }
+  const Eigen::VectorXd left = coarse_.residuals(by_coarse);
+  return (rough_.residuals(by_rough) - left).norm() < kLostToSteps * left.norm() ? rough_ : coarse_;
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Effort& effort) const {
+  Effort rest = effort;
+  Fitted<Family> start = fitted;
+  if (effort.passes > 1 && &for_screening(fitted) == &rough_) {
+    Assessed<Family> near =
+        refined(rough_, rough_, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
+    if (near.good()) {
+      start = std::move(near.model);
+      --rest.passes;
+    }
+  }
+  return refined(coarse_, fine_, threads_, std::move(start), rest);
+}
 
 template <class Family>
 Assessed<Family> Refiner<Family>::polished(int round, Assessed<Family> winner, const Candidate& candidate) const {
@@ -77,7 +106,7 @@ Assessed<Family> Refiner<Family>::from_other_values(const Assessed<Family>& winn
       own.push_back(winner.model.u[k]);
     }
   }
-  const Screening<Family> screening(coarse_, anchor, scales_, threads_);
+  const Screening<Family> screening(for_screening(anchor), anchor, scales_, threads_);
   const Screened<Family> again = screening.restart(candidate, own, watch_);
   return again.good ? ranked(again.fitted, kRanking) : Assessed<Family>{};
 }

@@ -9,15 +9,18 @@ namespace hotfire::explain {
 template <class Family>
 class Refiner {
  public:
-  /// `coarse` is for ranks (fewer rows and steps), `fine` for what the report says. All are to outlive the refiner.
-  Refiner(const Dataset& data, const Evaluator<Family>& coarse, const Evaluator<Family>& fine, const Scales& scales,
-          unsigned threads, const Watch& watch)
-      : data_(data), coarse_(coarse), fine_(fine), scales_(scales), threads_(threads), watch_(watch) {}
+  /// `rough` is for screening and `coarse` for ranks, both on the same rows, `fine` for what the report says. All are to
+  /// outlive the refiner.
+  Refiner(const Dataset& data, const Evaluator<Family>& rough, const Evaluator<Family>& coarse,
+          const Evaluator<Family>& fine, const Scales& scales, unsigned threads, const Watch& watch)
+      : data_(data), rough_(rough), coarse_(coarse), fine_(fine), scales_(scales), threads_(threads), watch_(watch) {}
 
-  /// Fitted as its rank needs it.
-  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const {
-    return refined(coarse_, fine_, threads_, fitted, effort);
-  }
+  /// What candidates beside a model are screened on: rough steps where the error that they make is small against what the
+  /// model leaves.
+  const Evaluator<Family>& for_screening(const Fitted<Family>& current) const;
+
+  /// Fitted as its rank needs it, the way to near the end under rough steps where they serve.
+  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const;
   /// Fitted as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted) const { return refined(fine_, fine_, threads_, fitted, kFinal); }
 
@@ -36,6 +39,7 @@ class Refiner {
   Assessed<Family> from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const;
 
   const Dataset& data_;
+  const Evaluator<Family>& rough_;
   const Evaluator<Family>& coarse_;
   const Evaluator<Family>& fine_;
   const Scales& scales_;

@@ -24,8 +24,8 @@ constexpr double kHopeful = 0.1;
 /// A law with more parameters of its own is not scanned: it starts from where the laws that it contains end.
 constexpr std::size_t kMostScanned = 6;
 constexpr std::size_t kStarts = 3;
-constexpr int kShortFit = 3;
-constexpr int kFullFit = 6;
+constexpr int kShortFit = 6;
+constexpr int kFullFit = 12;
 /// How far a parameter is set off when a fit is started again, and how many of the starts are fitted.
 constexpr double kRestartFactor = 5.0;
 constexpr std::size_t kRestarts = 4;

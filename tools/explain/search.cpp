@@ -42,7 +42,8 @@ class Search {
         thin_(kRankedCoarsely<Family> ? thinned(data, kRankingPeriod) : data),
         fine_(data, Resolution::fine),
         coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine),
-        refiner_(data, coarse_, fine_, scales_, options.threads, options.watch) {}
+        rough_(thin_, kRankedCoarsely<Family> ? Resolution::rough : Resolution::fine),
+        refiner_(data, rough_, coarse_, fine_, scales_, options.threads, options.watch) {}
 
   SearchResult<Family> run() {
     if constexpr (std::is_same_v<Family, DirectFamily>) {
@@ -85,7 +86,7 @@ class Search {
     std::erase_if(candidates, [&](const Candidate& c) {
       return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c);
     });
-    const Screening<Family> screening(coarse_, current, scales_, options_.threads);
+    const Screening<Family> screening(refiner_.for_screening(current), current, scales_, options_.threads);
     const auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     return !options_.watch.interrupted() && keep_best(round, screened);
   }
@@ -199,7 +200,8 @@ class Search {
   /// where it leaves clearly less on held-out data: listed effects that imitate it would be wrong names.
   void look_for_unlisted() {
     const int round = result_.trials.empty() ? 1 : result_.trials.back().round + 1;
-    const Screening<Family> screening(coarse_, result_.calibrated.model, scales_, options_.threads);
+    const Screening<Family> screening(refiner_.for_screening(result_.calibrated.model), result_.calibrated.model, scales_,
+                                      options_.threads);
     const auto screened = screening.run(unlisted_candidates<Family>(data_), "unlisted", options_.watch);
     std::vector<Trial> trials;
     std::vector<Assessed<Family>> finalists;
@@ -336,6 +338,7 @@ class Search {
   const Dataset thin_;
   Evaluator<Family> fine_;
   Evaluator<Family> coarse_;
+  Evaluator<Family> rough_;
   Scales scales_;
   Refiner<Family> refiner_;
   SearchResult<Family> result_;

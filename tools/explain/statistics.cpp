@@ -1,10 +1,22 @@
 #include "tools/explain/statistics.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace hotfire::explain {
+
+namespace {
+
+/// Sum of products of a series with itself `lag` later.
+double lagged_product(std::span<const double> values, std::size_t lag) {
+  const auto count = static_cast<Eigen::Index>(values.size() - lag);
+  const Eigen::Map<const Eigen::VectorXd> series(values.data(), static_cast<Eigen::Index>(values.size()));
+  return series.head(count).dot(series.tail(count));
+}
+
+}  // namespace
 
 double root_mean_square(std::span<const double> values) {
   if (values.empty()) {
@@ -40,27 +52,22 @@ double noise_from_differences(std::span<const double> values) {
 
 std::vector<double> autocorrelation(std::span<const double> values, std::size_t last_lag) {
   std::vector<double> rho;
-  const double energy = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  const double energy = lagged_product(values, 0);
   for (std::size_t lag = 0; lag <= last_lag && lag < values.size(); ++lag) {
-    const double sum =
-        std::inner_product(values.begin() + static_cast<std::ptrdiff_t>(lag), values.end(), values.begin(), 0.0);
-    rho.push_back(energy > 0.0 ? sum / energy : 0.0);
+    rho.push_back(energy > 0.0 ? lagged_product(values, lag) / energy : 0.0);
   }
   return rho;
 }
 
 double statistical_inefficiency(std::span<const double> values) {
-  const double energy = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  const double energy = lagged_product(values, 0);
   if (!(energy > 0.0)) {
     return 1.0;
   }
-  const auto rho = [&](std::size_t lag) {
-    return std::inner_product(values.begin() + static_cast<std::ptrdiff_t>(lag), values.end(), values.begin(), 0.0) / energy;
-  };
   double g = 1.0;
   // A pair of lags at a time; a sequence that has not died out after a fifth of the record counts as one sample a fifth.
   for (std::size_t lag = 1; lag + 1 < values.size() / 5; lag += 2) {
-    const double pair = rho(lag) + rho(lag + 1);
+    const double pair = (lagged_product(values, lag) + lagged_product(values, lag + 1)) / energy;
     if (pair <= 0.0) {
       break;
     }

@@ -39,6 +39,7 @@ bool Tangent<Family>::differentiate_at(std::span<const double> u) {
     return false;
   }
   slopes_ = *taken;
+  ++revision_;
   at_.assign(u.begin(), u.end());
   taken_at_ = at_;
   taken_residual_ = residual_;

@@ -38,6 +38,8 @@ class Tangent {
   /// A column for each of `wanted`.
   const Eigen::MatrixXd& jacobian() const { return jacobian_; }
   Slopes slopes() const { return slopes_; }
+  /// How often they were taken.
+  int revision() const { return revision_; }
 
  private:
   bool holds_at(std::span<const double> u) const;
@@ -54,6 +56,7 @@ class Tangent {
   Eigen::VectorXd taken_residual_;
   Eigen::MatrixXd jacobian_;
   Slopes slopes_ = Slopes::exact;
+  int revision_ = 0;
 };
 
 extern template class Tangent<SimplexFamily>;
