@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "model/step_size.hpp"
+#include "tools/explain/curve_points.hpp"
 #include "tools/simulate/run.hpp"
 
 namespace hotfire::explain {
@@ -124,6 +125,31 @@ void lay_points(Table& table, Extent extent, bool is_rate) {
   }
 }
 
+/// Over the readings of one channel: where what the model leaves of it bends.
+template <class Family, class Table>
+void lay_points_by_reading(Table& table, const Dataset& data, const Fitted<Family>& current, std::size_t channel) {
+  const Evaluator<Family> evaluator(data, Resolution::coarse);
+  Prediction prediction;
+  if (!evaluator.predict(current.base, current.free, current.u, 1, prediction)) {
+    return;
+  }
+  std::vector<double> reading;
+  std::vector<double> left;
+  for (const Stretch& s : evaluator.stretches()) {
+    if (s.channel == channel) {
+      const std::vector<double>& predicted = prediction[s.experiment][channel];
+      const std::vector<double>& measured = data.experiments[s.experiment].measured[channel];
+      for (std::size_t row = s.first; row < s.last; ++row) {
+        reading.push_back(predicted[row]);
+        left.push_back((measured[row] - predicted[row]) / data.noise[channel]);
+      }
+    }
+  }
+  const std::vector<double> points = curve_points(reading, left, table.x.size());
+  std::copy(points.begin(), points.end(), table.x.begin());
+  table.points = static_cast<int>(points.size());
+}
+
 template <class E>
 constexpr bool is_unlisted_effect() {
   return requires { E::is_unlisted; };
@@ -232,7 +258,12 @@ void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& can
       }
       for (const auto& field : Values::tables()) {
         if ((field.options >> candidate.option & 1U) != 0) {
-          lay_points(values.*field.member, extents.of(E::site, field.x_name), field.x_name == "rate");
+          auto& table = values.*field.member;
+          if constexpr (E::site == model::Site::sensor) {
+            lay_points_by_reading<Family>(table, data, current, static_cast<std::size_t>(candidate.option));
+          } else {
+            lay_points(table, extents.of(E::site, field.x_name), field.x_name == "rate");
+          }
         }
       }
     }

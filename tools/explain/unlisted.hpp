@@ -11,7 +11,8 @@ namespace hotfire::explain {
 
 /// Every dependence of every unlisted term of the family that the records can show, with its table's points laid over the
 /// range that `current` runs through on them: evenly over a position, a pressure or time; closer about zero over a rate,
-/// where friction bends. All ordinates are zero.
+/// where friction bends; over a sensor's own reading where what `current` leaves there bends, since a sensor shows its error
+/// itself. All ordinates are zero.
 template <class Family>
 std::vector<Candidate> unlisted_candidates(const Dataset& data);
 
