@@ -23,6 +23,9 @@ constexpr double kLostToSteps = 0.1;
 
 template <class Family>
 const Evaluator<Family>& Refiner<Family>::for_screening(const Fitted<Family>& current) const {
+  if (&rough_ == &coarse_) {
+    return coarse_;
+  }
   Prediction by_rough;
   Prediction by_coarse;
   if (!rough_.predict(current.base, current.free, current.u, threads_, by_rough) ||

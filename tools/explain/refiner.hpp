@@ -9,8 +9,8 @@ namespace hotfire::explain {
 template <class Family>
 class Refiner {
  public:
-  /// `rough` is for screening and `coarse` for ranks, both on the same rows, `fine` for what the report says. All are to
-  /// outlive the refiner.
+  /// `rough` is for screening and `coarse` for ranks, both on the same rows and the same one where steps must not be rough,
+  /// `fine` for what the report says. All are to outlive the refiner.
   Refiner(const Dataset& data, const Evaluator<Family>& rough, const Evaluator<Family>& coarse,
           const Evaluator<Family>& fine, const Scales& scales, unsigned threads, const Watch& watch)
       : data_(data), rough_(rough), coarse_(coarse), fine_(fine), scales_(scales), threads_(threads), watch_(watch) {}

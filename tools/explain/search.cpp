@@ -42,8 +42,9 @@ class Search {
         thin_(kRankedCoarsely<Family> ? thinned(data, kRankingPeriod) : data),
         fine_(data, Resolution::fine),
         coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine),
-        rough_(thin_, kRankedCoarsely<Family> ? Resolution::rough : Resolution::fine),
-        refiner_(data, rough_, coarse_, fine_, scales_, options.threads, options.watch) {}
+        rough_(thin_, Resolution::rough),
+        refiner_(data, kRankedCoarsely<Family> ? rough_ : coarse_, coarse_, fine_, scales_, options.threads, options.watch) {
+  }
 
   SearchResult<Family> run() {
     if constexpr (std::is_same_v<Family, DirectFamily>) {

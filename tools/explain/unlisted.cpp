@@ -249,7 +249,6 @@ template <class Family>
 void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& candidate, const Dataset& data,
                        const Fitted<Family>& current) {
   activate<Family>(parameters, candidate);
-  const Extents extents = extents_of<Family>(data, Evaluator<Family>::with_values(current.base, current.free, current.u));
   model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
     if constexpr (is_unlisted_effect<E>()) {
       using Values = std::remove_cvref_t<decltype(values)>;
@@ -262,6 +261,8 @@ void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& can
           if constexpr (E::site == model::Site::sensor) {
             lay_points_by_reading<Family>(table, data, current, static_cast<std::size_t>(candidate.option));
           } else {
+            const auto parameters_now = Evaluator<Family>::with_values(current.base, current.free, current.u);
+            const Extents extents = extents_of<Family>(data, parameters_now);
             lay_points(table, extents.of(E::site, field.x_name), field.x_name == "rate");
           }
         }
