@@ -31,7 +31,7 @@ class Plant {
 
   /// `period` in s.
   Plant(const Parameters& parameters, double period, std::size_t actuators = 1, const std::vector<PlayedFault>& faults = {})
-      : steps_(model::steps_per_period(period)),
+      : steps_(model::steps_per_period<Model>(parameters, period)),
         model_(parameters, period / steps_),
         states_(actuators, start()),
         readings_(faults, period, actuators, channels.size()) {
@@ -55,6 +55,7 @@ class Plant {
   }
 
   std::size_t actuators() const noexcept { return states_.size(); }
+  int steps_per_cycle() const noexcept { return steps_; }
 
   /// What the sensors read, actuator after actuator, in the order of `Model::channels`.
   std::span<const double> measured() const noexcept { return readings_.values(); }

@@ -28,11 +28,7 @@ template <class Plant>
 class PlantSession {
  public:
   PlantSession(const Options& options, const PlantImage& image, std::unique_ptr<Plant> plant)
-      : options_(options),
-        image_(image),
-        period_(period_of(options)),
-        steps_(model::steps_per_period(period_)),
-        plant_(std::move(plant)) {}
+      : options_(options), image_(image), period_(period_of(options)), plant_(std::move(plant)) {}
 
   int run_without_wire() {
     hal::sim::SimulatedPlantBus wire(options_.source, period_);
@@ -94,7 +90,7 @@ class PlantSession {
     Bus bus(wire, image_.faults, period_);
     std::unique_ptr<RecordingSession> recording;
     if (!options_.recording.empty()) {
-      recording = std::make_unique<RecordingSession>(options_, RecordedPlant::of(*plant_, steps_, image_.text));
+      recording = std::make_unique<RecordingSession>(options_, RecordedPlant::of(*plant_, image_.text));
       if (const auto failure = recording->start()) {
         complain(*failure);
         return kWrongUse;
@@ -102,7 +98,8 @@ class PlantSession {
     }
     const auto loop = std::make_unique<Loop<Plant, Bus, Clock, Pace, Recorder>>(
         *plant_, bus, clock_, options_.loop, pace, recording ? &recording->recorder() : nullptr);
-    Session session{options_, loop->result(), Plant::topology, Plant::channels, Plant::channel_units, steps_};
+    Session session{options_,        loop->result(),       Plant::topology,
+                    Plant::channels, Plant::channel_units, plant_->steps_per_cycle()};
     session.is_vehicle = actuators_of(*image_.parameters) != 0;
     return run_loop(*loop, session, recording.get(), complete);
   }
@@ -115,7 +112,6 @@ class PlantSession {
   const Options& options_;
   const PlantImage& image_;
   double period_;
-  int steps_;
   Clock clock_;
   std::unique_ptr<Plant> plant_;
 };

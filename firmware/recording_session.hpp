@@ -21,7 +21,7 @@ struct RecordedPlant {
   std::string image;
 
   template <class Plant>
-  static RecordedPlant of(const Plant& plant, int steps_per_cycle, const std::string& image) {
+  static RecordedPlant of(const Plant& plant, const std::string& image) {
     const auto unit = [](std::string_view own) { return std::string(own.empty() ? "1" : own); };
     RecordedPlant result;
     result.topology = Plant::topology;
@@ -30,7 +30,7 @@ struct RecordedPlant {
       result.channels.push_back({std::string(Plant::channels[i]), unit(Plant::channel_units[i])});
     }
     result.start.assign(plant.measured().begin(), plant.measured().end());
-    result.steps_per_cycle = steps_per_cycle;
+    result.steps_per_cycle = plant.steps_per_cycle();
     result.image = image;
     return result;
   }

@@ -46,6 +46,8 @@ class VehiclePlant {
     readings_.start([this](std::span<double> readings) noexcept { measure(readings); });
   }
 
+  int steps_per_cycle() const noexcept { return steps_; }
+
   void step(const hal::Command& command) noexcept {
     std::copy_n(command.values.begin(), Vehicle::kAxes, inputs_.commands.begin());
     const Vehicle& vehicle = vehicle_now();

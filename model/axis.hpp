@@ -200,13 +200,9 @@ class Axis {
                                   linear_command;
 
     const S opening = pass_through<Site::valve>(effects, state.effects, Signal<S>{mean(kOpening), h_, time}, keep).value;
-    const S drop = 1.0 - sign_of(opening) * mean(kPressure) / actuator.supply_pressure;
-    // The root's slope is infinite at zero drop; below 1e-9 of the supply the flow is zero to any sensor.
-    const S flow = valve.rated_flow * opening * sqrt(value_of(drop) > 1e-9 ? drop : S{1e-9});
+    const Hydraulics<S> oil = hydraulics(opening, mean(kPressure), time);
     state.inputs(kFlow) =
-        flow - valve.rated_flow * mean(kOpening) +
-        sum_over<Site::flow>(effects, state.effects,
-                             Hydraulics<S>{mean(kPressure), opening, actuator.supply_pressure, h_, time}, keep);
+        oil.flow - valve.rated_flow * mean(kOpening) + sum_over<Site::flow>(effects, state.effects, oil, keep);
 
     const S piston_rate = advance.rate(kPiston, h_);
     const S net_flow = valve.rated_flow * mean(kOpening) + state.inputs(kFlow) - actuator.piston_area * piston_rate -
@@ -222,7 +218,7 @@ class Axis {
         effects, state.effects,
         spring_around(around,
                       Spring<S>{linear_deflection - attach_motion, mean(kAngle), actuator.moment_arm, actuator.moment_arm,
-                                stiffness_, actuator.stiffness, parameters_.structure.stiffness, h_}),
+                                stiffness_, actuator.stiffness, parameters_.structure.stiffness, h_, time}),
         keep);
     state.spring_force = stiffness_ * spring.deflection;
     state.inputs(kSpringForce) = state.spring_force - stiffness_ * linear_deflection;
@@ -282,6 +278,15 @@ class Axis {
   }
   static S saturated(const S& command) noexcept { return clamp_symmetric<S>(command, S{1.0}); }
 
+  /// Flow through the valve's orifices at an opening and a load pressure, and what goes with it.
+  Hydraulics<S> hydraulics(const S& opening, const S& pressure, const S& time) const noexcept {
+    const S& supply = parameters_.actuator.supply_pressure;
+    const S drop = 1.0 - sign_of(opening) * pressure / supply;
+    // The root's slope is infinite at zero drop; below 1e-9 of the supply the flow is zero to any sensor.
+    const S flow = parameters_.servovalve.rated_flow * opening * sqrt(value_of(drop) > 1e-9 ? drop : S{1e-9});
+    return {pressure, opening, supply, h_, time, flow};
+  }
+
   S mid_step(const State& state) const noexcept { return state.clock + 0.5 * h_; }
 
   static Advance at_rest(const State& state) noexcept { return {state.y, state.y, state.y}; }
@@ -294,9 +299,9 @@ class Axis {
     const S nominal = parameters_.actuator.moment_arm;
     state.y(kAngle) = angle;
     // Keeps what the springs remember of their force, so that the search in them starts near it.
-    const Spring<S> still =
-        spring_around(around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
-                                        parameters_.actuator.stiffness, parameters_.structure.stiffness, h_});
+    const Spring<S> still = spring_around(
+        around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
+                          parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, mid_step(state)});
     settle<Site::load_spring>(effects, state.effects, still);
     const Spring<S> geometry = pass_through<Site::load_spring>(effects, state.effects, still, Keep::yes);
     const Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_};
@@ -316,6 +321,11 @@ class Axis {
     state.y(kWashout) = state.y(kPressure);
     evaluate(state, at_rest(state), around, Keep::no);
     state.y(kOpening) = valve.position_gain * (state.inputs(kCommand) - state.y(kPiston)) + state.inputs(kValveCommand);
+    const S time = mid_step(state);
+    const S opening =
+        pass_through<Site::valve>(parameters_.effects, state.effects, Signal<S>{state.y(kOpening), h_, time}, Keep::no)
+            .value;
+    settle<Site::flow>(parameters_.effects, state.effects, hydraulics(opening, state.y(kPressure), time));
     evaluate(state, at_rest(state), around, Keep::no);
     return valve.rated_flow * state.y(kOpening) + state.inputs(kFlow) - parameters_.actuator.leakage * state.y(kPressure);
   }
@@ -323,8 +333,8 @@ class Axis {
   void measure(State& state) const noexcept {
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
-      state.measured[channel] =
-          pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects, truth[channel], h_);
+      state.measured[channel] = pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
+                                                             Signal<S>{truth[channel], h_, state.clock});
     }
   }
 

@@ -7,6 +7,12 @@
 
 namespace hotfire::model {
 
+/// The memory of a command holds its longest delay [s] at the shortest step [s], that of a 20 kHz record.
+inline constexpr double kLongestCommandDelay = 0.1;
+inline constexpr double kShortestDelayedStep = 5e-5;
+inline constexpr std::size_t kCommandMemory = 2048;
+static_assert(kLongestCommandDelay / kShortestDelayedStep < kCommandMemory - 2);
+
 /// Transport delay of a value, x(t) -> x(t - delay), by the newest `Capacity` values in a ring. A delay of k + f steps
 /// (0 <= f < 1) gives (1 - f) x[n-k] + f x[n-k-1]: the mean over a step of a value that is held between steps, and the value
 /// itself of one that moves linearly. Differentiable in the delay. Beyond `Capacity` - 2 steps it would extrapolate.

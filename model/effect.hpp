@@ -182,8 +182,7 @@ typename SiteInput<site, S>::type pass_through(const EffectParameters<S, List>& 
 /// Passes a measured value through the active sensor effects of one channel.
 template <class S, class List>
 S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
-                      const S& value, double h) noexcept {
-  Signal<S> input{value, h};
+                      Signal<S> input) noexcept {
   List::for_each([&]<class E, std::size_t I>() {
     if constexpr (E::site == Site::sensor) {
       if (parameters.active[I] && std::get<I>(parameters.values).option == channel) {

@@ -21,8 +21,11 @@
 #include "model/effects/soft_stiffness.hpp"
 #include "model/effects/structural_mode.hpp"
 #include "model/effects/torque_offset.hpp"
-#include "model/effects/unlisted.hpp"
+#include "model/effects/unlisted_deflection.hpp"
 #include "model/effects/unlisted_motion.hpp"
+#include "model/effects/unlisted_oil.hpp"
+#include "model/effects/unlisted_reading.hpp"
+#include "model/effects/unlisted_signal.hpp"
 #include "model/effects/valve_asymmetry.hpp"
 #include "model/effects/valve_deadband.hpp"
 #include "model/effects/valve_hysteresis.hpp"
@@ -34,11 +37,10 @@ namespace hotfire::model {
 /// command and valve; at the load spring geometry first, then play, then the spring itself.
 using SimplexEffects =
     EffectList<RateLimit, CommandDelay, UnlistedSignal<Site::command>, UnlistedSignal<Site::valve_command>, ValveHysteresis,
-               UnlistedSignal<Site::valve>, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
-               PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
-               StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis,
-               UnlistedMotion<Site::engine_torque>, SensorNonlinearity, UnlistedReading, SensorLag, SensorDelay,
-               SensorScale>;
+               UnlistedOpening, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure, PistonFriction,
+               UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness, StructuralMode,
+               GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis, UnlistedMotion<Site::engine_torque>,
+               SensorNonlinearity, UnlistedReading, UnlistedDrift, SensorLag, SensorDelay, SensorScale>;
 
 /// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
 /// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most

@@ -53,6 +53,7 @@ struct Hydraulics {
   S supply_pressure;
   double h = 0.0;
   S time{0.0};  ///< of the record, mean over the step [s]
+  S flow{0.0};  ///< through the valve's orifices into the extend chamber, mean over the step [m^3/s]
 };
 
 /// What an effect sees at the site `pressure`: it returns flow added to the flow that builds up pressure [m^3/s].
@@ -96,6 +97,7 @@ struct Spring {
   S actuator_stiffness;  ///< K_act [N/m]
   S load_stiffness;      ///< K_L [N/m]
   double h;
+  S time{0.0};  ///< of the record, mean over the step [s]
 };
 
 /// What an effect sees at the site `structure`: it returns the further motion of the attach point, mean over the step [m].

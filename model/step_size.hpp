@@ -6,13 +6,23 @@ namespace hotfire::model {
 /// equal parts: 0.5 ms puts 5 steps into a cycle of the reference oil mode (365 Hz).
 inline constexpr double kLongestStep = 5e-4;
 
-/// Into how many equal steps a period [s] is split, at least one. A period that is a multiple of the longest step up to
-/// rounding is split into that multiple.
-constexpr int steps_per_period(double period) noexcept {
-  const double parts = period / kLongestStep;
+/// Into how many equal steps of at most `longest` [s] a period [s] is split, at least one. A period that is a multiple of
+/// the longest step up to rounding is split into that multiple.
+constexpr int steps_per_period(double period, double longest = kLongestStep) noexcept {
+  const double parts = period / longest;
   const int whole = static_cast<int>(parts);
   const int steps = parts - whole > 1e-9 * parts ? whole + 1 : whole;
   return steps > 1 ? steps : 1;
+}
+
+/// The same for a plant whose longest step depends on its parameters.
+template <class Plant>
+int steps_per_period(const typename Plant::Parameters& parameters, double period) noexcept {
+  if constexpr (requires { Plant::longest_step(parameters); }) {
+    return steps_per_period(period, Plant::longest_step(parameters));
+  } else {
+    return steps_per_period(period);
+  }
 }
 
 }  // namespace hotfire::model

@@ -5,16 +5,11 @@
 
 namespace hotfire::model {
 
-/// Transport delay of the command: x(t) -> x(t - delay), exact for a command that is held between steps (`DelayLine`). The
-/// memory holds the longest delay at the shortest step, that of a 20 kHz record.
+/// Transport delay of the command: x(t) -> x(t - delay), exact for a command that is held between steps (`DelayLine`).
 struct CommandDelay {
   static constexpr std::string_view name = "command_delay";
   static constexpr Site site = Site::command;
   static constexpr NoOptions options{};
-  static constexpr std::size_t kCapacity = 2048;
-  static constexpr double kLongestDelay = 0.1;   // s
-  static constexpr double kShortestStep = 5e-5;  // s
-  static_assert(kLongestDelay / kShortestStep < kCapacity - 1);
 
   template <class S>
   struct Params {
@@ -23,13 +18,13 @@ struct CommandDelay {
     S delay{0.0};
     static constexpr auto fields() {
       return std::array{
-          Field<Params>{"delay", "s", 0.0, kLongestDelay, 0.005, "transport delay of the command", &Params::delay}};
+          Field<Params>{"delay", "s", 0.0, kLongestCommandDelay, 0.005, "transport delay of the command", &Params::delay}};
     }
   };
 
   template <class S>
   struct State {
-    DelayLine<S, kCapacity> commands;
+    DelayLine<S, kCommandMemory> commands;
   };
 
   template <class S>

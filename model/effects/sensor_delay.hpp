@@ -14,8 +14,7 @@ struct SensorDelay {
   static constexpr std::string_view option_key = "channel";
   static constexpr std::size_t kCapacity = 1024;
   static constexpr double kLongestDelay = 0.05;  // s
-  static constexpr double kShortestStep = 5e-5;  // s
-  static_assert(kLongestDelay / kShortestStep < kCapacity - 1);
+  static_assert(kLongestDelay / kShortestDelayedStep < kCapacity - 1);
 
   template <class S>
   struct Params {

@@ -6,17 +6,24 @@
 namespace hotfire::model {
 
 /// A force or torque against the motion at `piston`, `engine_torque` or `mass_force`: a table over the position, over the
-/// rate, or over time; dry friction or viscous damping whose level is a table over the position, or over its distance from
-/// zero; or a sinusoid of time.
+/// rate, or over time; dry friction or viscous damping whose level is a table over the position, over its distance from
+/// zero, or over time; or a sinusoid of time.
 template <Site at>
 struct UnlistedMotion {
   using Names = UnlistedNames<at>;
   static constexpr std::string_view name = Names::name;
   static constexpr Site site = at;
   static constexpr bool is_unlisted = true;
-  static constexpr std::array<std::string_view, 8> options{
-      "position", "rate",     "friction_along_position", "damping_along_position",
-      "time",     "periodic", "friction_along_distance", "damping_along_distance"};
+  static constexpr std::array<std::string_view, 10> options{"position",
+                                                            "rate",
+                                                            "friction_along_position",
+                                                            "damping_along_position",
+                                                            "time",
+                                                            "periodic",
+                                                            "friction_along_distance",
+                                                            "damping_along_distance",
+                                                            "friction_along_time",
+                                                            "damping_along_time"};
   static constexpr std::string_view option_key = "depends_on";
 
   template <class S>
@@ -30,7 +37,7 @@ struct UnlistedMotion {
     static constexpr auto fields() {
       return std::array{
           Field<Params>{"stiffness", Names::stiffness_unit, 1e-6, 1e15, Names::typical_stiffness,
-                        "stiffness of the friction before it slides", &Params::stiffness, 0b1000100},
+                        "stiffness of the friction before it slides", &Params::stiffness, 0b101000100},
           Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100000},
           Field<Params>{"amplitude", Names::unit, 0.0, 1e12, Names::typical, "amplitude of the sinusoid", &Params::amplitude,
                         0b100000}};
@@ -51,7 +58,12 @@ struct UnlistedMotion {
           T{"distance_of_damping", Names::position_unit, "damping_at_distance", Names::damping_unit, -1e12, 1e12,
             "damping at a distance from zero", &Params::table, 0b10000000, Names::typical_damping},
           T{"time", "s", "force_at_time", Names::unit, -1e12, 1e12, "force against positive motion at a time of the record",
-            &Params::table, 0b10000, Names::typical}};
+            &Params::table, 0b10000, Names::typical},
+          T{"time_of_friction", "s", "friction_at_time", Names::unit, -1e12, 1e12,
+            "level of dry friction at a time of the record; none where negative", &Params::table, 0b100000000,
+            Names::typical},
+          T{"time_of_damping", "s", "damping_at_time", Names::damping_unit, -1e12, 1e12, "damping at a time of the record",
+            &Params::table, 0b1000000000, Names::typical_damping}};
     }
   };
 
@@ -77,8 +89,12 @@ struct UnlistedMotion {
         return unlisted::periodic<S>(params.amplitude, params.frequency, input.time);
       case 6:
         return friction(params, state, input, S(input.position * sign_of(input.position)));
-      default:
+      case 7:
         return damping(params, input, S(input.position * sign_of(input.position)));
+      case 8:
+        return friction(params, state, input, input.time);
+      default:
+        return damping(params, input, input.time);
     }
   }
 

@@ -62,7 +62,7 @@ firmware::RecorderAccount record_run(const firmware::Options& options, const typ
   hal::sim::SimulatedPlantBus wire(options.source, period);
   Bus bus(wire, faults, period);
   hal::sim::ManualClock clock;
-  firmware::RecordingSession recording(options, firmware::RecordedPlant::of(plant, model::steps_per_period(period), image));
+  firmware::RecordingSession recording(options, firmware::RecordedPlant::of(plant, image));
   if (const auto failure = recording.start()) {
     return {0, 0, failure->what};
   }

@@ -235,6 +235,34 @@ TEST(AgreesWithCvode, OnACommandDelay) {
   check_agreement(test);
 }
 
+/// A table that is a straight line through zero with this slope.
+template <class Params>
+Params line(int option, double slope) {
+  Params params;
+  params.option = option;
+  params.table.points = 2;
+  params.table.x = {0.0, 100.0};
+  params.table.y = {0.0, 100.0 * slope};
+  return params;
+}
+
+TEST(AgreesWithCvode, OnADeadTimeThatGrowsWithTheCommand) {
+  using Command = model::UnlistedSignal<model::Site::command>;
+  Case test{"unlisted_command delay"};
+  activate<Command, Plant>(test.parameters,
+                           line<Command::Params<double>>(option_named<Command>("delay_along_distance"), 0.2));
+  test.reference.unlisted.dead_time = 0.2;
+  check_agreement(test);
+}
+
+TEST(AgreesWithCvode, OnAValveGainThatDrifts) {
+  using Opening = model::UnlistedOpening;
+  Case test{"unlisted_valve gain"};
+  activate<Opening, Plant>(test.parameters, line<Opening::Params<double>>(option_named<Opening>("gain_along_time"), 0.1));
+  test.reference.unlisted.gain_drift = 0.1;
+  check_agreement(test);
+}
+
 TEST(AgreesWithCvode, OnARateLimit) {
   Case test{"rate_limit"};
   activate<model::RateLimit, Plant>(test.parameters, {0, 0.1});

@@ -62,6 +62,26 @@ TEST(ReferenceAxisLaws, ADriftingNullMovesThePistonByItsRateOverTheGain) {
   DOUBLES_EQUAL(1.0, moved / (5.0 * axis.unlisted.null_drift / axis.position_gain), 0.02);
 }
 
+// Along a ramp the engine slides: after ten seconds friction that has drifted is friction of the level it has grown to. Both
+// the loop, 1/17 s late, and the pressure feedback, whose washout takes 1/6.3 s, are behind a load that grows by a tenth of
+// the growth a second: 2 % of it.
+TEST(ReferenceAxisLaws, AFrictionThatDriftsIsAtLastTheFrictionItHasGrownTo) {
+  std::vector<double> ramp = held(0.0, 10.0);
+  for (std::size_t i = 0; i < ramp.size(); ++i) {
+    ramp[i] = 0.5 * kDegree * static_cast<double>(i) * kSample;
+  }
+  ReferenceAxis drifting;
+  drifting.bristle = {8e3, 1e7, 1.0, 1.0, 0.0, 1.0};
+  drifting.unlisted.friction_drift = 0.1;
+  ReferenceAxis grown = drifting;
+  grown.unlisted.friction_drift = 0.0;
+  ReferenceAxis small = grown;
+  grown.bristle.level *= 2.0;
+  const auto angle_at_last = [&](const ReferenceAxis& axis) { return rows_of(axis, ramp).back()[1]; };
+  const double growth = angle_at_last(grown) - angle_at_last(small);
+  DOUBLES_EQUAL(1.0, (angle_at_last(drifting) - angle_at_last(small)) / growth, 0.03);
+}
+
 TEST(ReferenceAxisLaws, ADeadTimeByAmplitudeIsThatDelayForAStep) {
   ReferenceAxis by_amplitude;
   by_amplitude.unlisted.dead_time = 0.3;

@@ -226,7 +226,7 @@ bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreePara
                                 unsigned threads, Prediction& prediction) const {
   using Plant = typename Family::template Plant<double>;
   const auto plants =
-      plants_by_period<Plant>(data_, with_values(base, free, u), [this](const Experiment& e) { return steps_of(e); });
+      plants_by_period<Plant>(data_, with_values(base, free, u), [&](const Experiment& e) { return steps_of(base, e); });
   prediction.resize(data_.experiments.size());
   std::atomic<bool> finite{true};
   parallel_for(data_.experiments.size(), threads, [&](std::size_t e) {
@@ -239,11 +239,12 @@ bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreePara
     const auto& plant = *plants.at(experiment.period);
     const auto start = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
     auto state = initial_state(plant, data_, experiment, start);
-    if (!run_experiment(plant, data_, experiment, state, steps_of(experiment), [&](std::size_t row, const auto& readings) {
-          for (std::size_t c = 0; c < readings.size(); ++c) {
-            channels[c][row] = readings[c];
-          }
-        })) {
+    if (!run_experiment(plant, data_, experiment, state, steps_of(base, experiment),
+                        [&](std::size_t row, const auto& readings) {
+                          for (std::size_t c = 0; c < readings.size(); ++c) {
+                            channels[c][row] = readings[c];
+                          }
+                        })) {
       finite = false;
     }
   });
@@ -265,8 +266,8 @@ Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const
 }
 
 template <class Family>
-int Evaluator<Family>::steps_of(const Experiment& experiment) const {
-  const int fine = model::steps_per_period(experiment.period);
+int Evaluator<Family>::steps_of(const Parameters& base, const Experiment& experiment) const {
+  const int fine = model::steps_per_period<typename Family::template Plant<double>>(base, experiment.period);
   const int times_longer = resolution_ == Resolution::fine ? 1 : resolution_ == Resolution::coarse ? 2 : 4;
   return (fine + times_longer - 1) / times_longer;
 }
@@ -288,7 +289,7 @@ bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const Fr
   parallel_for(chunks.size(), threads, [&](std::size_t c) {
     auto parameters = with_scalar<typename Plant::Parameters>(plain);
     chunks[c].seed_all(parameters);
-    plants[c] = plants_by_period<Plant>(data_, parameters, [this](const Experiment& e) { return steps_of(e); });
+    plants[c] = plants_by_period<Plant>(data_, parameters, [&](const Experiment& e) { return steps_of(base, e); });
   });
 
   std::atomic<bool> finite{true};
@@ -307,7 +308,7 @@ bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const Fr
         good = writer.write(row, channel, readings[channel], chunk) && good;
       }
     };
-    const bool ran = run_experiment(plant, data_, experiment, *state, steps_of(experiment), sink);
+    const bool ran = run_experiment(plant, data_, experiment, *state, steps_of(base, experiment), sink);
     if (!ran || !good) {
       finite = false;
     }

@@ -58,7 +58,7 @@ class Evaluator {
   static Parameters with_values(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u);
 
  private:
-  int steps_of(const Experiment& experiment) const;
+  int steps_of(const Parameters& base, const Experiment& experiment) const;
 
   const Dataset& data_;
   Resolution resolution_;

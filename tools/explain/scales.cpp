@@ -1,11 +1,7 @@
 #include "tools/explain/scales.hpp"
 
-#include <unsupported/Eigen/FFT>
-
 #include <algorithm>
 #include <cmath>
-#include <complex>
-#include <numbers>
 #include <numeric>
 
 namespace hotfire::explain {
@@ -72,52 +68,6 @@ double size_of_unit(std::string_view unit, const Scales& scales) {
     unit.remove_prefix(end + 1);
   }
   return size;
-}
-
-std::vector<double> strongest_frequencies(const Dataset& data,
-                                          const std::vector<std::vector<std::vector<double>>>& prediction,
-                                          std::size_t channel, std::size_t count) {
-  constexpr double kStretchSeconds = 8.0;
-  std::vector<std::pair<double, double>> spectrum;  // power, frequency
-  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    const Experiment& experiment = data.experiments[e];
-    const auto& measured = experiment.measured[channel];
-    const auto length = std::min(measured.size(), static_cast<std::size_t>(kStretchSeconds / experiment.period));
-    if (length < 16) {
-      continue;
-    }
-    Eigen::FFT<double> transform;
-    std::vector<double> power(length / 2, 0.0);
-    for (std::size_t first = 0; first + length <= measured.size(); first += length / 2) {
-      std::vector<double> windowed(length);
-      for (std::size_t i = 0; i < length; ++i) {
-        const double hann =
-            0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(length));
-        windowed[i] = hann * (measured[first + i] - prediction[e][channel][first + i]);
-      }
-      std::vector<std::complex<double>> bins;
-      transform.fwd(bins, windowed);
-      for (std::size_t k = 0; k < power.size(); ++k) {
-        power[k] += std::norm(bins[k]);
-      }
-    }
-    for (std::size_t k = 2; k + 1 < power.size(); ++k) {
-      if (power[k] > power[k - 1] && power[k] > power[k + 1]) {
-        spectrum.emplace_back(power[k], static_cast<double>(k) / (static_cast<double>(length) * experiment.period));
-      }
-    }
-  }
-  std::sort(spectrum.rbegin(), spectrum.rend());
-  std::vector<double> found;
-  for (const auto& peak : spectrum) {
-    const double frequency = peak.second;
-    const bool apart =
-        std::all_of(found.begin(), found.end(), [&](double other) { return std::abs(std::log2(frequency / other)) > 0.25; });
-    if (apart && found.size() < count) {
-      found.push_back(frequency);
-    }
-  }
-  return found;
 }
 
 }  // namespace hotfire::explain

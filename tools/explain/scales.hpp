@@ -19,11 +19,4 @@ Scales scales_of(const Dataset& data);
 /// The size of a unit pattern such as "force.time/position^2"; 1 for any unit that is not made of these three words.
 double size_of_unit(std::string_view unit, const Scales& scales);
 
-/// The strongest frequencies [Hz] of the residuals of one channel (measured minus predicted), strongest first, at most
-/// `count`, at least a quarter octave apart: where a missing mode may lie. Periodograms of Hann-windowed stretches, averaged
-/// (Welch 1967).
-std::vector<double> strongest_frequencies(const Dataset& data,
-                                          const std::vector<std::vector<std::vector<double>>>& prediction,
-                                          std::size_t channel, std::size_t count);
-
 }  // namespace hotfire::explain

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "tools/explain/parallel.hpp"
+#include "tools/explain/spectrum.hpp"
 #include "tools/explain/stopwatch.hpp"
 #include "tools/explain/trial.hpp"
 #include "tools/explain/unlisted.hpp"
@@ -57,6 +58,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   goodness_ = goodness(evaluator.data(), prediction);
   const std::size_t first_used = evaluator.data().used.front() ? 0 : 1;
   frequencies_ = strongest_frequencies(evaluator.data(), prediction, first_used, 3);
+  sharpened_ = sharpened_frequencies(evaluator.data(), prediction, first_used, frequencies_);
 
   weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
   for (const Stretch& s : evaluator.stretches()) {
@@ -203,7 +205,7 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
       own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
   const std::size_t valleys = one_valley ? 1 : kStarts;
   const std::vector<Start> starts =
-      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(), frequencies_)
+      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(), sharpened_)
                                           : start_points(own, frequencies_));
   // A table starts as nothing, and a frequency has to be met. Of any other law one of the starts is better than nothing, or
   // it is not what is missing.

@@ -70,9 +70,10 @@ class Screening {
   unsigned threads_;
   Frozen frozen_;
   Goodness goodness_;
-  std::vector<double> frequencies_;
-  Eigen::VectorXd weight_;  ///< of every residual, noise and temper
-  Eigen::VectorXd prior_;   ///< information of each frozen parameter's prior
+  std::vector<double> frequencies_;  ///< strongest in what is left
+  std::vector<double> sharpened_;    ///< the same as close as whole records tell
+  Eigen::VectorXd weight_;           ///< of every residual, noise and temper
+  Eigen::VectorXd prior_;            ///< information of each frozen parameter's prior
   Eigen::VectorXd prior_gradient_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
   double cost_ = 0.0;  ///< of the current model, as `eliminated_cost` counts it

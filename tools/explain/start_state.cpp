@@ -44,7 +44,7 @@ StartState start_state(const DirectParameters& parameters, std::span<const doubl
   }
   DirectParameters declared = parameters;
   declared.effects.active.fill(false);
-  const int steps = model::steps_per_period(period);
+  const int steps = model::steps_per_period<Mass>(declared, period);
   const Mass mass(declared, period / steps);
   const std::vector<double> none(rows, 0.0);
   // Columns in units that a record of this length shows alike: a velocity by the record's own time, a force by its inertia.

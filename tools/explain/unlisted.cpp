@@ -31,7 +31,7 @@ struct Extent {
 
 /// What the plant runs through, by the name that the tables give it.
 struct Extents {
-  Extent input, opening, pressure, position, rate, angle, angle_rate, deflection, time;
+  Extent input, opening, flow, pressure, position, rate, angle, angle_rate, deflection, time;
 
   Extent of(model::Site site, std::string_view x_name) const {
     using model::Site;
@@ -40,8 +40,11 @@ struct Extents {
       const Extent whole = of(site, "position");
       return {0.0, std::max(std::abs(whole.low), std::abs(whole.high))};
     }
-    if (x_name == "time") {
+    if (x_name.starts_with("time")) {
       return time;
+    }
+    if (x_name == "recent_flow") {
+      return {0.0, std::max(std::abs(flow.low), std::abs(flow.high))};
     }
     if (x_name == "load_pressure") {
       return pressure;
@@ -67,6 +70,7 @@ struct Extents {
 void take_state(Extents& extents, const model::Simplex<double>& plant, const model::Simplex<double>::State& state) {
   using Plant = model::Simplex<double>;
   extents.opening.take(state.y(Plant::kOpening));
+  extents.flow.take(plant.parameters().servovalve.rated_flow * state.y(Plant::kOpening));
   extents.pressure.take(state.y(Plant::kPressure));
   extents.position.take(state.y(Plant::kPiston));
   extents.rate.take(state.y(Plant::kPistonRate));
@@ -85,7 +89,7 @@ Extents extents_of(const Dataset& data, const PlainParameters<Family>& parameter
   using Plant = typename Family::template Plant<double>;
   Extents extents;
   for (const Experiment& experiment : data.experiments) {
-    const int steps = model::steps_per_period(experiment.period);
+    const int steps = model::steps_per_period<Plant>(parameters, experiment.period);
     const Plant plant(parameters, experiment.period / steps);
     typename Plant::State state = [&] {
       if constexpr (Plant::topology == "direct") {
@@ -258,7 +262,7 @@ void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& can
       for (const auto& field : Values::tables()) {
         if ((field.options >> candidate.option & 1U) != 0) {
           auto& table = values.*field.member;
-          if constexpr (E::site == model::Site::sensor) {
+          if constexpr (std::is_same_v<E, model::UnlistedReading>) {
             lay_points_by_reading<Family>(table, data, current, static_cast<std::size_t>(candidate.option));
           } else {
             const auto parameters_now = Evaluator<Family>::with_values(current.base, current.free, current.u);

@@ -59,7 +59,7 @@ std::pair<double, double> fitted_start(const DirectParameters& parameters, const
   }
   const double scale = std::sqrt(square / static_cast<double>(inputs.rows));
   const double speed = scale / (static_cast<double>(rows) * inputs.period);
-  const int steps = model::steps_per_period(inputs.period);
+  const int steps = model::steps_per_period<model::Direct<double>>(parameters, inputs.period);
   const model::Direct<StartError::Dual> plant(with_scalar<model::Direct<StartError::Dual>::Parameters>(parameters),
                                               inputs.period / steps);
   const StartError error{
@@ -102,11 +102,10 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
 }  // namespace
 
 Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_start_rows) {
-  const int steps = model::steps_per_period(inputs.period);
-  const double step = inputs.period / steps;
   if (const auto* direct = std::get_if<DirectParameters>(&model.parameters)) {
     require_channel(inputs, "force", "the model is driven by it");
-    const model::Direct<double> plant(*direct, step);
+    const int steps = model::steps_per_period<model::Direct<double>>(*direct, inputs.period);
+    const model::Direct<double> plant(*direct, inputs.period / steps);
     const Channel* position = inputs.find("position");
     auto state = plant.at_rest(position != nullptr ? position->values.front() : 0.0);
     if (fit_start_rows > 0) {
@@ -121,7 +120,8 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
         "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command");
   }
   require_channel(inputs, "command", "the model is driven by it");
-  const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), step);
+  const int steps = model::steps_per_period(inputs.period);
+  const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), inputs.period / steps);
   auto state = plant.steady(inputs.find("command")->values.front());
   state.clock = inputs.start;
   return run_open_loop(plant, state, inputs, steps);

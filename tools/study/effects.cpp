@@ -139,6 +139,14 @@ void plan_position_dependent_friction(Plan& plan, Random& random, std::uint64_t)
   plan.values = {{"coulomb_torque", level}, {"growth", plan.axis.unlisted.friction_growth}};
 }
 
+void plan_friction_drift(Plan& plan, Random& random, std::uint64_t) {
+  const double level = random.uniform(4e3, 8e3);
+  plan.axis.bristle = {level, random.log_uniform(5e6, 2e7), 1.0, 1.0, 0.0, 1.0};
+  // Half to twice the level more at the end of the longest record, 60 s.
+  plan.axis.unlisted.friction_drift = random.uniform(0.5, 2.0) / 60.0;
+  plan.values = {{"coulomb_torque", level}, {"rate", plan.axis.unlisted.friction_drift}};
+}
+
 /// The valve opens on with the spool: 1 + 3 c x_v^2 stays positive up to x_v = 1.
 void plan_flow_gain_curvature(Plan& plan, Random& random, std::uint64_t) {
   plan.axis.unlisted.flow_curvature = plan.values["curvature"] =
@@ -218,6 +226,11 @@ constexpr std::array kUnlisted{
                   [](Plan& p, Random& r, std::uint64_t) {
                     p.axis.unlisted.null_drift = p.values["rate"] = r.sign() * r.uniform(3e-4, 1.5e-3);
                   }},
+    StudiedEffect{"gain_drift", "valve|flow",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.gain_drift = p.values["rate"] = r.sign() * r.uniform(3e-3, 8e-3);
+                  }},
+    StudiedEffect{"friction_drift", "engine_torque", plan_friction_drift, "gimbal_friction"},
     StudiedEffect{"supply_sag", "flow|valve", plan_supply_sag},
     StudiedEffect{"amplitude_dead_time", "command",
                   [](Plan& p, Random& r, std::uint64_t) {

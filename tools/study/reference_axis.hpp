@@ -119,6 +119,7 @@ struct ReferenceAxis {
   struct Unlisted {
     double dead_time = 0.0;           ///< delay per size of the held command [s/rad]
     double null_drift = 0.0;          ///< rate of the torque motor's null [1/s], from the first row on
+    double gain_drift = 0.0;          ///< opening = x_v (1 + gain_drift t) [1/s], from the first row on
     double flow_curvature = 0.0;      ///< opening = x_v (1 + flow_curvature x_v^2)
     double supply_droop = 0.0;        ///< supply pressure lost per flow [Pa s/m^3]
     double supply_recovery = 0.0;     ///< time constant of the supply [s]
@@ -129,6 +130,7 @@ struct ReferenceAxis {
     double creep_stiffness = 0.0;     ///< of the part of the load spring that creeps [N/m]
     double creep_time = 1.0;          ///< [s]
     double friction_growth = 0.0;     ///< the bristle's level is level (1 + friction_growth beta^2) [1/rad^2]
+    double friction_drift = 0.0;      ///< ... and level (1 + friction_drift t) [1/s], from the first row on
     double periodic_torque = 0.0;     ///< amplitude of a sine on the engine [N m], from the first row on
     double periodic_frequency = 0.0;  ///< [Hz]
   };

@@ -35,11 +35,12 @@ Friction sprung_dahl(const ReferenceAxis::Bristle& law, double spring, double ve
   return {law.stiffness * z, own * stuck};
 }
 
-Friction gimbal_friction(const ReferenceAxis& axis, double velocity, double angle, double z) {
+Friction gimbal_friction(const ReferenceAxis& axis, double elapsed, double velocity, double angle, double z) {
   if (axis.gimbal_stiffness > 0.0) {
     return sprung_dahl(axis.bristle, axis.gimbal_stiffness, velocity, z);
   }
-  return lugre(axis.bristle, 1.0 + axis.unlisted.friction_growth * angle * angle, velocity, z);
+  const double growth = 1.0 + axis.unlisted.friction_growth * angle * angle;
+  return lugre(axis.bristle, growth * (1.0 + axis.unlisted.friction_drift * elapsed), velocity, z);
 }
 
 Friction elastic_slip(const ReferenceAxis::Slip& law, double velocity, double stretch) {
@@ -126,9 +127,10 @@ double reading_without_lag(const ReferenceAxis::Sensor& sensor, double x) {
 }
 
 /// Opening, flow and pressure; `d` gets their rates.
-void oil(const ReferenceAxis& a, const StateVector& y, StateVector& d) {
+void oil(const ReferenceAxis& a, double elapsed, const StateVector& y, StateVector& d) {
   const double lapped = beyond(y[kSpool], a.deadband);
-  const double opening = lapped * (1.0 + a.asymmetry * sign(lapped)) * (1.0 + a.unlisted.flow_curvature * lapped * lapped);
+  const double opening = lapped * (1.0 + a.asymmetry * sign(lapped)) * (1.0 + a.unlisted.flow_curvature * lapped * lapped) *
+                         (1.0 + a.unlisted.gain_drift * elapsed);
   const double p = y[kPressure];
   const double supply = a.supply - y[kSupplyDroop];
   const double turbulent = a.orifice_leak * p * std::sqrt(a.supply / (std::abs(p) + 1e-3 * a.supply));
@@ -191,7 +193,7 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   d[kSpool] = y[kSpoolRate];
   d[kSpoolRate] = a.valve_frequency * a.valve_frequency * (valve_command - y[kSpool]) -
                   2.0 * a.valve_damping * a.valve_frequency * y[kSpoolRate];
-  oil(a, y, d);
+  oil(a, elapsed, y, d);
 
   const double v = y[kPistonRate];
   const double w = y[kAngleRate];
@@ -205,7 +207,7 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   d[kPistonRate] = (a.area * y[kPressure] - force - damping * v - seal.force - seal_bristle.force) / a.piston_mass;
 
   const double coulomb = a.coulomb.level * std::tanh(w / a.coulomb.creep);
-  const Friction bristle = gimbal_friction(a, w, beta, y[kBristle]);
+  const Friction bristle = gimbal_friction(a, elapsed, w, beta, y[kBristle]);
   const double forcing =
       a.unlisted.periodic_torque * std::sin(2.0 * std::numbers::pi * a.unlisted.periodic_frequency * elapsed);
   d[kAngle] = w;

@@ -72,7 +72,7 @@ class RandomTorque {
 
 Record hammer_direct(const DirectParameters& parameters, const Hammer& blow) {
   using Mass = model::Direct<double>;
-  const int steps = model::steps_per_period(kPeriod);
+  const int steps = model::steps_per_period<Mass>(parameters, kPeriod);
   const Mass plant(parameters, kPeriod / steps);
   auto state = plant.moving(0.0, blow.impulse / parameters.mass.inertia);
   const std::vector<double> none(static_cast<std::size_t>(blow.seconds / kPeriod), 0.0);

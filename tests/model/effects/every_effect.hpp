@@ -74,7 +74,7 @@ template <class E>
 bool depends_on_time(int option) {
   if constexpr (is_unlisted<E>()) {
     const std::string_view law = E::options[static_cast<std::size_t>(option)];
-    return law == "time" || law == "periodic";
+    return law.ends_with("time") || law == "periodic" || std::is_same_v<E, model::UnlistedDrift>;
   }
   return false;
 }
@@ -90,6 +90,7 @@ void lay_table(ParamsOf<E, S>& params, int option, double size) {
     const double reach = field.x_name == "load_pressure" ? 4e6
                          : field.x_name == "rate"        ? 5.0
                          : field.x_name == "deflection"  ? 5e-4
+                         : field.x_name == "recent_flow" ? 5e-4
                                                          : 0.1;
     auto& table = params.*field.member;
     table.points = 5;
@@ -189,6 +190,7 @@ inline void randomise(Random& random, model::Hydraulics<double>& input) {
   input.load_pressure = random.either_sign(1.0, 1e8);
   input.opening = random.either_sign(1e-9, 10.0);
   input.supply_pressure = 20.684e6;
+  input.flow = random.either_sign(1e-12, 1.0);
 }
 inline void randomise(Random& random, model::Compression<double>& input) {
   input.net_flow = random.either_sign(1e-9, 1.0);
@@ -227,7 +229,7 @@ inline void move(double t, model::Signal<double>& input) {
   input.time = t;
 }
 inline void move(double t, model::Hydraulics<double>& input) {
-  input = {4e6 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), 20.684e6, input.h, t};
+  input = {4e6 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), 20.684e6, input.h, t, 2e-4 * std::sin(5.0 * t)};
 }
 inline void move(double t, model::Compression<double>& input) {
   input = {1e-3 * std::cos(9.0 * t), 4e6 * std::sin(9.0 * t), input.h};
@@ -245,6 +247,7 @@ inline void move(double t, model::Motion<double>& input) {
 }
 inline void move(double t, model::Spring<double>& input) {
   input = reference_spring(5e-4 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), input.h);
+  input.time = t;
 }
 inline void move(double t, model::AttachPoint<double>& input) { input.force = 3e4 * std::sin(9.0 * t); }
 
@@ -263,7 +266,7 @@ model::Signal<S> converted(const model::Signal<double>& in) {
 }
 template <class S>
 model::Hydraulics<S> converted(const model::Hydraulics<double>& in) {
-  return {S(in.load_pressure), S(in.opening), S(in.supply_pressure), in.h, S(in.time)};
+  return {S(in.load_pressure), S(in.opening), S(in.supply_pressure), in.h, S(in.time), S(in.flow)};
 }
 template <class S>
 model::Compression<S> converted(const model::Compression<double>& in) {
@@ -277,7 +280,7 @@ model::Motion<S> converted(const model::Motion<double>& in) {
 template <class S>
 model::Spring<S> converted(const model::Spring<double>& in) {
   return {S(in.deflection),     S(in.angle), S(in.nominal_arm), S(in.arm), S(in.stiffness), S(in.actuator_stiffness),
-          S(in.load_stiffness), in.h};
+          S(in.load_stiffness), in.h,        S(in.time)};
 }
 template <class S>
 model::AttachPoint<S> converted(const model::AttachPoint<double>& in) {
