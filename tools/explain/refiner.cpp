@@ -16,8 +16,28 @@ namespace {
 /// ripples over its parameters. They are as high as such rests are apart: a few times the sensor noise, or nobody would see
 /// them.
 constexpr double kHighestRipple = 3.0;
-/// Rough steps serve where they change the residuals by less than this share of them.
+/// Rough steps serve where they change the residuals of every channel by less than this share of them.
 constexpr double kLostToSteps = 0.1;
+
+/// True if two models leave nearly the same of every channel. One that is met to its noise counts with all its rows, and so
+/// it must not be lost in the residuals of another that is far off.
+template <class Family>
+bool are_alike(const Evaluator<Family>& evaluator, const Eigen::VectorXd& left, const Eigen::VectorXd& other) {
+  std::vector<double> square(evaluator.data().channels.size(), 0.0);
+  std::vector<double> change(square.size(), 0.0);
+  for (const Stretch& s : evaluator.stretches()) {
+    const auto first = static_cast<Eigen::Index>(s.offset);
+    const auto rows = static_cast<Eigen::Index>(s.last - s.first);
+    square[s.channel] += left.segment(first, rows).squaredNorm();
+    change[s.channel] += (other.segment(first, rows) - left.segment(first, rows)).squaredNorm();
+  }
+  for (std::size_t c = 0; c < square.size(); ++c) {
+    if (square[c] > 0.0 && change[c] >= kLostToSteps * kLostToSteps * square[c]) {
+      return false;
+    }
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -32,8 +52,7 @@ const Evaluator<Family>& Refiner<Family>::for_screening(const Fitted<Family>& cu
       !coarse_.predict(current.base, current.free, current.u, threads_, by_coarse)) {
     return coarse_;
   }
-  const Eigen::VectorXd left = coarse_.residuals(by_coarse);
-  return (rough_.residuals(by_rough) - left).norm() < kLostToSteps * left.norm() ? rough_ : coarse_;
+  return are_alike(coarse_, coarse_.residuals(by_coarse), rough_.residuals(by_rough)) ? rough_ : coarse_;
 }
 
 template <class Family>
