@@ -52,9 +52,9 @@ struct UnlistedDrift {
     static constexpr auto fields() { return std::array<Field<Params>, 0>{}; }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
-      return std::array{T{"time", "s", "piston_error_at_time", "m", -1.0, 1.0,
+      return std::array{T{"time_of_piston", "s", "piston_error_at_time", "m", -1.0, 1.0,
                           "what the piston's sensor adds at a time of the record", &Params::table, 0b01, 1e-4},
-                        T{"time", "s", "engine_error_at_time", "rad", -1.0, 1.0,
+                        T{"time_of_engine", "s", "engine_error_at_time", "rad", -1.0, 1.0,
                           "what the engine's sensor adds at a time of the record", &Params::table, 0b10, 1e-4}};
     }
   };
