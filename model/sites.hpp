@@ -96,7 +96,7 @@ struct Spring {
   S stiffness;           ///< K_T of the declared model [N/m]
   S actuator_stiffness;  ///< K_act [N/m]
   S load_stiffness;      ///< K_L [N/m]
-  double h;
+  double h = 0.0;
   S time{0.0};  ///< of the record, mean over the step [s]
 };
 
