@@ -199,8 +199,7 @@ class Axis {
                                       .value -
                                   linear_command;
 
-    const S opening = pass_through<Site::valve>(effects, state.effects, Signal<S>{mean(kOpening), h_, time}, keep).value;
-    const Hydraulics<S> oil = hydraulics(opening, mean(kPressure), time);
+    const Hydraulics<S> oil = hydraulics(state, mean(kOpening), mean(kPressure), keep);
     state.inputs(kFlow) =
         oil.flow - valve.rated_flow * mean(kOpening) + sum_over<Site::flow>(effects, state.effects, oil, keep);
 
@@ -278,8 +277,10 @@ class Axis {
   }
   static S saturated(const S& command) noexcept { return clamp_symmetric<S>(command, S{1.0}); }
 
-  /// Flow through the valve's orifices at an opening and a load pressure, and what goes with it.
-  Hydraulics<S> hydraulics(const S& opening, const S& pressure, const S& time) const noexcept {
+  /// What the spool at a position opens, and the flow through the valve's orifices under a load pressure.
+  Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, Keep keep) const noexcept {
+    const S time = mid_step(state);
+    const S opening = pass_through<Site::valve>(parameters_.effects, state.effects, Signal<S>{spool, h_, time}, keep).value;
     const S& supply = parameters_.actuator.supply_pressure;
     const S drop = 1.0 - sign_of(opening) * pressure / supply;
     // The root's slope is infinite at zero drop; below 1e-9 of the supply the flow is zero to any sensor.
@@ -321,11 +322,8 @@ class Axis {
     state.y(kWashout) = state.y(kPressure);
     evaluate(state, at_rest(state), around, Keep::no);
     state.y(kOpening) = valve.position_gain * (state.inputs(kCommand) - state.y(kPiston)) + state.inputs(kValveCommand);
-    const S time = mid_step(state);
-    const S opening =
-        pass_through<Site::valve>(parameters_.effects, state.effects, Signal<S>{state.y(kOpening), h_, time}, Keep::no)
-            .value;
-    settle<Site::flow>(parameters_.effects, state.effects, hydraulics(opening, state.y(kPressure), time));
+    settle<Site::flow>(parameters_.effects, state.effects,
+                       hydraulics(state, state.y(kOpening), state.y(kPressure), Keep::no));
     evaluate(state, at_rest(state), around, Keep::no);
     return valve.rated_flow * state.y(kOpening) + state.inputs(kFlow) - parameters_.actuator.leakage * state.y(kPressure);
   }

@@ -266,6 +266,16 @@ Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const
 }
 
 template <class Family>
+std::vector<double> Evaluator<Family>::squares_by_channel(const Eigen::VectorXd& residual) const {
+  std::vector<double> square(data_.channels.size(), 0.0);
+  for (const Stretch& s : stretches_) {
+    square[s.channel] +=
+        residual.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first)).squaredNorm();
+  }
+  return square;
+}
+
+template <class Family>
 int Evaluator<Family>::steps_of(const Parameters& base, const Experiment& experiment) const {
   const int fine = model::steps_per_period<typename Family::template Plant<double>>(base, experiment.period);
   const int times_longer = resolution_ == Resolution::fine ? 1 : resolution_ == Resolution::coarse ? 2 : 4;

@@ -48,6 +48,9 @@ class Evaluator {
   /// (prediction - measured) / noise on the rows a fit sees.
   Eigen::VectorXd residuals(const Prediction& prediction) const;
 
+  /// Sum of squares of such residuals, by channel.
+  std::vector<double> squares_by_channel(const Eigen::VectorXd& residual) const;
+
   /// Residuals as above, and their derivatives with respect to the coordinates `u` of the parameters `wanted`, a column
   /// each.
   bool differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,

@@ -218,13 +218,11 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
 template <class Family>
 Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& residual) {
   const std::size_t channels = evaluator.data().channels.size();
-  std::vector<double> square(channels, 0.0);
   std::vector<double> inflated(channels, 0.0);
   std::vector<double> count(channels, 0.0);
   for (const Stretch& s : evaluator.stretches()) {
     const std::span<const double> part(residual.data() + s.offset, s.last - s.first);
     const double sum = std::inner_product(part.begin(), part.end(), part.begin(), 0.0);
-    square[s.channel] += sum;
     inflated[s.channel] += sum * statistical_inefficiency(part);
     count[s.channel] += static_cast<double>(part.size());
   }

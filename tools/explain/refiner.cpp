@@ -23,14 +23,8 @@ constexpr double kLostToSteps = 0.1;
 /// it must not be lost in the residuals of another that is far off.
 template <class Family>
 bool are_alike(const Evaluator<Family>& evaluator, const Eigen::VectorXd& left, const Eigen::VectorXd& other) {
-  std::vector<double> square(evaluator.data().channels.size(), 0.0);
-  std::vector<double> change(square.size(), 0.0);
-  for (const Stretch& s : evaluator.stretches()) {
-    const auto first = static_cast<Eigen::Index>(s.offset);
-    const auto rows = static_cast<Eigen::Index>(s.last - s.first);
-    square[s.channel] += left.segment(first, rows).squaredNorm();
-    change[s.channel] += (other.segment(first, rows) - left.segment(first, rows)).squaredNorm();
-  }
+  const std::vector<double> square = evaluator.squares_by_channel(left);
+  const std::vector<double> change = evaluator.squares_by_channel(other - left);
   for (std::size_t c = 0; c < square.size(); ++c) {
     if (square[c] > 0.0 && change[c] >= kLostToSteps * kLostToSteps * square[c]) {
       return false;

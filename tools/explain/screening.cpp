@@ -52,13 +52,10 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   Eigen::VectorXd residual;
   differentiate<Family>(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, residual,
                         frozen_.jacobian);
-  Prediction prediction;
-  evaluator.predict(current.base, current.free, current.u, threads, prediction);
-  current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
-  goodness_ = goodness(evaluator.data(), prediction);
-  const std::size_t first_used = evaluator.data().used.front() ? 0 : 1;
-  frequencies_ = strongest_frequencies(evaluator.data(), prediction, first_used, 3);
-  sharpened_ = sharpened_frequencies(evaluator.data(), prediction, first_used, frequencies_);
+  evaluator.predict(current.base, current.free, current.u, threads, prediction_);
+  current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction_));
+  goodness_ = goodness(evaluator.data(), prediction_);
+  frequencies_ = strongest_frequencies(evaluator.data(), prediction_, first_used(), 3);
 
   weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
   for (const Stretch& s : evaluator.stretches()) {
@@ -83,17 +80,21 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   }
   normal_.compute(matrix);
   Eigen::VectorXd move;
-  cost_ = eliminated_cost(evaluator.residuals(prediction), move);
+  cost_ = eliminated_cost(evaluator.residuals(prediction_), move);
 }
 
 template <class Family>
 std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate>& candidates, const std::string& stage,
                                                      const Watch& watch) const {
   std::vector<Screened<Family>> screened(candidates.size());
+  const std::vector<double> sharpened =
+      std::any_of(candidates.begin(), candidates.end(), is_periodic)
+          ? sharpened_frequencies(evaluator_.data(), prediction_, first_used(), frequencies_)
+          : frequencies_;
   std::atomic<std::size_t> done{0};
   parallel_for(candidates.size(), threads_, [&](std::size_t i) {
     if (!watch.interrupted()) {
-      screened[i] = start(candidates[i]);
+      screened[i] = start(candidates[i], sharpened);
     }
     watch.progress(fmt::format("{}: {} of {} candidates screened", stage, ++done, candidates.size()));
   });
@@ -183,7 +184,7 @@ std::vector<typename Screening<Family>::Start> Screening<Family>::scan(
 }
 
 template <class Family>
-Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
+Screened<Family> Screening<Family>::start(const Candidate& candidate, const std::vector<double>& sharpened) const {
   const Stopwatch stopwatch;
   Screened<Family> best;
   best.candidate = candidate;
@@ -205,7 +206,7 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate) const {
       own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
   const std::size_t valleys = one_valley ? 1 : kStarts;
   const std::vector<Start> starts =
-      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(), sharpened_)
+      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(), sharpened)
                                           : start_points(own, frequencies_));
   // A table starts as nothing, and a frequency has to be met. Of any other law one of the starts is better than nothing, or
   // it is not what is missing.
@@ -324,14 +325,13 @@ void Screening<Family>::improve(Screened<Family>& screened, int iterations) cons
 
 template <class Family>
 std::vector<ChannelFit> Screening<Family>::mean_squares(const Eigen::VectorXd& residual) const {
-  std::vector<ChannelFit> part(evaluator_.data().channels.size());
+  const std::vector<double> square = evaluator_.squares_by_channel(residual);
+  std::vector<ChannelFit> part(square.size());
   for (const Stretch& s : evaluator_.stretches()) {
-    const auto segment = residual.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first));
-    part[s.channel].mean_square += segment.squaredNorm();
     part[s.channel].rows += static_cast<double>(s.last - s.first);
   }
-  for (ChannelFit& channel : part) {
-    channel.mean_square = channel.rows > 0.0 ? channel.mean_square / channel.rows : 0.0;
+  for (std::size_t c = 0; c < part.size(); ++c) {
+    part[c].mean_square = part[c].rows > 0.0 ? square[c] / part[c].rows : 0.0;
   }
   return part;
 }

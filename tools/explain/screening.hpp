@@ -54,9 +54,12 @@ class Screening {
     double cost = 0.0;
   };
 
+  /// The channel whose spectrum says where a frequency starts.
+  std::size_t first_used() const { return evaluator_.data().used.front() ? 0 : 1; }
   Fitted<Family> with_candidate(const Candidate& candidate) const;
   std::vector<Start> scan(Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const;
-  Screened<Family> start(const Candidate& candidate) const;
+  /// `sharpened`: where a sinusoid starts.
+  Screened<Family> start(const Candidate& candidate, const std::vector<double>& sharpened) const;
   void start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
                            const Watch& watch) const;
   void improve(Screened<Family>& screened, int iterations) const;
@@ -70,8 +73,8 @@ class Screening {
   unsigned threads_;
   Frozen frozen_;
   Goodness goodness_;
+  Prediction prediction_;            ///< of the current model
   std::vector<double> frequencies_;  ///< strongest in what is left
-  std::vector<double> sharpened_;    ///< the same as close as whole records tell
   Eigen::VectorXd weight_;           ///< of every residual, noise and temper
   Eigen::VectorXd prior_;            ///< information of each frozen parameter's prior
   Eigen::VectorXd prior_gradient_;

@@ -27,6 +27,9 @@ struct Extent {
     low = std::min(low, value);
     high = std::max(high, value);
   }
+
+  /// Of the distances from zero.
+  Extent distances() const { return {0.0, std::max(std::abs(low), std::abs(high))}; }
 };
 
 /// What the plant runs through, by the name that the tables give it.
@@ -37,14 +40,13 @@ struct Extents {
     using model::Site;
     const bool is_rate = x_name == "rate";
     if (x_name.starts_with("distance")) {
-      const Extent whole = of(site, "position");
-      return {0.0, std::max(std::abs(whole.low), std::abs(whole.high))};
+      return of(site, "position").distances();
     }
     if (x_name.starts_with("time")) {
       return time;
     }
     if (x_name == "recent_flow") {
-      return {0.0, std::max(std::abs(flow.low), std::abs(flow.high))};
+      return flow.distances();
     }
     if (x_name == "load_pressure") {
       return pressure;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -30,9 +29,6 @@ class Excitation {
   }
 
   std::size_t rows() const { return values_.size(); }
-
-  /// Neighbouring rows that the value between two of them is told from; none where it is held.
-  int nodes() const { return nodes_; }
 
   /// Mean of the input over plant step `step` of a row.
   double operator()(std::size_t row, int step) const {
@@ -120,7 +116,7 @@ class Excitation {
 
   std::span<const double> values_;
   Between between_;
-  int nodes_ = 0;
+  int nodes_ = 0;  ///< neighbouring rows that a value between two of them is told from; none where it is held
   std::vector<Weights> weights_;
 };
 

@@ -131,20 +131,22 @@ void plan_track_wear(Plan& plan, Random& random, std::uint64_t) {
   plan.values["bumps"] = 3;
 }
 
-void plan_position_dependent_friction(Plan& plan, Random& random, std::uint64_t) {
-  const double level = random.uniform(4e3, 8e3);
+/// Dry friction of the gimbal that one of the unlisted effects then changes.
+void plan_dry_friction(Plan& plan, Random& random) {
+  const double level = plan.values["coulomb_torque"] = random.uniform(4e3, 8e3);
   plan.axis.bristle = {level, random.log_uniform(5e6, 2e7), 1.0, 1.0, 0.0, 1.0};
+}
+
+void plan_position_dependent_friction(Plan& plan, Random& random, std::uint64_t) {
+  plan_dry_friction(plan, random);
   // Twice to four times the level at 4 deg, which only the ramps reach.
-  plan.axis.unlisted.friction_growth = random.uniform(1.0, 3.0) / (16.0 * kDegree * kDegree);
-  plan.values = {{"coulomb_torque", level}, {"growth", plan.axis.unlisted.friction_growth}};
+  plan.axis.unlisted.friction_growth = plan.values["growth"] = random.uniform(1.0, 3.0) / (16.0 * kDegree * kDegree);
 }
 
 void plan_friction_drift(Plan& plan, Random& random, std::uint64_t) {
-  const double level = random.uniform(4e3, 8e3);
-  plan.axis.bristle = {level, random.log_uniform(5e6, 2e7), 1.0, 1.0, 0.0, 1.0};
+  plan_dry_friction(plan, random);
   // Half to twice the level more at the end of the longest record, 60 s.
-  plan.axis.unlisted.friction_drift = random.uniform(0.5, 2.0) / 60.0;
-  plan.values = {{"coulomb_torque", level}, {"rate", plan.axis.unlisted.friction_drift}};
+  plan.axis.unlisted.friction_drift = plan.values["rate"] = random.uniform(0.5, 2.0) / 60.0;
 }
 
 /// The valve opens on with the spool: 1 + 3 c x_v^2 stays positive up to x_v = 1.
