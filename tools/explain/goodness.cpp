@@ -128,7 +128,8 @@ double excess_over_noise(const Dataset& data, const Prediction& prediction, std:
       continue;
     }
     const auto count = static_cast<double>(residual.size());
-    const double noise = noise_from_differences(residual);
+    const double seen = noise_from_differences(residual);
+    const double noise = data.noise_declared[channel] ? std::max(seen, data.noise[channel]) : seen;
     square += std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
     floor += noise * noise * count;
     rows += count;

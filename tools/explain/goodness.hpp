@@ -39,7 +39,8 @@ std::vector<double> scored_residual(const Experiment& experiment, const std::vec
                                     std::size_t channel);
 
 /// What of the residual on all rows is not sensor noise: its rms over the noise, where the noise is told from the residual's
-/// own third differences. Zero where the model reaches the noise, whatever was declared of it.
+/// own third differences, or as large as was declared if that is more: third differences do not see slow noise. Zero where
+/// the model reaches the noise, even if less was declared.
 double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel);
 
 /// The largest of it over all channels.
