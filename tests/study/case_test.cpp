@@ -87,6 +87,16 @@ TEST(StudyCases, TheSameOrderGivesTheSameBytesAndAnotherSeedDoesNot) {
   CHECK_TRUE(load_record(folders[2] / "given/steps.csv").find("load_pressure") != nullptr);
 }
 
+TEST(StudyCases, ACaseWithAFaultOfAChannelIsTheModelWithThatFaultAndSaysIt) {
+  CaseOrder order{"mis-scaled-null-1", {}, 1};
+  order.condition = "mis-scaled";
+  const StudyCase made = make_case(order);
+  write_case(made, scratch.path("mis-scaled-null-1"));
+  check_truth(load_model(scratch.path("mis-scaled-null-1") / "kept/true.toml"), made);
+  const auto truth = nlohmann::json::parse(bytes_of(scratch.path("mis-scaled-null-1") / "kept/truth.json"));
+  STRCMP_EQUAL("sensor_scale", truth["effects"][0].get<std::string>().c_str());
+}
+
 TEST(StudyCases, AnUnlistedCaseSaysWhereItsEffectActs) {
   const StudyCase made = make_case({"track_wear-1", {"track_wear"}, 1});
   write_case(made, scratch.path("track_wear-1"));

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tools/study/case_parts.hpp"
+#include "tools/study/recording.hpp"
 
 namespace hotfire::study {
 namespace {
@@ -94,9 +95,12 @@ std::vector<double> one_row_later(std::vector<double> commands) {
   return commands;
 }
 
+double quantised(double value, const SensorGrade& grade) {
+  return grade.quantum > 0.0 ? grade.quantum * std::round(value / grade.quantum) : value;
+}
+
 double noisy(double value, const SensorGrade& grade, double factor, Random& random) {
-  const double read = value + grade.noise * factor * random.normal();
-  return grade.quantum > 0.0 ? grade.quantum * std::round(read / grade.quantum) : read;
+  return quantised(value + grade.noise * factor * random.normal(), grade);
 }
 
 double rms_of_difference(const ReferenceRows& a, const ReferenceRows& b, std::size_t channel) {
@@ -108,35 +112,6 @@ double rms_of_difference(const ReferenceRows& a, const ReferenceRows& b, std::si
 }
 
 namespace {
-
-/// An axis under a profile: rows read at the times of the commands, the first in equilibrium.
-ReferenceRows run(const ReferenceAxis& axis, const Profile& profile) {
-  return integrate_reference(axis, one_row_later(profile.commands), kSample, kSettling, kIntegratorTolerance);
-}
-
-Record record_of(const Profile& profile, const ReferenceRows& rows, std::size_t channels) {
-  Record record;
-  record.name = profile.name + ".csv";
-  record.period = kSample;
-  record.rows = rows.size();
-  record.channels.push_back({"command", "rad", profile.commands});
-  for (std::size_t c = 0; c < channels; ++c) {
-    Channel channel{kSensorGrades[c].channel, kSensorGrades[c].unit, {}};
-    for (const auto& row : rows) {
-      channel.values.push_back(row[c]);
-    }
-    record.channels.push_back(std::move(channel));
-  }
-  return record;
-}
-
-void add_noise(Record& record, double factor, Random& random) {
-  for (std::size_t c = 0; c + 1 < record.channels.size(); ++c) {
-    for (double& value : record.channels[c + 1].values) {
-      value = noisy(value, kSensorGrades[c], factor, random);
-    }
-  }
-}
 
 /// Rms of the difference in sensor noise.
 std::map<std::string, double> difference(const ReferenceRows& a, const ReferenceRows& b, double noise_factor) {
@@ -157,6 +132,16 @@ std::string effect_toml(const StudiedEffect& effect, const Plan& alone) {
     text += fmt::format("{} = {}\n", name, value);
   }
   return text + "\n";
+}
+
+/// A fault of the engine's channel in the model's terms.
+std::string fault_toml(const Condition& condition) {
+  if (condition.fault().empty()) {
+    return "";
+  }
+  return fmt::format("[effects.{}]\nchannel = \"engine\"\n{}\n\n", condition.fault(),
+                     condition.engine_late != 0 ? fmt::format("delay = {}", condition.engine_late * condition.period)
+                                                : fmt::format("error = {}", condition.engine_error));
 }
 
 /// Adds an effect to the case's plan, with the first of the drawn magnitudes that shows as it should.
@@ -198,7 +183,8 @@ StudyCase make_case(const CaseOrder& order) {
   if (order.two_axes) {
     return make_two_axis_case(order);
   }
-  StudyCase made{order, {}, {}, {}, {}, {}, {}, {}};
+  StudyCase made;
+  made.order = order;
   const ReferenceAxis plain = scattered_axis(order, 1);
   made.plan.axis = made.plan.without = plain;
 
@@ -208,17 +194,15 @@ StudyCase make_case(const CaseOrder& order) {
     add_effect(studied_effect(name), order, plain, unseen, plain_rows, made);
   }
 
-  const std::size_t channels = measures_load_pressure(order) ? 3 : 2;
   const ReferenceRows truth = order.effects.empty() ? plain_rows : run(made.plan.axis, unseen);
-  made.unseen = record_of(unseen, truth, channels);
+  made.unseen = unseen_record(order, unseen, truth);
   made.effect_size = difference(truth, made.plan.declared_effects.empty() ? plain_rows : run(made.plan.without, unseen),
                                 order.noise_factor);
-
-  Random noise(order.name, order.seed, 4);
-  for (const Profile& profile : given_profiles(Random(order.name, order.seed, 3))) {
-    made.given.push_back(record_of(profile, run(made.plan.axis, profile), channels));
-    add_noise(made.given.back(), order.noise_factor, noise);
-  }
+  const Condition& condition = condition_of(order.condition);
+  Given given = recorded(order, made.plan.axis, conditioned_profiles(condition, order.name, order.seed));
+  made.given = std::move(given.records);
+  made.exclusions = std::move(given.exclusions);
+  made.plan.true_effects += fault_toml(condition);
   made.declared = model_toml({}, order, made.plan.declared_effects);
   if (made.plan.in_model_terms) {
     made.truth = model_toml(made.plan.axis, order, made.plan.declared_effects + made.plan.true_effects);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/files/record.hpp"
+#include "tools/study/condition.hpp"
 #include "tools/study/effects.hpp"
 
 namespace hotfire::study {
@@ -19,6 +20,7 @@ struct CaseOrder {
   double noise_factor = 1.0;    ///< on the sensors' noise, true and declared alike
   double scatter_factor = 1.0;  ///< on the tolerances within which the true parameters are scattered
   bool two_axes = false;        ///< an engine with two; effects then end with their axis, "cross_axis.pitch"
+  std::string condition{};      ///< of the given records, one of `hard_conditions()`; empty: the usual
 };
 
 /// A case as it is made: what the finder is given, and what is kept from it.
@@ -29,7 +31,8 @@ struct StudyCase {
   std::string declared;              ///< declared.toml
   std::string truth;                 ///< the same with the true values and effects; empty if the model has no keys for them
   std::vector<Record> given;         ///< with sensor noise and quantisation
-  Record unseen;                     ///< noise-free, for scoring
+  std::vector<std::string> exclusions;        ///< stretches of them that the user knows to be wrong, "steps.csv@3.0-3.5"
+  Record unseen;                              ///< noise-free, for scoring
   std::map<std::string, double> effect_size;  ///< rms that the effects alone make on `unseen`, in sensor noise, by channel
                                               ///< ("piston", or "piston.pitch" of two axes)
 };
@@ -49,12 +52,13 @@ inline constexpr std::array<SensorGrade, 3> kSensorGrades{SensorGrade{"piston", 
 inline constexpr double kSmallestEffect = 5.0;
 inline constexpr double kLargestEffect = 150.0;
 
-/// Makes a case. The same order gives the same bits. Three records are given and one is kept, each from equilibrium; every
-/// third case, by its seed, measures the load pressure as well. The axes of an engine with two are scattered and driven each
-/// in its own way, at the same time. Throws std::runtime_error if no magnitude of an effect shows as above in twelve draws.
+/// Makes a case. The same order gives the same bits. Three records are given, unless its condition says otherwise, and one
+/// is kept, each from equilibrium; every third case, by its seed, measures the load pressure as well. The axes of an engine
+/// with two are scattered and driven each in its own way, at the same time. Throws std::runtime_error if no magnitude of an
+/// effect shows as above in twelve draws.
 StudyCase make_case(const CaseOrder& order);
 
-/// Writes a case as FOLDER/given/{declared.toml,sweep.csv,steps.csv,ramps.csv} and
+/// Writes a case as FOLDER/given/declared.toml, a file for each given record (sweep.csv, steps.csv and ramps.csv) and
 /// FOLDER/kept/{truth.json,score_noisefree.csv}, and
 /// kept/true.toml if the model has keys for what is missing.
 void write_case(const StudyCase& made, const std::filesystem::path& folder);

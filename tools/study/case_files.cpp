@@ -14,6 +14,9 @@ nlohmann::json wanted_words(const CaseOrder& order) {
     words.push_back(
         order.two_axes || is_listed(studied_effect(name)) ? name : "unlisted@" + std::string(studied_effect(name).site));
   }
+  if (const auto fault = condition_of(order.condition).fault(); !fault.empty()) {
+    words.push_back(fault);
+  }
   return words;
 }
 
@@ -39,7 +42,9 @@ nlohmann::json truth_of(const StudyCase& made) {
                        {"effect_values", made.plan.values},
                        {"effect_size", made.effect_size},
                        {"noise_factor", made.order.noise_factor},
-                       {"scatter_factor", made.order.scatter_factor}};
+                       {"scatter_factor", made.order.scatter_factor},
+                       {"condition", made.order.condition},
+                       {"exclusions", made.exclusions}};
   truth["may_name"] = nlohmann::json::array();
   for (const std::string& name : made.order.effects) {
     if (!made.order.two_axes && !studied_effect(name).contains.empty()) {

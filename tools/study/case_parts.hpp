@@ -29,6 +29,8 @@ std::string model_toml(const ReferenceAxis& axis, const CaseOrder& order, const 
 /// The reference reads a row at the end of its command: shifted, rows are read at the times of the commands.
 std::vector<double> one_row_later(std::vector<double> commands);
 
+double quantised(double value, const SensorGrade& grade);
+
 /// A value as its sensor reads it.
 double noisy(double value, const SensorGrade& grade, double factor, Random& random);
 

@@ -134,19 +134,23 @@ std::map<std::string, double> noise_of(const VehicleFile& model) {
 
 /// Runs the finder on a case and compares with the unseen record.
 template <class Model>
-void explain_case(const Model& declared, const std::vector<Record>& records, const Record& unseen, unsigned threads,
-                  Judgement& judgement) {
+void explain_case(const Model& declared, const std::vector<Record>& records, const Record& unseen,
+                  const std::vector<std::string>& exclusions, unsigned threads, Judgement& judgement) {
   judgement.before = scored_errors(declared, unseen, noise_of(declared));
   const explain::Stopwatch stopwatch;
   try {
     explain::ExplainOptions options;
     options.threads = threads;
     options.most_effects = 4;
+    for (const std::string& text : exclusions) {
+      options.exclusions.push_back(explain::exclusion_from(text));
+    }
     const auto explanation = explain::explain(declared, records, options);
     judgement.verdict = explanation.report.at("verdict");
     for (const auto& effect : explanation.report.at("effects")) {
       const std::string name = effect.at("name");
-      const std::string axis = effect.contains("axis") ? "." + effect.at("axis").template get<std::string>() : "";
+      const std::string axis =
+          effect.contains("axis") ? fmt::format(".{}", effect.at("axis").template get<std::string>()) : "";
       judgement.found_sites.push_back(effect.at("site"));
       judgement.found.push_back((name == "unlisted" ? name + "@" + judgement.found_sites.back() : name) + axis);
       judgement.found_laws.push_back(effect.value("law", ""));
@@ -181,10 +185,11 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
     }
   }
 
+  const auto exclusions = truth.value("exclusions", std::vector<std::string>{});
   if (is_vehicle(declared)) {
-    explain_case(load_vehicle(declared), records, unseen, threads, judgement);
+    explain_case(load_vehicle(declared), records, unseen, exclusions, threads, judgement);
   } else {
-    explain_case(load_model(declared), records, unseen, threads, judgement);
+    explain_case(load_model(declared), records, unseen, exclusions, threads, judgement);
   }
   judgement.below_noise = !judgement.after.empty() && std::all_of(judgement.after.begin(), judgement.after.end(),
                                                                   [](const auto& error) { return error.second < 1.0; });

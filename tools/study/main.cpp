@@ -173,7 +173,8 @@ void add_study(CLI::App& program, const char* name, const char* what, std::uint6
       ->capture_default_str();
   command->add_option("--first-seed", options.selection.first_seed, "the first of them")->capture_default_str();
   if (std::string(name) != "null") {
-    command->add_option("--only", options.selection.only, "only these effects, or pairs as leakage+rate_limit");
+    command->add_option("--only", options.selection.only,
+                        "only these effects, pairs as leakage+rate_limit, or conditions of hard data");
   }
   command->add_option("--out", options.out, "keep the cases in this folder, one folder a case");
   command->add_flag("--generate-only", options.generate_only, "make the cases and do not explain them");
@@ -191,12 +192,15 @@ int run(int argc, char** argv) {
   Options unlisted;
   Options null;
   Options two_axes;
+  Options hard;
   Options folders;
   add_study(program, "effects", "Every listed effect, alone", 3, effects);
   add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
   add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
   add_study(program, "null", "Records in which nothing is missing", 40, null);
   add_study(program, "two-axes", "Engines with two axes that lack something on one of them, or nothing", 1, two_axes);
+  add_study(program, "hard", "Hard data: slow and fast rows, one record or ten, closed loop, faults of a channel, ...", 1,
+            hard);
   FitArguments candidate;
   add_fit(program, candidate);
   CLI::App* judging = program.add_subcommand("judge", "Explain cases that are there");
@@ -216,6 +220,8 @@ int run(int argc, char** argv) {
     status = study(unlisted_orders(unlisted.selection), unlisted);
   } else if (program.got_subcommand("two-axes")) {
     status = study(two_axis_orders(two_axes.selection), two_axes);
+  } else if (program.got_subcommand("hard")) {
+    status = study(hard_orders(hard.selection), hard);
   } else if (program.got_subcommand("null")) {
     status = study(null_orders(null.selection), null);
   } else if (program.got_subcommand("fit")) {

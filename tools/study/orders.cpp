@@ -89,6 +89,32 @@ std::vector<CaseOrder> two_axis_orders(const Selection& selection) {
   return orders;
 }
 
+std::vector<CaseOrder> hard_orders(const Selection& selection) {
+  // Effects that show under every condition; each meets another one with every seed.
+  constexpr std::array kEffects{"gimbal_friction", "soft_stiffness", "valve_deadband",
+                                "command_delay",   "backlash",       "leakage"};
+  for (const std::string& name : selection.only) {
+    condition_of(name);
+  }
+  std::vector<CaseOrder> orders;
+  for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {
+    std::size_t next = seed - 1;
+    for (const Condition& condition : hard_conditions()) {
+      const std::string effect = kEffects[next++ % kEffects.size()];
+      if (!selection.only.empty() &&
+          std::find(selection.only.begin(), selection.only.end(), condition.name) == selection.only.end()) {
+        continue;
+      }
+      for (const std::vector<std::string>& effects : Kinds{{effect}, {}}) {
+        CaseOrder order{fmt::format("{}-{}-{}", condition.name, effects.empty() ? "null" : effect, seed), effects, seed};
+        order.condition = condition.name;
+        orders.push_back(std::move(order));
+      }
+    }
+  }
+  return orders;
+}
+
 std::vector<CaseOrder> null_orders(const Selection& selection) {
   std::vector<CaseOrder> orders;
   for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {

@@ -26,6 +26,10 @@ std::vector<CaseOrder> unlisted_orders(const Selection& selection);
 /// missing. They are named "two-axes-cross_axis.pitch-1".
 std::vector<CaseOrder> two_axis_orders(const Selection& selection);
 
+/// Hard data, two cases for each of `hard_conditions()`: one effect, another one with every seed, and nothing missing.
+/// `only` names conditions. They are named "closed-loop-backlash-1".
+std::vector<CaseOrder> hard_orders(const Selection& selection);
+
 /// Null records: noise of half to five times the usual, true parameters scattered within half to twice the tolerances.
 std::vector<CaseOrder> null_orders(const Selection& selection);
 

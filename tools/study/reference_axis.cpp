@@ -109,10 +109,10 @@ struct Edge {
   double command = 0.0;
 };
 
-/// Any number of axes together, each under its commands.
+/// Any number of axes together, each under its commands, or under what a controller makes of them.
 std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& axes,
                                      const std::vector<const std::vector<double>*>& commands, double sample, double settling,
-                                     double tolerance, long* evaluations) {
+                                     double tolerance, long* evaluations, const Controller& controller = {}) {
   Problems problems;
   for (const ReferenceAxis* axis : axes) {
     if (axis->play > 0.0 && !std::isinf(axis->rate_limit)) {
@@ -128,11 +128,15 @@ std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& ax
     integrator.advance(settling);
   }
   std::vector<ReferenceRows> rows(axes.size());
+  std::vector<std::vector<double>> sent(axes.size());
   for (std::ptrdiff_t i = 0; i < std::ssize(*commands.front()); ++i) {
     const double start = settling + static_cast<double>(i) * sample;
     std::vector<Edge> edges;
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      const auto earlier = [&](std::ptrdiff_t k) { return k < 0 ? 0.0 : (*commands[axis])[static_cast<std::size_t>(k)]; };
+      const double asked = (*commands[axis])[static_cast<std::size_t>(i)];
+      const std::array<double, 3> last = rows[axis].empty() ? std::array<double, 3>{} : rows[axis].back();
+      sent[axis].push_back(controller ? controller(asked, last) : asked);
+      const auto earlier = [&](std::ptrdiff_t k) { return k < 0 ? 0.0 : sent[axis][static_cast<std::size_t>(k)]; };
       // The delayed command has its edges `offset` after the samples, and is `late` samples behind.
       const double delay = axes[axis]->delay + axes[axis]->unlisted.dead_time * std::abs(earlier(i));
       const auto late = static_cast<std::ptrdiff_t>(delay / sample);
@@ -163,8 +167,8 @@ std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& ax
 }  // namespace
 
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
-                                  double settling, double tolerance, long* evaluations) {
-  return integrate({&axis}, {&commands}, sample, settling, tolerance, evaluations).front();
+                                  double settling, double tolerance, long* evaluations, const Controller& controller) {
+  return integrate({&axis}, {&commands}, sample, settling, tolerance, evaluations, controller).front();
 }
 
 std::array<ReferenceRows, 2> integrate_reference_pair(const std::array<ReferenceAxis, 2>& axes,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -140,12 +141,18 @@ struct ReferenceAxis {
 /// The rows of a reference run: piston [m] and engine [rad] as their sensors read them, load pressure [Pa].
 using ReferenceRows = std::vector<std::array<double, 3>>;
 
+/// What a controller makes of a command that is asked for, from the row read last: the command that is sent [rad]. Before
+/// the first row it reads zeros.
+using Controller = std::function<double(double asked, const std::array<double, 3>& reading)>;
+
 /// Piston, engine and load pressure under `commands` [rad], each held for `sample` seconds. Starts at rest under a zero
 /// command, and waits `settling` seconds before the first command. Row i is read at the *end* of the time in which command i
 /// is held. CVODE (BDF) with relative tolerance `tolerance`, started afresh at every edge of the command. What it
-/// took is added to `evaluations`, without those for CVODE's Jacobian. Throws std::runtime_error if CVODE gives up.
+/// took is added to `evaluations`, without those for CVODE's Jacobian. With a `controller` the axis runs under what that
+/// makes of the commands. Throws std::runtime_error if CVODE gives up.
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
-                                  double settling, double tolerance = 1e-10, long* evaluations = nullptr);
+                                  double settling, double tolerance = 1e-10, long* evaluations = nullptr,
+                                  const Controller& controller = {});
 
 /// The two axes of one engine together, coupled by `cross_stiffness` and `cross_damping`; otherwise the same. Both have as
 /// many commands.

@@ -102,7 +102,8 @@ Record record_of(const TwoProfiles& profiles, const AxisRows& rows, std::size_t 
 }  // namespace
 
 StudyCase make_two_axis_case(const CaseOrder& order) {
-  StudyCase made{order, {}, {}, {}, {}, {}, {}, {}};
+  StudyCase made;
+  made.order = order;
   std::array<Plan, 2> plans;
   for (std::size_t axis = 0; axis < plans.size(); ++axis) {
     plans[axis].axis = plans[axis].without = scattered_axis(order, 1 + 10 * axis);

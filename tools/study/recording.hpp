@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/files/record.hpp"
+#include "tools/study/case.hpp"
+
+namespace hotfire::study {
+
+// Records of one axis: as they are, and as a rig gives them.
+
+/// An axis under a profile: rows read at the times of the commands, the first in equilibrium.
+ReferenceRows run(const ReferenceAxis& axis, const Profile& profile);
+
+/// The kept record, without noise; a fault of the rig's channel is in it as well.
+Record unseen_record(const CaseOrder& order, const Profile& profile, const ReferenceRows& rows);
+
+/// What the finder is given, and the stretches of it that the user declares to be wrong ("steps.csv@3.0-3.5").
+struct Given {
+  std::vector<Record> records;
+  std::vector<std::string> exclusions;
+};
+
+/// An axis under profiles of the order's condition (`conditioned_profiles`), as sensors read it under that condition.
+Given recorded(const CaseOrder& order, const ReferenceAxis& axis, const std::vector<Profile>& profiles);
+
+}  // namespace hotfire::study
