@@ -8,6 +8,7 @@
 
 #include "tools/explain/curve.hpp"
 #include "tools/explain/report_evidence.hpp"
+#include "tools/explain/report_residual.hpp"
 #include "tools/explain/statistics.hpp"
 #include "tools/explain/trace.hpp"
 #include "tools/explain/uncertainty.hpp"
@@ -18,9 +19,6 @@ namespace hotfire::explain {
 namespace {
 
 using nlohmann::json;
-
-/// Lags of the residual's autocorrelation, in rows.
-constexpr std::size_t kLags = 100;
 
 json interval_of(const Estimate& estimate) {
   return estimate.interval ? json{estimate.interval->first, estimate.interval->second} : json(nullptr);
@@ -139,57 +137,6 @@ json calibration_json(const SearchResult<Family>& found, const std::vector<Estim
     }
   }
   return calibration;
-}
-
-/// Autocorrelation of one channel's residual over all experiments, weighted by their rows.
-std::vector<double> residual_autocorrelation(const Dataset& data, const Prediction& prediction, std::size_t channel) {
-  std::vector<double> mean(kLags + 1, 0.0);
-  double rows = 0.0;
-  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    const std::vector<double> residual = scored_residual(data.experiments[e], prediction[e], channel);
-    if (residual.size() <= 2 * kLags) {
-      continue;
-    }
-    const auto rho = autocorrelation(residual, kLags);
-    for (std::size_t lag = 0; lag <= kLags; ++lag) {
-      mean[lag] += rho[lag] * static_cast<double>(residual.size());
-    }
-    rows += static_cast<double>(residual.size());
-  }
-  for (double& value : mean) {
-    value = rows > 0.0 ? value / rows : 0.0;
-  }
-  return mean;
-}
-
-template <class Family>
-json residual_json(const Dataset& data, const SearchResult<Family>& found) {
-  json autocorrelations = json::object();
-  bool white = true;
-  double unexplained = 0.0;
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (!data.used[c]) {
-      continue;
-    }
-    double rows = 0.0;
-    for (const Experiment& experiment : data.experiments) {
-      rows += static_cast<double>(experiment.measured[c].size());
-    }
-    const double bound = 2.576 / std::sqrt(std::max(1.0, rows));
-    const auto before = residual_autocorrelation(data, found.declared.prediction, c);
-    const auto after = residual_autocorrelation(data, found.explained.prediction, c);
-    // At 99 % bounds one lag in a hundred is outside by chance; three are not.
-    white = white && std::count_if(after.begin() + 1, after.end(), [&](double r) { return std::abs(r) > bound; }) <= 3;
-    std::vector<double> lags;
-    for (std::size_t lag = 0; lag < after.size(); ++lag) {
-      lags.push_back(static_cast<double>(lag) * data.experiments.front().period);
-    }
-    autocorrelations[data.channels[c]] = {{"lag_s", lags}, {"before", before}, {"after", after}, {"bound99", bound}};
-    const double declared = excess_over_noise(data, found.declared.prediction, c);
-    const double left = excess_over_noise(data, found.explained.prediction, c);
-    unexplained = std::max(unexplained, declared > 0.0 ? 100.0 * std::min(1.0, left / declared) : 0.0);
-  }
-  return {{"white", white}, {"unexplained_percent", unexplained}, {"autocorrelation", autocorrelations}};
 }
 
 template <class Family>
@@ -342,7 +289,7 @@ json report_json(const ModelFile& model, const std::vector<Record>& records, con
               {"channels", channels_json(data, records, found)},
               {"calibration", calibration_json(found, estimated)},
               {"effects", effects_json(data, found, estimated)},
-              {"residual", residual_json(data, found)},
+              {"residual", residual_json(data, found.declared.prediction, found.explained.prediction)},
               {"search", search_json(found.trials)}};
   for (const Record& record : records) {
     report["records"].push_back({{"path", record.path.string()}, {"rows", record.rows}, {"period", record.period}});

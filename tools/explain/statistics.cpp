@@ -16,6 +16,21 @@ double lagged_product(std::span<const double> values, std::size_t lag) {
   return series.head(count).dot(series.tail(count));
 }
 
+/// 1 + 2 sum of a correlation over its lags, a pair of lags at a time until one is not positive, and at least 1. A sequence
+/// that has not died out after a fifth of the record counts as one sample a fifth.
+template <class CorrelationAt>
+double initial_positive_sum(std::size_t rows, const CorrelationAt& correlation_at) {
+  double g = 1.0;
+  for (std::size_t lag = 1; lag + 1 < rows / 5; lag += 2) {
+    const double pair = correlation_at(lag) + correlation_at(lag + 1);
+    if (pair <= 0.0) {
+      break;
+    }
+    g += 2.0 * pair;
+  }
+  return std::max(1.0, g);
+}
+
 }  // namespace
 
 double root_mean_square(std::span<const double> values) {
@@ -64,16 +79,18 @@ double statistical_inefficiency(std::span<const double> values) {
   if (!(energy > 0.0)) {
     return 1.0;
   }
-  double g = 1.0;
-  // A pair of lags at a time; a sequence that has not died out after a fifth of the record counts as one sample a fifth.
-  for (std::size_t lag = 1; lag + 1 < values.size() / 5; lag += 2) {
-    const double pair = (lagged_product(values, lag) + lagged_product(values, lag + 1)) / energy;
-    if (pair <= 0.0) {
-      break;
-    }
-    g += 2.0 * pair;
+  return initial_positive_sum(values.size(), [&](std::size_t lag) { return lagged_product(values, lag) / energy; });
+}
+
+double joint_inefficiency(std::span<const double> first, std::span<const double> second) {
+  const double first_energy = lagged_product(first, 0);
+  const double second_energy = lagged_product(second, 0);
+  if (!(first_energy > 0.0) || !(second_energy > 0.0)) {
+    return 1.0;
   }
-  return std::max(1.0, g);
+  return initial_positive_sum(first.size(), [&](std::size_t lag) {
+    return lagged_product(first, lag) / first_energy * (lagged_product(second, lag) / second_energy);
+  });
 }
 
 }  // namespace hotfire::explain

@@ -21,4 +21,7 @@ std::vector<double> autocorrelation(std::span<const double> values, std::size_t 
 /// [Geyer 1992, Practical Markov Chain Monte Carlo, initial positive sequence]. The effective sample size is n / g; g >= 1.
 double statistical_inefficiency(std::span<const double> values);
 
+/// The same of the products of two series that are unrelated: g = 1 + 2 sum rho_first rho_second. Both are of one length.
+double joint_inefficiency(std::span<const double> first, std::span<const double> second);
+
 }  // namespace hotfire::explain

@@ -11,6 +11,9 @@ using nlohmann::json;
 
 namespace {
 
+/// Keys of the residual with one value for each channel.
+constexpr std::array kByChannel{"autocorrelation", "input_correlation", "by_frequency", "by_amplitude"};
+
 /// "engine.inertia" of the pitch axis is "engine.pitch.inertia".
 std::string key_of_axis(const std::string& key, const std::string& axis) {
   const auto dot = key.find('.');
@@ -77,11 +80,14 @@ json joined_report(const std::vector<AxisReport>& reports) {
   joined["sentence"] = joined_sentence(reports);
   joined["warnings"] = joined_texts(reports, "warnings");
   joined["held_out"] = joined_texts(reports, "held_out");
-  joined["channels"] = joined["calibration"] = joined["residual"]["autocorrelation"] = json::object();
+  joined["channels"] = joined["calibration"] = json::object();
   joined["effects"] = joined["search"] = json::array();
   joined.erase("trace");
   json& residual = joined["residual"];
   residual.erase("next_experiment");
+  for (const char* by_channel : kByChannel) {
+    residual[by_channel] = json::object();
+  }
   for (const AxisReport& own : reports) {
     add_named(own.report.at("channels"), own.axis, joined["channels"]);
     for (const auto& [key, value] : own.report.at("calibration").items()) {
@@ -93,7 +99,9 @@ json joined_report(const std::vector<AxisReport>& reports) {
     residual["white"] = residual.at("white").get<bool>() && left.at("white").get<bool>();
     residual["unexplained_percent"] =
         std::max(residual.at("unexplained_percent").get<double>(), left.at("unexplained_percent").get<double>());
-    add_named(left.at("autocorrelation"), own.axis, residual["autocorrelation"]);
+    for (const char* by_channel : kByChannel) {
+      add_named(left.at(by_channel), own.axis, residual[by_channel]);
+    }
     if (left.contains("next_experiment")) {
       const std::string before = residual.value("next_experiment", "");
       residual["next_experiment"] = fmt::format("{}{}{} axis: {}", before, before.empty() ? "" : " ", own.axis,
