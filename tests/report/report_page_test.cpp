@@ -95,6 +95,17 @@ TEST(report_page, says_the_sentence_and_the_name) {
   CHECK(contains(page, "<title>single-axis TVC actuator: Hotfire report</title>"));
 }
 
+TEST(report_page, has_a_section_for_every_view_of_the_residual) {
+  const test::Sample sample = test::explained_actuator();
+  const std::string page_without_data = report_page(smallest_report(), {});
+  for (const auto& [key, value] : sample.report["residual"].items()) {
+    CHECK_TEXT(contains(page_without_data, key), key.c_str());
+  }
+  for (const char* key : {"identifiability", "interval_from"}) {
+    CHECK_TEXT(contains(page_without_data, key), key);
+  }
+}
+
 TEST(report_page, turns_no_text_of_the_report_into_markup) {
   const test::Sample hostile = test::hostile_long_records();
   const std::string plain = report_page(smallest_report(), {});

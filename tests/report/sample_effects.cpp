@@ -36,6 +36,12 @@ json friction_curve() {
             {{"name", "sine, 0.4 deg at 2 Hz"}, {"x", forward_x}, {"y", forward_y}}}}};
 }
 
+json from_profile(json parameter, double low, double high) {
+  parameter["ci95"] = {low, high};
+  parameter["interval_from"] = "profile";
+  return parameter;
+}
+
 }  // namespace
 
 json reconstructed_points() {
@@ -61,6 +67,7 @@ json parameter(double value, const char* unit, double half_width, const char* me
           {"unit", unit},
           {"ci95", identified ? json{value - half_width, value + half_width} : json()},
           {"identified", identified},
+          {"interval_from", "curvature"},
           {"meaning", meaning}};
 }
 
@@ -90,7 +97,8 @@ json soft_stiffness() {
       {"meaning", "The actuator is softer below a load, as if its mounting settled."},
       {"parameters",
        {{"soft_ratio", parameter(0.42, "1", 0.03, "stiffness at no load over stiffness at full load")},
-        {"corner_force", parameter(2.31e4, "N", 900.0, "load at which the stiffness is half way")}}},
+        {"corner_force",
+         from_profile(parameter(2.31e4, "N", 900.0, "load at which the stiffness is half way"), 2.27e4, 2.52e4)}}},
       {"evidence", {{"held_out_error_drop_percent", 31.0}, {"delta_bic", -2210.0}}},
       {"alternatives", {{{"name", "backlash"}, {"delta_bic", 310.0}, {"held_out_error_drop_percent", 27.5}}}},
       {"curve",

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "tests/report/sample_effects.hpp"
+#include "tests/report/sample_residual.hpp"
 
 namespace hotfire::test {
 namespace {
@@ -87,20 +88,6 @@ json channel_errors(const Shape& shape, const char* source) {
           {"after", errors(shape.noise * 1.02, 99.42)}};
 }
 
-json correlation() {
-  std::vector<double> lag;
-  std::vector<double> before;
-  std::vector<double> after;
-  std::mt19937 generator(7);
-  std::normal_distribution<double> noise(0.0, 0.02);
-  for (int index = 0; index <= 120; ++index) {
-    lag.push_back(0.004 * index);
-    before.push_back(std::exp(-0.01 * index) * std::cos(0.07 * index));
-    after.push_back(index == 0 ? 1.0 : noise(generator));
-  }
-  return {{"lag_s", lag}, {"before", before}, {"after", after}, {"bound99", 0.052}};
-}
-
 json attempt(int round, const char* candidate, const char* law, double ratio, double bic, const char* decision,
              const char* reason) {
   json row{{"round", round},   {"candidate", candidate}, {"held_out_rms_ratio", ratio},
@@ -173,13 +160,23 @@ Sample explained_actuator() {
       {"site", "engine_torque"},
       {"points", reconstructed_points()},
       {"text", "The torque that the declared model lacks follows the sign of the gimbal rate: 91 % of its variance."}};
-  report["residual"] = {
-      {"white", true},
-      {"unexplained_percent", 3.1},
-      {"next_experiment",
-       "slow triangles of 0.1, 0.2 and 0.4 deg at rest and at hot fire: they tell "
-       "vibration_ratio from coulomb_torque"},
-      {"autocorrelation", {{"piston", correlation()}, {"engine", correlation()}, {"load_pressure", correlation()}}}};
+  report["residual"] = {{"white", true},
+                        {"unexplained_percent", 3.1},
+                        {"next_experiment",
+                         "slow triangles of 0.1, 0.2 and 0.4 deg at rest and at hot fire: they tell "
+                         "vibration_ratio from coulomb_torque"}};
+  for (const Shape& shape : shapes) {
+    json& residual = report["residual"];
+    residual["autocorrelation"][shape.name] = autocorrelation();
+    residual["input_correlation"][shape.name] = input_correlation(shape.name != "load_pressure");
+    residual["by_frequency"][shape.name] = by_frequency(shape.noise, shape.declared_error);
+    residual["by_amplitude"][shape.name] = by_amplitude(shape.gain * 0.006, shape.noise, shape.declared_error);
+  }
+  report["identifiability"] = {
+      {{"text",
+        "gimbal_friction.vibration_ratio and coulomb_torque act alike in these records (correlation 0.998): only their "
+        "product is known."}},
+      {{"text", "actuator.bulk_modulus moves nothing that was measured by more than a tenth of the noise."}}};
   report["search"] = search();
   return sample;
 }
@@ -229,7 +226,13 @@ Sample hostile_long_records() {
                           {"y_unit", kHostile},
                           {"series", {{{"name", kHostile}, {"x", {0, 1}}, {"y", {1, 0}}}}}}}}};
   report["search"] = {attempt(1, kHostile, kHostile, 0.5, -1.0, kHostile, kHostile)};
-  report["residual"] = {{"next_experiment", kHostile}, {"autocorrelation", {{kHostile, correlation()}}}};
+  report["effects"][0]["parameters"][kHostile]["interval_from"] = kHostile;
+  report["identifiability"] = {{{"text", kHostile}}};
+  report["residual"] = {{"next_experiment", kHostile},
+                        {"autocorrelation", {{kHostile, autocorrelation()}}},
+                        {"input_correlation", {{kHostile, input_correlation(false)}}},
+                        {"by_frequency", {{kHostile, by_frequency(0.0, 0.0)}}},
+                        {"by_amplitude", {{kHostile, by_amplitude(1.0, 1e-4, 2e-3)}}}};
   return sample;
 }
 

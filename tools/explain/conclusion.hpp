@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tools/explain/profile.hpp"
 #include "tools/explain/search.hpp"
 #include "tools/report/report_page.hpp"
 
@@ -36,7 +37,7 @@ ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, 
 }
 
 /// The explained model fitted once more, to the rows that were held out as well: what the rig runs has seen all that there
-/// is. The errors of `found` stay those of the fit that had not seen them.
+/// is, with the intervals that its profile gives. The errors of `found` stay those of the fit that had not seen them.
 template <class Family>
 void fit_to_all_rows(Dataset data, unsigned threads, SearchResult<Family>& found) {
   fit_every_row(data);
@@ -44,6 +45,7 @@ void fit_to_all_rows(Dataset data, unsigned threads, SearchResult<Family>& found
   const Assessed<Family> again = refined(whole, whole, threads, found.explained.model, kAllRows);
   if (again.good()) {
     found.explained.model = again.model;
+    found.profiles = profile_intervals(whole, again.model, threads);
   }
 }
 

@@ -55,12 +55,8 @@ class SimulationError : public ceres::CostFunction {
   SimulationError(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options)
       : fitted_(fitted),
         options_(options),
-        tangent_(evaluator, fitted.base, fitted.free, simulated(), options.slopes, options.threads) {
-    weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
-    for (const Stretch& s : evaluator.stretches()) {
-      weight_.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
-          .setConstant(1.0 / std::sqrt(fitted.temper[s.channel]));
-    }
+        tangent_(evaluator, fitted.base, fitted.free, simulated(), options.slopes, options.threads),
+        weight_(weights_of(evaluator, fitted.temper)) {
     set_num_residuals(static_cast<int>(fitted.free.size()) + 1);
     mutable_parameter_block_sizes()->push_back(static_cast<int>(fitted.free.size()));
   }
@@ -235,6 +231,18 @@ Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& resi
   return temper;
 }
 
+template <class Family>
+Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& temper) {
+  Eigen::VectorXd weights(static_cast<Eigen::Index>(evaluator.fit_rows()));
+  for (const Stretch& s : evaluator.stretches()) {
+    weights.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
+        .setConstant(1.0 / std::sqrt(temper[s.channel]));
+  }
+  return weights;
+}
+
+template Eigen::VectorXd weights_of(const Evaluator<SimplexFamily>&, const Temper&);
+template Eigen::VectorXd weights_of(const Evaluator<DirectFamily>&, const Temper&);
 template bool fit(const Evaluator<SimplexFamily>&, Fitted<SimplexFamily>&, const FitOptions&);
 template bool fit(const Evaluator<DirectFamily>&, Fitted<DirectFamily>&, const FitOptions&);
 template Temper temper_of(const Evaluator<SimplexFamily>&, const Eigen::VectorXd&);

@@ -50,8 +50,14 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
 template <class Family>
 Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& residual);
 
+/// What one over sensor noise of every residual counts under a temper: 1 / sqrt(temper of its channel).
+template <class Family>
+Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& temper);
+
 extern template bool fit(const Evaluator<SimplexFamily>&, Fitted<SimplexFamily>&, const FitOptions&);
 extern template bool fit(const Evaluator<DirectFamily>&, Fitted<DirectFamily>&, const FitOptions&);
+extern template Eigen::VectorXd weights_of(const Evaluator<SimplexFamily>&, const Temper&);
+extern template Eigen::VectorXd weights_of(const Evaluator<DirectFamily>&, const Temper&);
 extern template Temper temper_of(const Evaluator<SimplexFamily>&, const Eigen::VectorXd&);
 extern template Temper temper_of(const Evaluator<DirectFamily>&, const Eigen::VectorXd&);
 

@@ -24,6 +24,24 @@ json interval_of(const Estimate& estimate) {
   return estimate.interval ? json{estimate.interval->first, estimate.interval->second} : json(nullptr);
 }
 
+/// Where an interval comes from; null where there is none.
+json source_of(const Estimate& estimate) {
+  return !estimate.interval ? json(nullptr) : json(estimate.from_profile ? "profile" : "curvature");
+}
+
+template <class Family>
+std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
+  const Fitted<Family>& model = found.explained.model;
+  std::vector<Estimate> estimated = estimates(model.free, model.u, model.normal);
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    if (const auto profile = found.profiles.find(model.free[k].key); profile != found.profiles.end()) {
+      estimated[k].interval = profile->second;
+      estimated[k].from_profile = true;
+    }
+  }
+  return estimated;
+}
+
 json errors_of(const ChannelFit& fit) {
   return {{"rms", fit.rms}, {"max", fit.max}, {"bias", fit.bias}, {"fit_percent", fit.fit_percent}};
 }
@@ -93,6 +111,7 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
                                                                 {"unit", free.unit},
                                                                 {"ci95", interval_of(estimated[k])},
                                                                 {"identified", estimated[k].interval.has_value()},
+                                                                {"interval_from", source_of(estimated[k])},
                                                                 {"meaning", meaning_of(meaning, free)}};
       }
     }
@@ -274,7 +293,7 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
 template <class Family>
 json report_json(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
                  const SearchResult<Family>& found) {
-  const auto estimated = estimates(found.explained.model.free, found.explained.model.u, found.explained.model.normal);
+  const std::vector<Estimate> estimated = estimates_of(found);
   const std::string verdict = verdict_of(data, found);
   const auto calibrated =
       Evaluator<Family>::with_values(found.calibrated.model.base, found.calibrated.model.free, found.calibrated.model.u);

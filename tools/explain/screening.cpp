@@ -57,11 +57,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   goodness_ = goodness(evaluator.data(), prediction_);
   frequencies_ = strongest_frequencies(evaluator.data(), prediction_, first_used(), 3);
 
-  weight_.resize(static_cast<Eigen::Index>(evaluator.fit_rows()));
-  for (const Stretch& s : evaluator.stretches()) {
-    weight_.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
-        .setConstant(1.0 / std::sqrt(current_.temper[s.channel]));
-  }
+  weight_ = weights_of(evaluator, current_.temper);
   prior_.setZero(static_cast<Eigen::Index>(current.free.size()));
   prior_gradient_ = prior_;
   for (std::size_t k = 0; k < current.free.size(); ++k) {

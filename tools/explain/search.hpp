@@ -5,6 +5,7 @@
 
 #include "tools/explain/assessed.hpp"
 #include "tools/explain/next_experiment.hpp"
+#include "tools/explain/profile.hpp"
 #include "tools/explain/screening.hpp"
 #include "tools/explain/trial.hpp"
 
@@ -18,6 +19,7 @@ struct SearchResult {
   std::vector<Kept> kept;
   std::vector<Trial> trials;
   std::optional<Rival<Family>> rival;  ///< of the effect kept last
+  Intervals profiles;                  ///< of the explained model's parameters whose error is no parabola
   bool interrupted = false;
 };
 

@@ -15,22 +15,24 @@ constexpr double kFarFromDeclared = 2.5;
 /// True if a fit that is stopped by a bound would end here.
 bool meets(double value, double bound) { return std::abs(value - bound) <= 1e-4 * std::abs(bound); }
 
-/// Standard deviations in coordinates; infinite where the data say nothing.
-Eigen::VectorXd deviations(const Eigen::MatrixXd& normal) {
+}  // namespace
+
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& normal) {
   const Eigen::VectorXd scale = (normal.diagonal().array() > 0.0).select(normal.diagonal().cwiseMax(0.0).cwiseSqrt(), 1.0);
   const Eigen::MatrixXd scaled = scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
   const Eigen::VectorXd inverse = eigen.eigenvalues().cwiseMax(1e-14).cwiseInverse();
   const Eigen::MatrixXd covariance = eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
-  return covariance.diagonal().cwiseMax(0.0).cwiseSqrt().cwiseQuotient(scale);
+  return scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
 }
-
-}  // namespace
 
 std::vector<Estimate> estimates(const std::vector<FreeParameter>& free, const std::vector<double>& u,
                                 const Eigen::MatrixXd& normal) {
   std::vector<Estimate> result;
-  const Eigen::VectorXd deviation = normal.size() > 0 ? deviations(normal) : Eigen::VectorXd{};
+  Eigen::VectorXd deviation;
+  if (normal.size() > 0) {
+    deviation = covariance_of(normal).diagonal().cwiseMax(0.0).cwiseSqrt();
+  }
   for (std::size_t k = 0; k < free.size(); ++k) {
     const FreeParameter& parameter = free[k];
     Estimate estimate;

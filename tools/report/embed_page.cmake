@@ -4,7 +4,7 @@ cmake_policy(VERSION 3.25)
 
 file(READ ${PARTS}/page.html page)
 file(READ ${PARTS}/page.css style)
-foreach(name units dom curves traces sections evidence print page)
+foreach(name units dom scales curves traces sections residual evidence print page)
   file(READ ${PARTS}/${name}.js part)
   string(APPEND script "${part}\n")
 endforeach()

@@ -1,37 +1,12 @@
 "use strict";
 // Small charts of one quantity over another, drawn as SVG: they may double back (hysteresis) and print sharply.
 
-const COLOURS = { measured: "#1b1f24", declared: "#d55e00", calibrated: "#8a6fa8", explained: "#0066aa", trace: "#8c959f" };
+const COLOURS = { measured: "#1b1f24", declared: "#d55e00", calibrated: "#8a6fa8", explained: "#0066aa", trace: "#8c959f",
+  noise: "#57606a" };
 const CURVE_COLOURS = [COLOURS.explained, "#d55e00", "#009e73", "#8a6fa8", "#56b4e9", "#806000"];
 const MARGIN = { left: 66, right: 14, top: 12, bottom: 48 };
 const LARGE = { ...MARGIN, width: 556, height: 330 };
 const SMALL = { ...MARGIN, width: 360, height: 240 };
-
-/** Round numbers from low to high, about `count` of them. */
-function ticks(low, high, count) {
-  const raw = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 2.5, 5, 10].map((each) => each * power).find((each) => each >= raw * 0.999);
-  const first = Math.ceil(low / step - 1e-9);
-  const last = Math.floor(high / step + 1e-9);
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9) + (step / power === 2.5 ? 1 : 0));
-  return Array.from({ length: last - first + 1 }, (unused, index) => (first + index) * step)
-    .map((value) => ({ value, text: fixed(value, decimals) }));
-}
-
-/** Smallest and largest, widened by a share of their distance; a single value gets room around it. */
-function extent(values, margin) {
-  let low = Infinity;
-  let high = -Infinity;
-  for (const value of values) {
-    if (!Number.isFinite(value)) continue;
-    low = Math.min(low, value);
-    high = Math.max(high, value);
-  }
-  if (low > high) return [0, 1];
-  const room = (high - low) * margin || Math.abs(high) * 0.1 || 1;
-  return [low - room, high + room];
-}
 
 const sample = (values, factor) => values.map((value) => (value === null ? NaN : value * factor));
 
@@ -51,15 +26,15 @@ function pathOf(series, place) {
   return path;
 }
 
-function axes(xRange, yRange, place, titles, size) {
+function axes(xRange, yRange, place, titles, size, scale) {
   const { width, height, left, right, top, bottom } = size;
   const lines = [];
-  for (const tick of ticks(...xRange, size.width / 90)) {
+  for (const tick of scale.x.ticks(...xRange, size.width / 90)) {
     const [x] = place(tick.value, yRange[0]);
     lines.push(drawing("path", { d: `M${x} ${top}V${height - bottom}`, stroke: tick.value === 0 ? "#8c959f" : "#e4e8ec" }),
       drawing("text", { x, y: height - bottom + 16, "text-anchor": "middle" }, tick.text));
   }
-  for (const tick of ticks(...yRange, 5)) {
+  for (const tick of scale.y.ticks(...yRange, 5)) {
     const [, y] = place(xRange[0], tick.value);
     lines.push(drawing("path", { d: `M${left} ${y}H${width - right}`, stroke: tick.value === 0 ? "#8c959f" : "#e4e8ec" }),
       drawing("text", { x: left - 7, y: y + 4, "text-anchor": "end" }, tick.text));
@@ -72,26 +47,26 @@ function axes(xRange, yRange, place, titles, size) {
 }
 
 /**
- * A chart. `series` are {name, x, y, colour, points}; `titles` {x, y}; `band` a half-width around zero to shade; `yRange`
- * fixes the axis. Two or more named series get a key.
+ * A chart. `series` are {name, x, y, colour, points, dashed}; `titles` {x, y}; `band` a half-width around zero to shade; `yRange`
+ * fixes the axis; `scale` {x, y} says how the axes run. Two or more named series get a key.
  */
-function chart({ series, titles, band, yRange, size = LARGE }) {
+function chart({ series, titles, band, yRange, scale = { x: LINEAR, y: LINEAR }, size = LARGE }) {
   const { width, height, left, right, top, bottom } = size;
-  const xs = extent(series.flatMap((each) => each.x), 0.02);
-  const ys = yRange ?? extent(series.flatMap((each) => each.y), 0.06);
-  const place = (x, y) => [left + ((x - xs[0]) / (xs[1] - xs[0])) * (width - left - right),
-    height - bottom - ((y - ys[0]) / (ys[1] - ys[0])) * (height - top - bottom)];
+  const xs = scale.x.extent(series.flatMap((each) => each.x), 0.02);
+  const ys = yRange ?? scale.y.extent(series.flatMap((each) => each.y), 0.06);
+  const place = (x, y) => [left + scale.x.share(x, xs) * (width - left - right),
+    height - bottom - scale.y.share(y, ys) * (height - top - bottom)];
   const shaded = band ? drawing("rect", { x: left, width: width - left - right, y: place(0, band)[1],
     height: place(0, -band)[1] - place(0, band)[1], fill: "#dfe5ea" }) : null;
   const lines = series.map((each) => drawing("path", { d: pathOf(each, place), fill: "none", stroke: each.colour,
     "stroke-width": each.points ? 2.6 : 2, "stroke-linecap": "round", "stroke-linejoin": "round",
-    "stroke-opacity": each.points ? 0.55 : 1 }));
+    "stroke-opacity": each.points ? 0.55 : 1, "stroke-dasharray": each.dashed ? "6 4" : null }));
   const picture = drawing("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${titles.y} over ${titles.x}` },
-    shaded, axes(xs, ys, place, titles, size), lines,
+    shaded, axes(xs, ys, place, titles, size, scale), lines,
     drawing("path", { d: `M${left} ${top}V${height - bottom}H${width - right}`, fill: "none", stroke: "#57606a" }));
   const named = series.filter((each) => each.name);
   return [picture, named.length > 1 ? element("div", { class: "controls" }, named.map((each) => legendKey(each.name, each.colour,
-    each.points ? "dotted" : ""))) : null];
+    each.points ? "dotted" : each.dashed ? "dashed" : ""))) : null];
 }
 
 /** `kind`: "dashed", "dotted" or nothing. */

@@ -46,8 +46,8 @@ function fillPage({ report, series }) {
   const sections = [
     (report.warnings ?? []).map((warning) => paragraph(warning, "warning")),
     errorTable(report), isFilled(next) ? element("p", { class: "next" }, element("strong", {}, "Next experiment: "), next) : null,
-    time?.node, trace(report), effects(report), residual(report), calibration(report), evidence(report), data(report),
-    signatures()];
+    time?.node, trace(report), effects(report), identifiability(report), residual(report), calibration(report), evidence(report),
+    data(report), signatures()];
   document.getElementById("main").append(...sections.flat().filter(Boolean));
   if (time) {
     window.traces = new Traces(time.host, series.records, viewOf(window.location.hash));

@@ -14,6 +14,8 @@ const STAGES = [{ key: "before", title: "as declared", colour: "declared" },
 // Friction laws that carry a name.
 const LAWS = { coulomb: "Coulomb", dahl: "Dahl", lugre: "LuGre" };
 
+const PROFILED = "Interval from the profile likelihood, not symmetric";
+
 const section = (title, ...content) => element("section", {}, element("h2", {}, title), content);
 const paragraph = (text, kind) => (isFilled(text) ? element("p", { class: kind ?? null }, text) : null);
 const code = (text) => element("code", {}, text);
@@ -69,17 +71,26 @@ function errorTable(report) {
     `about its mean. Calibrated: declared parameters moved within their tolerances. ${noiseNote(report.channels)}`, "note"));
 }
 
+/** The interval of a parameter; one from a profile carries a mark, for which `parameterTable` has a footnote. */
+function intervalOf(row) {
+  if (row.identified === false) return element("span", { class: "tag alert" }, "not determined by the data");
+  return row.profiled ? element("span", { title: PROFILED }, row.text.interval, element("span", { class: "mark" }, "†"))
+    : row.text.interval;
+}
+
 function parameterTable(parameters) {
-  const rows = Object.entries(parameters).map(([name, parameter]) => ({ name, ...parameter,
-    text: quantity(parameter.value, parameter.identified === false ? null : parameter.ci95, parameter.unit) }));
-  return table([
+  const rows = Object.entries(parameters).map(([name, parameter]) => {
+    const text = quantity(parameter.value, parameter.identified === false ? null : parameter.ci95, parameter.unit);
+    return { name, ...parameter, text, profiled: parameter.interval_from === "profile" && text.interval !== "" };
+  });
+  return [table([
     { title: "parameter", cell: (row) => [code(row.name), isFilled(row.meaning) ? element("div", { class: "note" }, row.meaning) : ""],
       text: true },
     { title: "value", number: true, cell: (row) => row.text.value },
     { title: "unit", cell: (row) => row.text.unit },
-    { title: "95 % interval", number: true, cell: (row) => (row.identified === false
-      ? element("span", { class: "tag alert" }, "not determined by the data") : row.text.interval) },
-  ], rows, (row) => (row.identified === false ? "undetermined" : null));
+    { title: "95 % interval", number: true, cell: intervalOf },
+  ], rows, (row) => (row.identified === false ? "undetermined" : null)),
+  rows.some((row) => row.profiled) ? paragraph(`† ${PROFILED}.`, "note") : null];
 }
 
 function evidenceText(evidence) {
@@ -128,24 +139,11 @@ function trace(report) {
     isFilled(points) && !drawn ? element("figure", {}, curveChart(null, points)) : null));
 }
 
-function residual(report) {
-  const correlation = Object.entries(report.residual?.autocorrelation ?? {});
-  if (!correlation.length) return null;
-  const figure = ([name, each]) => {
-    const lag = displayUnit("s", Math.max(...extent(each.lag_s, 0).map(Math.abs)));
-    const line = (key, title, colour) => (isFilled(each[key]) ? [{ name: title, x: sample(each.lag_s, lag.factor),
-      y: sample(each[key], 1), colour }] : []);
-    const series = [...line("before", "declared model", COLOURS.declared), ...line("after", "explained", COLOURS.explained)];
-    const lowest = extent(series.flatMap((one) => one.y), 0)[0];
-    return element("figure", {}, element("h3", {}, sentenceCase(words(name))), chart({ series, band: each.bound99,
-      size: SMALL,
-      yRange: [Math.min(-0.25, lowest * 1.1), 1.05], titles: { x: axisTitle("lag", lag.label), y: "autocorrelation" } }));
-  };
-  const node = section("What is left: autocorrelation of the residual",
-    paragraph("A residual that holds nothing but noise stays inside the grey band at 99 % of the lags.", "note"),
-    element("div", { class: "figures small" }, correlation.map(figure)));
-  node.classList.add("together");
-  return node;
+/** What no fit can decide from these records, whatever it found. */
+function identifiability(report) {
+  const told = (report.identifiability ?? []).filter((each) => isFilled(each?.text));
+  return told.length ? section("What the data cannot tell apart",
+    element("ul", { class: "sentences" }, told.map((each) => element("li", {}, each.text)))) : null;
 }
 
 /** How many tolerances a value has moved: a bar from the middle, one tolerance shaded, clipped at four. */

@@ -1,0 +1,63 @@
+#include "tests/report/sample_residual.hpp"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace hotfire::test {
+
+using nlohmann::json;
+
+json autocorrelation() {
+  std::vector<double> lag;
+  std::vector<double> before;
+  std::vector<double> after;
+  std::mt19937 generator(7);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  for (int index = 0; index <= 120; ++index) {
+    lag.push_back(0.004 * index);
+    before.push_back(std::exp(-0.01 * index) * std::cos(0.07 * index));
+    after.push_back(index == 0 ? 1.0 : noise(generator));
+  }
+  return {{"lag_s", lag}, {"before", before}, {"after", after}, {"bound99", 0.052}};
+}
+
+json input_correlation(bool independent) {
+  std::vector<double> lag;
+  std::vector<double> before;
+  std::vector<double> after;
+  std::mt19937 generator(8);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  for (int index = 0; index <= 120; ++index) {
+    const double response = std::exp(-0.02 * index) * std::sin(0.06 * index);
+    lag.push_back(0.004 * index);
+    before.push_back(0.7 * response);
+    after.push_back((independent ? 0.0 : 0.25 * response) + noise(generator));
+  }
+  return {{"lag_s", lag}, {"before", before}, {"after", after}, {"bound99", 0.052}, {"independent", independent}};
+}
+
+json by_frequency(double noise, double declared_error) {
+  json bands;
+  double from = 0.0;
+  for (double to = 1.0; to <= 256.0; to *= 2.0) {
+    const double share = noise * std::sqrt((to - from) / 256.0);
+    bands["from_hz"].push_back(from);
+    bands["to_hz"].push_back(to);
+    bands["before"].push_back(std::hypot(declared_error / (1.0 + to * to / 16.0), share));
+    bands["after"].push_back(from == 0.0 ? json() : json(1.1 * share));
+    bands["noise"].push_back(share);
+    from = to;
+  }
+  return bands;
+}
+
+json by_amplitude(double largest, double noise, double declared_error) {
+  return {{"from", {0.0, 0.1 * largest, 0.4 * largest}},
+          {"to", {0.1 * largest, 0.4 * largest, largest}},
+          {"before", {0.5 * declared_error, 0.7 * declared_error, declared_error}},
+          {"after", {noise, 1.02 * noise, 1.4 * noise}},
+          {"seconds", {3.2, 8.0, 12.8}}};
+}
+
+}  // namespace hotfire::test
