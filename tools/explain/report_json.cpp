@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tools/explain/curve.hpp"
+#include "tools/explain/identifiability.hpp"
 #include "tools/explain/report_evidence.hpp"
 #include "tools/explain/report_residual.hpp"
 #include "tools/explain/statistics.hpp"
@@ -308,8 +309,12 @@ json report_json(const ModelFile& model, const std::vector<Record>& records, con
               {"channels", channels_json(data, records, found)},
               {"calibration", calibration_json(found, estimated)},
               {"effects", effects_json(data, found, estimated)},
+              {"identifiability", json::array()},
               {"residual", residual_json(data, found.declared.prediction, found.explained.prediction)},
               {"search", search_json(found.trials)}};
+  for (const std::string& sentence : not_told_apart(found.explained.model)) {
+    report["identifiability"].push_back({{"text", sentence}});
+  }
   for (const Record& record : records) {
     report["records"].push_back({{"path", record.path.string()}, {"rows", record.rows}, {"period", record.period}});
   }

@@ -81,7 +81,7 @@ json joined_report(const std::vector<AxisReport>& reports) {
   joined["warnings"] = joined_texts(reports, "warnings");
   joined["held_out"] = joined_texts(reports, "held_out");
   joined["channels"] = joined["calibration"] = json::object();
-  joined["effects"] = joined["search"] = json::array();
+  joined["effects"] = joined["search"] = joined["identifiability"] = json::array();
   joined.erase("trace");
   json& residual = joined["residual"];
   residual.erase("next_experiment");
@@ -95,6 +95,10 @@ json joined_report(const std::vector<AxisReport>& reports) {
     }
     add_rows(own.report.at("effects"), own.axis, joined["effects"]);
     add_rows(own.report.at("search"), own.axis, joined["search"]);
+    for (const json& told : own.report.at("identifiability")) {
+      joined["identifiability"].push_back(
+          {{"text", fmt::format("{} axis: {}", own.axis, told.at("text").get<std::string>())}});
+    }
     const json& left = own.report.at("residual");
     residual["white"] = residual.at("white").get<bool>() && left.at("white").get<bool>();
     residual["unexplained_percent"] =
