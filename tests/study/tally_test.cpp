@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tools/study/cost.hpp"
 #include "tools/study/random.hpp"
 
 namespace hotfire::study {
@@ -102,6 +103,15 @@ TEST(StudyRandom, NormalNumbersHaveMeanZeroAndVarianceOne) {
   }
   DOUBLES_EQUAL(0.0, sum / kCount, 5.0 / std::sqrt(1.0 * kCount));
   DOUBLES_EQUAL(1.0, squares / kCount, 5.0 * std::sqrt(2.0 / kCount));
+}
+
+TEST(StudyTally, ALineIsFoundWithWhatThePointsMissOfIt) {
+  const CostLine exact = line_through({{10.0, 3.0, ""}, {20.0, 5.0, ""}, {40.0, 9.0, ""}});
+  DOUBLES_EQUAL(1.0, exact.fixed, 1e-12);
+  DOUBLES_EQUAL(0.2, exact.slope, 1e-12);
+  DOUBLES_EQUAL(1.0, exact.correlation, 1e-12);
+  // Of 1, 4, 9 over 1, 2, 3 the line is -10/3 + 4 x; it misses 2/3 of 98/3 square seconds.
+  DOUBLES_EQUAL(1.0 - 2.0 / 98.0, line_through({{1.0, 1.0, ""}, {2.0, 4.0, ""}, {3.0, 9.0, ""}}).correlation, 1e-12);
 }
 
 }  // namespace hotfire::study

@@ -13,6 +13,7 @@
 #include "tools/files/error.hpp"
 #include "tools/study/candidate_fit.hpp"
 #include "tools/study/case.hpp"
+#include "tools/study/cost.hpp"
 #include "tools/study/judge.hpp"
 #include "tools/study/orders.hpp"
 #include "tools/study/tally.hpp"
@@ -121,6 +122,31 @@ ExitStatus judge_folders(const Options& options) {
   return court.close();
 }
 
+/// What `cost` explains.
+struct CostArguments {
+  std::string folder;
+  unsigned threads = 1;
+  bool json = false;
+};
+
+ExitStatus cost_of_one(const CostArguments& arguments) {
+  google::SetCommandLineOption("minloglevel", "3");
+  const auto points = cost_by_length(std::filesystem::path(arguments.folder).lexically_normal(), arguments.threads);
+  std::cout << (arguments.json ? json_of(points).dump() + "\n" : table_of(points));
+  return ExitStatus::good;
+}
+
+void add_threads(CLI::App& command, unsigned& threads) {
+  command.add_option("--threads", threads, "threads of the finder")->check(CLI::Range(1U, 256U))->capture_default_str();
+}
+
+void add_cost(CLI::App& program, CostArguments& arguments) {
+  CLI::App* command = program.add_subcommand("cost", "What explaining a case takes, over the length of its records");
+  command->add_option("folder", arguments.folder, "folder with given/")->required();
+  add_threads(*command, arguments.threads);
+  command->add_flag("--json", arguments.json, "one JSON object");
+}
+
 /// What `fit` fits.
 struct FitArguments {
   std::string folder;
@@ -152,16 +178,12 @@ void add_fit(CLI::App& program, FitArguments& arguments) {
   command->add_option("folder", arguments.folder, "folder with given/ and kept/")->required();
   command->add_option("--effect", arguments.effect, "the candidate, as in physics.md section 5")->required();
   command->add_option("--law", arguments.law, "its law, if it has several");
-  command->add_option("--threads", arguments.threads, "threads of the fit")
-      ->check(CLI::Range(1U, 256U))
-      ->capture_default_str();
+  add_threads(*command, arguments.threads);
   command->add_flag("--json", arguments.json, "one JSON object");
 }
 
 void add_judging(CLI::App& command, Options& options) {
-  command.add_option("--threads", options.threads, "threads of the finder")
-      ->check(CLI::Range(1U, 256U))
-      ->capture_default_str();
+  add_threads(command, options.threads);
   command.add_flag("--json", options.json, "one JSON object a line: every case, then the summary");
 }
 
@@ -203,6 +225,8 @@ int run(int argc, char** argv) {
             hard);
   FitArguments candidate;
   add_fit(program, candidate);
+  CostArguments cost;
+  add_cost(program, cost);
   CLI::App* judging = program.add_subcommand("judge", "Explain cases that are there");
   judging->add_option("folders", folders.folders, "folders with given/ and kept/")->required();
   add_judging(*judging, folders);
@@ -226,6 +250,8 @@ int run(int argc, char** argv) {
     status = study(null_orders(null.selection), null);
   } else if (program.got_subcommand("fit")) {
     status = fit_one(candidate);
+  } else if (program.got_subcommand("cost")) {
+    status = cost_of_one(cost);
   } else {
     status = judge_folders(folders);
   }
