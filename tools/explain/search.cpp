@@ -204,6 +204,10 @@ class Search {
     const Screening<Family> screening(refiner_.for_screening(result_.calibrated.model), result_.calibrated.model, scales_,
                                       options_.threads);
     const auto screened = screening.run(unlisted_candidates<Family>(data_), "unlisted", options_.watch);
+    // Screening weighs a channel that is at its noise by all its rows, one that is far off and slow by the few that it has
+    // independent. Something is missing: where no candidate looks strong, the best of them are fitted all the same.
+    const double least_promise =
+        !screened.empty() && screened.front().criterion < -kStrongEvidence ? -kStrongEvidence : HUGE_VAL;
     std::vector<Trial> trials;
     std::vector<Assessed<Family>> finalists;
     std::optional<std::size_t> best;
@@ -211,7 +215,7 @@ class Search {
       trials.push_back(
           {round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "behind the finalists in screening"});
       finalists.emplace_back();
-      if (finalists.size() > kUnlistedFinalists || s.criterion > -kStrongEvidence || options_.watch.interrupted()) {
+      if (finalists.size() > kUnlistedFinalists || s.criterion > least_promise || options_.watch.interrupted()) {
         continue;
       }
       options_.watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
