@@ -12,6 +12,8 @@ namespace hotfire::explain {
 
 /// How many effects of a round are fitted jointly with everything else.
 inline constexpr std::size_t kFinalists = 3;
+/// How many terms of unknown law are.
+inline constexpr std::size_t kUnlistedFinalists = 4;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
 inline constexpr double kCloseVariant = 0.9;
 
@@ -53,6 +55,18 @@ std::vector<std::size_t> simplest_laws_first(const std::vector<std::size_t>& ord
     return std::pair(rank_of(a), screened[a].fitted.free.size()) < std::pair(rank_of(b), screened[b].fitted.free.size());
   });
   return sorted;
+}
+
+/// How many of the screened terms of unknown law, the best first, are fitted jointly: those that look strong. Screening
+/// weighs a channel that is at its noise by all its rows, one that is far off and slow by the few that it has independent;
+/// since something is missing, the best are fitted all the same where none looks strong.
+template <class Family>
+std::size_t unlisted_finalists(const std::vector<Screened<Family>>& screened) {
+  const auto strong =
+      static_cast<std::size_t>(std::count_if(screened.begin(), screened.end(), [](const Screened<Family>& candidate) {
+        return candidate.criterion <= -kStrongEvidence;
+      }));
+  return std::min(kUnlistedFinalists, strong == 0 ? screened.size() : strong);
 }
 
 }  // namespace hotfire::explain

@@ -20,9 +20,8 @@ namespace {
 constexpr double kLeastHeldOutDrop = 0.01;
 /// What is left beyond the noise is larger than the noise: worth a table of unknown law, and any effect that is supported.
 constexpr double kLargerThanNoise = 1.0;
-/// How many unlisted terms are fitted jointly, and what share of the listed effects' held-out error a term of unknown law
-/// has to stay below to take their place: it has more freedom than any of them.
-constexpr std::size_t kUnlistedFinalists = 4;
+/// A term of unknown law has to stay below this share of the listed effects' held-out error to take their place: it has more
+/// freedom than any of them.
 constexpr double kUnlistedAdvantage = 0.7;
 /// Rows no closer than this tell candidates apart [s]: the fastest that an axis does in its sensors is tens of hertz.
 constexpr double kRankingPeriod = 2e-3;
@@ -204,10 +203,7 @@ class Search {
     const Screening<Family> screening(refiner_.for_screening(result_.calibrated.model), result_.calibrated.model, scales_,
                                       options_.threads);
     const auto screened = screening.run(unlisted_candidates<Family>(data_), "unlisted", options_.watch);
-    // Screening weighs a channel that is at its noise by all its rows, one that is far off and slow by the few that it has
-    // independent. Something is missing: where no candidate looks strong, the best of them are fitted all the same.
-    const double least_promise =
-        !screened.empty() && screened.front().criterion < -kStrongEvidence ? -kStrongEvidence : HUGE_VAL;
+    const std::size_t wanted = unlisted_finalists(screened);
     std::vector<Trial> trials;
     std::vector<Assessed<Family>> finalists;
     std::optional<std::size_t> best;
@@ -215,7 +211,7 @@ class Search {
       trials.push_back(
           {round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "behind the finalists in screening"});
       finalists.emplace_back();
-      if (finalists.size() > kUnlistedFinalists || s.criterion > least_promise || options_.watch.interrupted()) {
+      if (finalists.size() > wanted || options_.watch.interrupted()) {
         continue;
       }
       options_.watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
