@@ -3,7 +3,8 @@
 #include <CppUTest/TestHarness.h>
 
 #include <cmath>
-#include <random>
+
+#include "tests/explain/coloured_noise.hpp"
 
 namespace {
 
@@ -14,14 +15,6 @@ constexpr std::size_t kRows = 20'000;
 /// A piston that stands still, read with noise of rms 1 that forgets itself by `stays` from row to row; the declared noise
 /// is `declared`, or not declared if that is zero.
 Dataset standing_piston(double stays, double declared) {
-  std::mt19937_64 generator(7);
-  std::normal_distribution<double> normal;
-  std::vector<double> measured;
-  double noise = normal(generator);
-  for (std::size_t i = 0; i < kRows; ++i) {
-    measured.push_back(noise);
-    noise = stays * noise + std::sqrt(1.0 - stays * stays) * normal(generator);
-  }
   Dataset data;
   data.channels = {"piston"};
   data.used = {true};
@@ -30,7 +23,7 @@ Dataset standing_piston(double stays, double declared) {
   Experiment experiment;
   experiment.period = 0.002;
   experiment.input.assign(kRows, 0.0);
-  experiment.measured = {measured};
+  experiment.measured = {hotfire::test::coloured_noise(kRows, stays, 7)};
   experiment.fitted = {{0, kRows}};
   data.experiments.push_back(experiment);
   return data;

@@ -2,8 +2,6 @@
 
 #include <CppUTest/TestHarness.h>
 
-#include <numeric>
-
 #include "tools/explain/candidates.hpp"
 
 namespace {

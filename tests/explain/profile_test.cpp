@@ -3,7 +3,6 @@
 #include <CppUTest/TestHarness.h>
 
 #include <cmath>
-#include <numeric>
 #include <random>
 
 #include "tools/explain/candidates.hpp"

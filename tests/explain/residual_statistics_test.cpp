@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <random>
+
+#include "tests/explain/coloured_noise.hpp"
 
 namespace {
 
@@ -14,18 +15,7 @@ using namespace hotfire::explain;
 constexpr std::size_t kRows = 20'000;
 constexpr double kPeriod = 0.002;
 
-/// Noise of rms 1 that forgets itself by `stays` from row to row.
-std::vector<double> noise(double stays, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::normal_distribution<double> normal;
-  std::vector<double> values;
-  double value = normal(generator);
-  for (std::size_t i = 0; i < kRows; ++i) {
-    values.push_back(value);
-    value = stays * value + std::sqrt(1.0 - stays * stays) * normal(generator);
-  }
-  return values;
-}
+std::vector<double> noise(double stays, unsigned seed) { return hotfire::test::coloured_noise(kRows, stays, seed); }
 
 /// A record whose model says that nothing moves: what is measured is what is left. Every fourth 2000 rows are held out.
 Dataset record(std::vector<double> input, std::vector<double> measured) {

@@ -72,7 +72,7 @@ class SimulationError : public ceres::CostFunction {
     residual = residual.cwiseProduct(weight_);
     double cost = residual.squaredNorm();
     for (std::size_t k = 0; k < fitted_.free.size(); ++k) {
-      cost += fitted_.free[k].surprise(u[k]) * fitted_.free[k].surprise(u[k]);
+      cost += fitted_.free[k].prior_cost(u[k]);
     }
     Eigen::Map<Eigen::VectorXd> out(residuals, count + 1);
     if (!want_jacobian) {
@@ -85,9 +85,7 @@ class SimulationError : public ceres::CostFunction {
     }
     Eigen::VectorXd gradient = weighted_.transpose() * residual;
     for (std::size_t k = 0; k < fitted_.free.size(); ++k) {
-      if (fitted_.free[k].has_prior()) {
-        gradient(static_cast<Eigen::Index>(k)) += fitted_.free[k].surprise(u[k]) / fitted_.free[k].prior_deviation;
-      }
+      gradient(static_cast<Eigen::Index>(k)) += fitted_.free[k].prior_slope(u[k]);
     }
     const Compressed compressed = compress(fitted_.normal, gradient, cost);
     out = compressed.residual;
@@ -125,10 +123,7 @@ class SimulationError : public ceres::CostFunction {
     weighted_.rightCols(own.cols()) = weight_.asDiagonal() * own;
     fitted_.normal = weighted_.transpose() * weighted_;
     for (Eigen::Index k = 0; k < count; ++k) {
-      const FreeParameter& parameter = fitted_.free[static_cast<std::size_t>(k)];
-      if (parameter.has_prior()) {
-        fitted_.normal(k, k) += 1.0 / (parameter.prior_deviation * parameter.prior_deviation);
-      }
+      fitted_.normal(k, k) += fitted_.free[static_cast<std::size_t>(k)].prior_curvature();
     }
     weighted_revision_ = tangent_.revision();
   }

@@ -103,17 +103,25 @@ double information_criterion(const std::vector<ChannelFit>& part, const std::vec
   return criterion + static_cast<double>(parameters) * std::log(std::max(2.0, samples));
 }
 
+std::vector<double> residual_of(const Experiment& experiment, const std::vector<double>& predicted, std::size_t channel,
+                                Block block) {
+  std::vector<double> residual;
+  residual.reserve(block.last - block.first);
+  for (std::size_t row = block.first; row < block.last; ++row) {
+    residual.push_back(experiment.measured[channel][row] - predicted[row]);
+  }
+  return residual;
+}
+
 std::vector<double> scored_residual(const Experiment& experiment, const std::vector<std::vector<double>>& predicted,
                                     std::size_t channel) {
-  const auto& measured = experiment.measured[channel];
   std::vector<double> residual;
-  if (measured.empty()) {
+  if (experiment.measured[channel].empty()) {
     return residual;
   }
   for (const Block& block : experiment.scored()) {
-    for (std::size_t row = block.first; row < block.last; ++row) {
-      residual.push_back(measured[row] - predicted[channel][row]);
-    }
+    const std::vector<double> part = residual_of(experiment, predicted[channel], channel, block);
+    residual.insert(residual.end(), part.begin(), part.end());
   }
   return residual;
 }

@@ -34,6 +34,10 @@ Goodness goodness(const Dataset& data, const Prediction& prediction);
 double information_criterion(const std::vector<ChannelFit>& part, const std::vector<ChannelFit>& effective,
                              std::size_t parameters);
 
+/// Measured minus predicted on a block of rows of a channel.
+std::vector<double> residual_of(const Experiment& experiment, const std::vector<double>& predicted, std::size_t channel,
+                                Block block);
+
 /// Measured minus predicted on the rows of one record that are compared; empty where the record lacks the channel.
 std::vector<double> scored_residual(const Experiment& experiment, const std::vector<std::vector<double>>& predicted,
                                     std::size_t channel);

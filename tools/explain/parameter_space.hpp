@@ -73,6 +73,10 @@ struct FreeParameter {
   bool has_prior() const { return prior_deviation > 0.0; }
   /// Distance from the prior in its deviations; 0 without one.
   double surprise(double u) const { return has_prior() ? (u - prior_center) / prior_deviation : 0.0; }
+  /// What the prior adds to a sum of squares at u, to half of that sum's slope, and to half of its curvature; 0 without one.
+  double prior_cost(double u) const { return surprise(u) * surprise(u); }
+  double prior_slope(double u) const { return has_prior() ? surprise(u) / prior_deviation : 0.0; }
+  double prior_curvature() const { return has_prior() ? 1.0 / (prior_deviation * prior_deviation) : 0.0; }
   bool is_declared() const { return scale == Scale::tolerance; }
   bool is_initial_state() const { return experiment >= 0; }
 };

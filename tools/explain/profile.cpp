@@ -14,9 +14,8 @@ namespace hotfire::explain {
 
 namespace {
 
-/// 95 % of chi-squared with one degree of freedom, and its root: where a parabola ends.
+/// 95 % of chi-squared with one degree of freedom.
 constexpr double kRise = 3.841459;
-constexpr double kDeviations = 1.959964;
 /// The error is taken for a parabola where it rises by this factor more or less.
 constexpr double kLikeAParabola = 1.3;
 /// An end is found where the error rises to within this of what it should; the interval is then told to 2 %.
@@ -45,7 +44,7 @@ class Surroundings {
     weighted_ = weight_.asDiagonal() * weighted_;
     normal_ = weighted_.transpose() * weighted_;
     for (std::size_t k = 0; k < optimum_.free.size(); ++k) {
-      normal_(index(k), index(k)) += prior_curvature(k);
+      normal_(index(k), index(k)) += optimum_.free[k].prior_curvature();
     }
     covariance_ = covariance_of(normal_);
     const auto least = least_of(optimum_.u, all);
@@ -88,11 +87,6 @@ class Surroundings {
  private:
   static Eigen::Index index(std::size_t k) { return static_cast<Eigen::Index>(k); }
 
-  double prior_curvature(std::size_t k) const {
-    const FreeParameter& parameter = optimum_.free[k];
-    return parameter.has_prior() ? 1.0 / (parameter.prior_deviation * parameter.prior_deviation) : 0.0;
-  }
-
   double within_range(std::size_t k, double u) const {
     const auto [low, high] = optimum_.free[k].range();
     return std::clamp(u, low, high);
@@ -117,7 +111,7 @@ class Surroundings {
   double cost_of(const Eigen::VectorXd& weighted_residual, const std::vector<double>& u) const {
     double cost = weighted_residual.squaredNorm();
     for (std::size_t k = 0; k < u.size(); ++k) {
-      cost += optimum_.free[k].surprise(u[k]) * optimum_.free[k].surprise(u[k]);
+      cost += optimum_.free[k].prior_cost(u[k]);
     }
     return cost;
   }
@@ -125,9 +119,7 @@ class Surroundings {
   Eigen::VectorXd gradient(const Eigen::VectorXd& weighted_residual, const std::vector<double>& u) const {
     Eigen::VectorXd gradient = weighted_.transpose() * weighted_residual;
     for (std::size_t k = 0; k < u.size(); ++k) {
-      if (optimum_.free[k].has_prior()) {
-        gradient(index(k)) += optimum_.free[k].surprise(u[k]) / optimum_.free[k].prior_deviation;
-      }
+      gradient(index(k)) += optimum_.free[k].prior_slope(u[k]);
     }
     return gradient;
   }
@@ -182,7 +174,7 @@ std::optional<double> end_of(const Surroundings<Family>& surroundings, std::size
   const double most = surroundings.most_deviations(k, side);
   double inside = 0.0;
   double outside = most;
-  double tried = std::min(kDeviations, most);
+  double tried = std::min(kTwoSided95, most);
   for (int trial = 0; trial < kMostTrials && outside - inside > 1e-3 * outside; ++trial) {
     const std::optional<double> rise = surroundings.rise(k, side * tried);
     if (!rise) {
@@ -203,10 +195,6 @@ std::optional<double> end_of(const Surroundings<Family>& surroundings, std::size
 
 template <class Family>
 Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Family>& fitted, unsigned threads) {
-  Surroundings<Family> surroundings(evaluator, fitted);
-  if (fitted.chaotic || fitted.free.empty() || !surroundings.differentiate(threads)) {
-    return {};
-  }
   std::vector<std::size_t> wanted;
   const std::vector<Estimate> estimated = estimates(fitted.free, fitted.u, fitted.normal);
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
@@ -215,10 +203,14 @@ Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Fam
       wanted.push_back(k);
     }
   }
+  Surroundings<Family> surroundings(evaluator, fitted);
+  if (fitted.chaotic || wanted.empty() || !surroundings.differentiate(threads)) {
+    return {};
+  }
   constexpr std::array kSides{-1.0, 1.0};
   std::vector<std::array<std::optional<double>, 2>> rises(wanted.size());
   parallel_for(2 * wanted.size(), threads, [&](std::size_t i) {
-    rises[i / 2][i % 2] = surroundings.rise_on_ridge(wanted[i / 2], kSides[i % 2] * kDeviations);
+    rises[i / 2][i % 2] = surroundings.rise_on_ridge(wanted[i / 2], kSides[i % 2] * kTwoSided95);
   });
   std::vector<std::array<std::optional<double>, 2>> ends(wanted.size());
   parallel_for(2 * wanted.size(), threads, [&](std::size_t i) {

@@ -18,7 +18,7 @@ namespace {
 /// 99 % of a normal distribution.
 constexpr double kTwoSided99 = 2.575829;
 /// At 99 % bounds one lag in a hundred is outside by chance; more than three are not, nor is one that is 4.1 standard
-/// deviations off, which chance does in one of 240 hundreds of lags.
+/// deviations off, which chance does in one of 260 hundreds of lags.
 constexpr std::size_t kOutsideByChance = 3;
 constexpr double kFarOutside = 1.6;
 /// Length of the stretches that are sorted by their amplitude [s].
@@ -52,16 +52,6 @@ std::vector<double> band_edges(double highest) {
 }
 
 double nyquist(const Experiment& experiment) { return 0.5 / experiment.period; }
-
-std::vector<double> residual_of(const Experiment& experiment, const std::vector<double>& predicted, std::size_t channel,
-                                Block block) {
-  std::vector<double> residual;
-  residual.reserve(block.last - block.first);
-  for (std::size_t row = block.first; row < block.last; ++row) {
-    residual.push_back(experiment.measured[channel][row] - predicted[row]);
-  }
-  return residual;
-}
 
 /// Adds the square of a block's residual, times its rows, to the bands in which it lies.
 void add_spectrum(const std::vector<double>& residual, double period, const std::vector<double>& edges,

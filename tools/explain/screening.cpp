@@ -61,11 +61,8 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   prior_.setZero(static_cast<Eigen::Index>(current.free.size()));
   prior_gradient_ = prior_;
   for (std::size_t k = 0; k < current.free.size(); ++k) {
-    const FreeParameter& parameter = current.free[k];
-    if (parameter.has_prior()) {
-      prior_(static_cast<Eigen::Index>(k)) = 1.0 / (parameter.prior_deviation * parameter.prior_deviation);
-      prior_gradient_(static_cast<Eigen::Index>(k)) = parameter.surprise(current.u[k]) / parameter.prior_deviation;
-    }
+    prior_(static_cast<Eigen::Index>(k)) = current.free[k].prior_curvature();
+    prior_gradient_(static_cast<Eigen::Index>(k)) = current.free[k].prior_slope(current.u[k]);
   }
   const Eigen::MatrixXd weighted = weight_.asDiagonal() * frozen_.jacobian;
   Eigen::MatrixXd matrix = weighted.transpose() * weighted;

@@ -8,7 +8,6 @@ namespace hotfire::explain {
 
 namespace {
 
-constexpr double kTwoSided95 = 1.959964;
 /// A declared value further than this many tolerances from where it was declared is reported.
 constexpr double kFarFromDeclared = 2.5;
 

@@ -9,6 +9,9 @@
 
 namespace hotfire::explain {
 
+/// Standard deviations to either side that hold 95 % of a normal distribution.
+inline constexpr double kTwoSided95 = 1.959964;
+
 /// A fitted value with its 95 % interval.
 struct Estimate {
   double value = 0.0;
@@ -22,9 +25,8 @@ struct Estimate {
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& normal);
 
 /// Estimates of all free parameters from J^T J at the optimum. The residuals were tempered by their effective sample size,
-/// so its inverse is the covariance. A
-/// parameter is determined if its half interval is under a factor of three (searched in logarithms), under its own size
-/// (linear), or under 0.9 of its tolerance's.
+/// so its inverse is the covariance. A parameter is determined if its half interval is under a factor of three (searched in
+/// logarithms), under its own size (linear), or under 0.9 of its tolerance's.
 std::vector<Estimate> estimates(const std::vector<FreeParameter>& free, const std::vector<double>& u,
                                 const Eigen::MatrixXd& normal);
 

@@ -137,7 +137,7 @@ ExitStatus cost_of_one(const CostArguments& arguments) {
 }
 
 void add_threads(CLI::App& command, unsigned& threads) {
-  command.add_option("--threads", threads, "threads of the finder")->check(CLI::Range(1U, 256U))->capture_default_str();
+  command.add_option("--threads", threads, "threads to use")->check(CLI::Range(1U, 256U))->capture_default_str();
 }
 
 void add_cost(CLI::App& program, CostArguments& arguments) {

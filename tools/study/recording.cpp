@@ -89,47 +89,39 @@ void cut_start(const Condition& condition, Record& record) {
   record.start += static_cast<double>(rows) * record.period;
 }
 
-/// A controller about an axis, with the engine as its sensor reads it.
-class Loop {
- public:
-  Loop(const CaseOrder& order, std::uint64_t record)
-      : gain_(condition_of(order.condition).loop_gain),
-        noise_factor_(order.noise_factor),
-        random_(order.name, order.seed, kControllerPart + 100 * record) {}
+/// Rows read at the times of the commands, the first in equilibrium.
+ReferenceRows rows_of(const ReferenceAxis& axis, const Profile& profile, double period, const Controller& controller = {}) {
+  return integrate_reference(axis, one_row_later(profile.commands), period, kSettling, kIntegratorTolerance, nullptr,
+                             controller);
+}
 
-  /// Runs the axis; the commands in the profile become those that were sent.
-  Record run(const ReferenceAxis& axis, const Profile& profile, double period, std::size_t channels) {
-    std::vector<double> read;
-    std::vector<double> sent;
-    const Controller controller = [&](double asked, const std::array<double, 3>& reading) {
-      read.push_back(noisy(reading[kEngine], kSensorGrades[kEngine], noise_factor_, random_));
-      sent.push_back(asked + gain_ * (asked - read.back()));
-      return sent.back();
-    };
-    const ReferenceRows rows = integrate_reference(axis, one_row_later(profile.commands), period, kSettling,
-                                                   kIntegratorTolerance, nullptr, controller);
-    controller(profile.commands.back(), rows.back());
-    // What is sent on a row's reading is that row's command; the first one sent was before the first row.
-    sent.erase(sent.begin());
-    read.erase(read.begin());
-    Record record = record_of(profile.name, period, sent, rows, channels);
-    readings(record, kEngine) = read;
-    return record;
-  }
-
- private:
-  double gain_;
-  double noise_factor_;
-  Random random_;
-};
+/// An axis with a controller about it that reads the engine's sensor; the record has the commands that were sent.
+Record recorded_in_a_loop(const CaseOrder& order, const ReferenceAxis& axis, const Profile& profile, std::uint64_t record,
+                          std::size_t channels) {
+  const Condition& condition = condition_of(order.condition);
+  Random random(order.name, order.seed, kControllerPart + 100 * record);
+  std::vector<double> read;
+  std::vector<double> sent;
+  const Controller controller = [&](double asked, const std::array<double, 3>& reading) {
+    read.push_back(noisy(reading[kEngine], kSensorGrades[kEngine], order.noise_factor, random));
+    sent.push_back(asked + condition.loop_gain * (asked - read.back()));
+    return sent.back();
+  };
+  const ReferenceRows rows = rows_of(axis, profile, condition.period, controller);
+  controller(profile.commands.back(), rows.back());
+  // What is sent on a row's reading is that row's command; the first one sent was before the first row.
+  sent.erase(sent.begin());
+  read.erase(read.begin());
+  Record looped = record_of(profile.name, condition.period, sent, rows, channels);
+  readings(looped, kEngine) = read;
+  return looped;
+}
 
 std::size_t channels_of(const CaseOrder& order) { return measures_load_pressure(order) ? 3 : 2; }
 
 }  // namespace
 
-ReferenceRows run(const ReferenceAxis& axis, const Profile& profile) {
-  return integrate_reference(axis, one_row_later(profile.commands), kSample, kSettling, kIntegratorTolerance);
-}
+ReferenceRows run(const ReferenceAxis& axis, const Profile& profile) { return rows_of(axis, profile, kSample); }
 
 Record unseen_record(const CaseOrder& order, const Profile& profile, const ReferenceRows& rows) {
   Record record = record_of(profile.name, kSample, profile.commands, rows, channels_of(order));
@@ -147,10 +139,9 @@ Given recorded(const CaseOrder& order, const ReferenceAxis& axis, const std::vec
     const bool in_a_loop = condition.loop_gain != 0.0;
     Record record;
     if (in_a_loop) {
-      record = Loop(order, given.records.size()).run(axis, profile, condition.period, channels);
+      record = recorded_in_a_loop(order, axis, profile, given.records.size(), channels);
     } else {
-      const ReferenceRows rows =
-          integrate_reference(axis, one_row_later(profile.commands), condition.period, kSettling, kIntegratorTolerance);
+      const ReferenceRows rows = rows_of(axis, profile, condition.period);
       record = record_of(profile.name, condition.period, profile.commands, rows, channels);
       add_fault(condition, record);
     }
