@@ -63,10 +63,9 @@ TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAnd
   }
   std::vector<std::size_t> all(free.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;
-  CHECK(evaluator.differentiate(base, free, u, all, 2, residual, jacobian));
-  LONGS_EQUAL(2 * 2 * 400, residual.size());
+  CHECK(evaluator.differentiate(base, free, u, all, 2, jacobian));
+  LONGS_EQUAL(2 * 2 * 400, jacobian.rows());
   for (std::size_t k = 0; k < free.size(); ++k) {
     // Central differences: truncation h^2 = 1e-8 of the third derivative; rounding of a simulation, 1e-13 of a residual of a
     // thousand, over 2 h in 1600 rows is 2e-5.
@@ -91,14 +90,60 @@ TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
   const auto free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
   const std::vector<double> u{0.3, -0.2};
   const std::vector<std::size_t> all{0, 1};
-  Eigen::VectorXd one_residual;
-  Eigen::VectorXd two_residual;
   Eigen::MatrixXd one;
   Eigen::MatrixXd two;
-  evaluator.differentiate(base, free, u, all, 1, one_residual, one);
-  evaluator.differentiate(base, free, u, all, 2, two_residual, two);
+  evaluator.differentiate(base, free, u, all, 1, one);
+  evaluator.differentiate(base, free, u, all, 2, two);
   CHECK((one.array() == two.array()).all());
-  CHECK((one_residual.array() == two_residual.array()).all());
+  Prediction one_prediction;
+  Prediction two_prediction;
+  evaluator.predict(base, free, u, 1, one_prediction);
+  evaluator.predict(base, free, u, 2, two_prediction);
+  CHECK(one_prediction == two_prediction);
+}
+
+TEST(Evaluator, DerivativesMayBeThoseOfLongerStepsThanItsReadings) {
+  const Dataset data = smooth_dataset();
+  const PlainParameters<SimplexFamily> base;
+  const auto free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  const std::vector<double> u{0.3, -0.2};
+  const std::vector<std::size_t> all{0, 1};
+  const Evaluator<SimplexFamily> mixed(data, Resolution::coarse, Resolution::rough);
+  Eigen::MatrixXd slopes;
+  Eigen::MatrixXd rough_slopes;
+  mixed.differentiate(base, free, u, all, 1, slopes);
+  Evaluator<SimplexFamily>(data, Resolution::rough).differentiate(base, free, u, all, 1, rough_slopes);
+  CHECK((slopes.array() == rough_slopes.array()).all());
+  Prediction readings;
+  Prediction coarse_readings;
+  mixed.predict(base, free, u, 1, readings);
+  Evaluator<SimplexFamily>(data, Resolution::coarse).predict(base, free, u, 1, coarse_readings);
+  CHECK(readings == coarse_readings);
+}
+
+TEST(Evaluator, ShiftedLongStepsAreRightWhereTheShiftWasTakenAndNearlySoNearby) {
+  const Dataset data = smooth_dataset();
+  const PlainParameters<SimplexFamily> base;
+  const auto free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  const std::vector<double> there{0.3, -0.2};
+  const std::vector<double> nearby{0.8, 0.3};
+  const Evaluator<SimplexFamily> fine(data, Resolution::fine);
+  const Evaluator<SimplexFamily> rough(data, Resolution::rough);
+  const auto readings = [&](const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u) {
+    Prediction prediction;
+    CHECK(evaluator.predict(base, free, u, 1, prediction));
+    return evaluator.residuals(prediction);
+  };
+  Prediction by_rough;
+  Prediction by_fine;
+  CHECK(rough.predict(base, free, there, 1, by_rough) && fine.predict(base, free, there, 1, by_fine));
+  const Evaluator<SimplexFamily> shifted = rough.shifted(by_rough, by_fine);
+  const double lost = (readings(rough, there) - readings(fine, there)).norm();
+  // What is left is the rounding of two subtractions.
+  CHECK((readings(shifted, there) - readings(fine, there)).norm() <= 1e-9 * lost);
+  // Half a tolerance away in each: by a hundredth of the inertia and a fortieth of the stiffness, and the error of a step
+  // with both. A fifth leaves room for its higher powers.
+  CHECK((readings(shifted, nearby) - readings(fine, nearby)).norm() <= 0.2 * lost);
 }
 
 TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARipple) {
@@ -116,9 +161,8 @@ TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARippl
   LONGS_EQUAL(2, free.size());
   const std::vector<double> u{0.2, free.back().coordinate(free.back().unit_size)};
   const std::vector<std::size_t> all{0, 1};
-  Eigen::VectorXd residual;
   Eigen::MatrixXd wide;
-  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::wide, 2, residual, wide) == Slopes::wide);
+  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::wide, 2, wide) == Slopes::wide);
   for (std::size_t k = 0; k < free.size(); ++k) {
     const double step = wide_step(free[k]);
     std::vector<double> at = u;
@@ -133,6 +177,6 @@ TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARippl
     CHECK((difference - wide.col(static_cast<Eigen::Index>(k))).norm() <= 1e-12 * difference.norm());
   }
   Eigen::MatrixXd exact;
-  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::exact, 2, residual, exact) == Slopes::exact);
+  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::exact, 2, exact) == Slopes::exact);
   CHECK((exact - wide).norm() > 0.0);
 }

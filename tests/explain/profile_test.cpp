@@ -66,10 +66,9 @@ struct LeakingAxis {
  private:
   void measure(double told) {
     const std::vector<std::size_t> all{0};
-    Eigen::VectorXd residual;
     Eigen::MatrixXd jacobian;
     const Evaluator<SimplexFamily> silent(data, Resolution::fine);
-    CHECK_TRUE(silent.differentiate(fitted.base, fitted.free, fitted.u, all, 1, residual, jacobian));
+    CHECK_TRUE(silent.differentiate(fitted.base, fitted.free, fitted.u, all, 1, jacobian));
     data.noise.assign(3, told * jacobian.norm());
     Prediction truth;
     CHECK_TRUE(silent.predict(fitted.base, fitted.free, fitted.u, 1, truth));

@@ -51,7 +51,7 @@ bool screens_roughly(bool with_pressure) {
   Fitted<SimplexFamily> declared;
   declared.base = std::get<SimplexParameters>(model.parameters);
   declared.temper.assign(data.channels.size(), 1.0);
-  return &refiner.for_screening(declared) == &rough;
+  return refiner.for_screening(declared).resolution() == Resolution::rough;
 }
 
 }  // namespace

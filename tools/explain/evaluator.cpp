@@ -6,8 +6,10 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
+#include <numeric>
 
 #include "model/step_size.hpp"
 #include "tools/explain/parallel.hpp"
@@ -137,17 +139,11 @@ struct Chunk {
   }
 };
 
-/// Puts the readings of one experiment where they belong in residual and Jacobian, row by row in ascending order.
+/// Puts the derivatives of one experiment's readings where they belong in the Jacobian, row by row in ascending order.
 class Writer {
  public:
-  Writer(const Dataset& data, const std::vector<Stretch>& stretches, std::size_t experiment, Eigen::VectorXd& residual,
-         Eigen::MatrixXd& jacobian)
-      : data_(data),
-        experiment_(data.experiments[experiment]),
-        residual_(residual),
-        jacobian_(jacobian),
-        next_(data.channels.size(), 0),
-        by_channel_(data.channels.size()) {
+  Writer(const Dataset& data, const std::vector<Stretch>& stretches, std::size_t experiment, Eigen::MatrixXd& jacobian)
+      : data_(data), jacobian_(jacobian), next_(data.channels.size(), 0), by_channel_(data.channels.size()) {
     for (const Stretch& s : stretches) {
       if (s.experiment == experiment) {
         by_channel_[s.channel].push_back(&s);
@@ -167,9 +163,6 @@ class Writer {
     }
     const auto i = static_cast<Eigen::Index>(stretches[next]->offset + row - stretches[next]->first);
     const double weight = 1.0 / data_.noise[channel];
-    if (chunk.first_column == 0) {
-      residual_(i) = (reading.a - experiment_.measured[channel][row]) * weight;
-    }
     const auto lanes = static_cast<Eigen::Index>(chunk.wanted.size());
     for (Eigen::Index lane = 0; lane < lanes; ++lane) {
       jacobian_(i, chunk.first_column + lane) = reading.v[lane] * weight;
@@ -179,8 +172,6 @@ class Writer {
 
  private:
   const Dataset& data_;
-  const Experiment& experiment_;
-  Eigen::VectorXd& residual_;
   Eigen::MatrixXd& jacobian_;
   std::vector<std::size_t> next_;
   std::vector<std::vector<const Stretch*>> by_channel_;
@@ -189,7 +180,11 @@ class Writer {
 }  // namespace
 
 template <class Family>
-Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution) : data_(data), resolution_(resolution) {
+Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution, Resolution slopes)
+    : data_(data), resolution_(resolution), slopes_(slopes), longest_first_(data.experiments.size()) {
+  std::iota(longest_first_.begin(), longest_first_.end(), std::size_t{0});
+  std::stable_sort(longest_first_.begin(), longest_first_.end(),
+                   [&](std::size_t a, std::size_t b) { return data.experiments[a].rows() > data.experiments[b].rows(); });
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
     const Experiment& experiment = data.experiments[e];
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
@@ -225,11 +220,12 @@ template <class Family>
 bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
                                 unsigned threads, Prediction& prediction) const {
   using Plant = typename Family::template Plant<double>;
-  const auto plants =
-      plants_by_period<Plant>(data_, with_values(base, free, u), [&](const Experiment& e) { return steps_of(base, e); });
+  const auto plants = plants_by_period<Plant>(data_, with_values(base, free, u),
+                                              [&](const Experiment& e) { return steps_of(base, e, resolution_); });
   prediction.resize(data_.experiments.size());
   std::atomic<bool> finite{true};
-  parallel_for(data_.experiments.size(), threads, [&](std::size_t e) {
+  parallel_for(data_.experiments.size(), threads, [&](std::size_t task) {
+    const std::size_t e = longest_first_[task];
     const Experiment& experiment = data_.experiments[e];
     auto& channels = prediction[e];
     channels.resize(data_.channels.size());
@@ -239,16 +235,28 @@ bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreePara
     const auto& plant = *plants.at(experiment.period);
     const auto start = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
     auto state = initial_state(plant, data_, experiment, start);
-    if (!run_experiment(plant, data_, experiment, state, steps_of(base, experiment),
+    if (!run_experiment(plant, data_, experiment, state, steps_of(base, experiment, resolution_),
                         [&](std::size_t row, const auto& readings) {
                           for (std::size_t c = 0; c < readings.size(); ++c) {
-                            channels[c][row] = readings[c];
+                            channels[c][row] = readings[c] + (shift_.empty() ? 0.0 : shift_[e][c][row]);
                           }
                         })) {
       finite = false;
     }
   });
   return finite;
+}
+
+template <class Family>
+Evaluator<Family> Evaluator<Family>::shifted(const Prediction& own, const Prediction& finer) const {
+  Evaluator moved = *this;
+  moved.shift_ = finer;
+  for (std::size_t e = 0; e < own.size(); ++e) {
+    for (std::size_t c = 0; c < own[e].size(); ++c) {
+      std::transform(finer[e][c].begin(), finer[e][c].end(), own[e][c].begin(), moved.shift_[e][c].begin(), std::minus<>{});
+    }
+  }
+  return moved;
 }
 
 template <class Family>
@@ -276,21 +284,20 @@ std::vector<double> Evaluator<Family>::squares_by_channel(const Eigen::VectorXd&
 }
 
 template <class Family>
-int Evaluator<Family>::steps_of(const Parameters& base, const Experiment& experiment) const {
+int Evaluator<Family>::steps_of(const Parameters& base, const Experiment& experiment, Resolution resolution) const {
   const int fine = model::steps_per_period<typename Family::template Plant<double>>(base, experiment.period);
-  const int times_longer = resolution_ == Resolution::fine ? 1 : resolution_ == Resolution::coarse ? 2 : 4;
+  const int times_longer = resolution == Resolution::fine ? 1 : resolution == Resolution::coarse ? 2 : 4;
   return (fine + times_longer - 1) / times_longer;
 }
 
 template <class Family>
 bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
-                                      std::span<const std::size_t> wanted, unsigned threads, Eigen::VectorXd& residual,
+                                      std::span<const std::size_t> wanted, unsigned threads,
                                       Eigen::MatrixXd& jacobian) const {
   using Plant = typename Family::template Plant<Dual>;
-  residual.resize(static_cast<Eigen::Index>(fit_rows_));
   jacobian.resize(static_cast<Eigen::Index>(fit_rows_), static_cast<Eigen::Index>(wanted.size()));
   std::vector<Chunk> chunks;
-  for (std::size_t first = 0; first == 0 || first < wanted.size(); first += kLanes) {
+  for (std::size_t first = 0; first < wanted.size(); first += kLanes) {
     const std::size_t count = std::min(kLanes, wanted.size() - first);
     chunks.push_back({free, u, wanted.subspan(first, count), static_cast<Eigen::Index>(first)});
   }
@@ -299,26 +306,26 @@ bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const Fr
   parallel_for(chunks.size(), threads, [&](std::size_t c) {
     auto parameters = with_scalar<typename Plant::Parameters>(plain);
     chunks[c].seed_all(parameters);
-    plants[c] = plants_by_period<Plant>(data_, parameters, [&](const Experiment& e) { return steps_of(base, e); });
+    plants[c] = plants_by_period<Plant>(data_, parameters, [&](const Experiment& e) { return steps_of(base, e, slopes_); });
   });
 
   std::atomic<bool> finite{true};
   parallel_for(chunks.size() * data_.experiments.size(), threads, [&](std::size_t task) {
     const Chunk& chunk = chunks[task % chunks.size()];
-    const std::size_t e = task / chunks.size();
+    const std::size_t e = longest_first_[task / chunks.size()];
     const Experiment& experiment = data_.experiments[e];
     const auto& plant = *plants[task % chunks.size()].at(experiment.period);
     const auto start = start_of<Dual>(data_, e, free, [&](std::size_t k) { return chunk.value(k); });
     // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
     auto state = std::make_unique<typename Plant::State>(initial_state(plant, data_, experiment, start));
-    Writer writer(data_, stretches_, e, residual, jacobian);
+    Writer writer(data_, stretches_, e, jacobian);
     bool good = true;
     const auto sink = [&](std::size_t row, const auto& readings) {
       for (std::size_t channel = 0; channel < readings.size(); ++channel) {
         good = writer.write(row, channel, readings[channel], chunk) && good;
       }
     };
-    const bool ran = run_experiment(plant, data_, experiment, *state, steps_of(base, experiment), sink);
+    const bool ran = run_experiment(plant, data_, experiment, *state, steps_of(base, experiment, slopes_), sink);
     if (!ran || !good) {
       finite = false;
     }

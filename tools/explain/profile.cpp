@@ -37,8 +37,7 @@ class Surroundings {
   bool differentiate(unsigned threads) {
     std::vector<std::size_t> all(optimum_.free.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    Eigen::VectorXd residual;
-    if (!evaluator_.differentiate(optimum_.base, optimum_.free, optimum_.u, all, threads, residual, weighted_)) {
+    if (!evaluator_.differentiate(optimum_.base, optimum_.free, optimum_.u, all, threads, weighted_)) {
       return false;
     }
     weighted_ = weight_.asDiagonal() * weighted_;

@@ -16,8 +16,9 @@ namespace {
 /// ripples over its parameters. They are as high as such rests are apart: a few times the sensor noise, or nobody would see
 /// them.
 constexpr double kHighestRipple = 3.0;
-/// Rough steps serve where they change the residuals of every channel by less than this share of them.
-constexpr double kLostToSteps = 0.1;
+/// Rough steps serve where they change the residuals of every channel by less than this share of them. They are shifted by
+/// that change, and what is left of it is the square of a share.
+constexpr double kLostToSteps = 0.5;
 
 /// True if two models leave nearly the same of every channel. One that is met to its noise counts with all its rows, and so
 /// it must not be lost in the residuals of another that is far off.
@@ -36,26 +37,25 @@ bool are_alike(const Evaluator<Family>& evaluator, const Eigen::VectorXd& left, 
 }  // namespace
 
 template <class Family>
-const Evaluator<Family>& Refiner<Family>::for_screening(const Fitted<Family>& current) const {
-  if (&rough_ == &coarse_) {
-    return coarse_;
-  }
+std::optional<Evaluator<Family>> Refiner<Family>::rough_about(const Fitted<Family>& model) const {
   Prediction by_rough;
   Prediction by_coarse;
-  if (!rough_.predict(current.base, current.free, current.u, threads_, by_rough) ||
-      !coarse_.predict(current.base, current.free, current.u, threads_, by_coarse)) {
-    return coarse_;
+  if (&rough_ == &coarse_ || !rough_.predict(model.base, model.free, model.u, threads_, by_rough) ||
+      !coarse_.predict(model.base, model.free, model.u, threads_, by_coarse) ||
+      !are_alike(coarse_, coarse_.residuals(by_coarse), rough_.residuals(by_rough))) {
+    return std::nullopt;
   }
-  return are_alike(coarse_, coarse_.residuals(by_coarse), rough_.residuals(by_rough)) ? rough_ : coarse_;
+  return rough_.shifted(by_rough, by_coarse);
 }
 
 template <class Family>
 Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Effort& effort) const {
   Effort rest = effort;
   Fitted<Family> start = fitted;
-  if (effort.passes > 1 && &for_screening(fitted) == &rough_) {
+  const auto rough = effort.passes > 1 ? rough_about(fitted) : std::nullopt;
+  if (rough) {
     Assessed<Family> near =
-        refined(rough_, rough_, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
+        refined(*rough, *rough, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
     if (near.good()) {
       start = std::move(near.model);
       --rest.passes;
@@ -66,7 +66,10 @@ Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Eff
 
 template <class Family>
 Assessed<Family> Refiner<Family>::polished(int round, Assessed<Family> winner, const Candidate& candidate) const {
-  return from_other_starts(round, over_ripples(std::move(winner)), candidate);
+  if (excess_over_noise(data_, winner.prediction) < kHighestRipple) {
+    winner = over_ripples(std::move(winner));
+  }
+  return from_other_starts(round, std::move(winner), candidate);
 }
 
 template <class Family>
@@ -122,7 +125,8 @@ Assessed<Family> Refiner<Family>::from_other_values(const Assessed<Family>& winn
       own.push_back(winner.model.u[k]);
     }
   }
-  const Screening<Family> screening(for_screening(anchor), anchor, scales_, threads_);
+  const Evaluator<Family> evaluator = for_screening(anchor);
+  const Screening<Family> screening(evaluator, anchor, scales_, threads_);
   const Screened<Family> again = screening.restart(candidate, own, watch_);
   return again.good ? ranked(again.fitted, kRanking) : Assessed<Family>{};
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "tools/explain/assessed.hpp"
 #include "tools/explain/screening.hpp"
 
@@ -15,17 +17,17 @@ class Refiner {
           const Evaluator<Family>& fine, const Scales& scales, unsigned threads, const Watch& watch)
       : data_(data), rough_(rough), coarse_(coarse), fine_(fine), scales_(scales), threads_(threads), watch_(watch) {}
 
-  /// What candidates beside a model are screened on: rough steps where the error that they make is small against what the
-  /// model leaves.
-  const Evaluator<Family>& for_screening(const Fitted<Family>& current) const;
+  /// What candidates beside a model are screened on: rough steps, shifted to what coarse ones predict of that model, where
+  /// the shift is small against what the model leaves.
+  Evaluator<Family> for_screening(const Fitted<Family>& current) const { return rough_about(current).value_or(coarse_); }
 
   /// Fitted as its rank needs it, the way to near the end under rough steps where they serve.
   Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const;
   /// Fitted as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted) const { return refined(fine_, fine_, threads_, fitted, kFinal); }
 
-  /// A winner that does not reach the noise may sit in a local minimum: it is fitted over the ripples of its error, and then
-  /// from other starts. The best of all.
+  /// A winner that does not reach the noise may sit in a local minimum: it is fitted over the ripples of its error, where it
+  /// is as near as they are high, and then from other starts. The best of all.
   Assessed<Family> polished(int round, Assessed<Family> winner, const Candidate& candidate) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
   Assessed<Family> from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const;
@@ -34,6 +36,7 @@ class Refiner {
   Assessed<Family> without(const Fitted<Family>& model, const Candidate& candidate) const;
 
  private:
+  std::optional<Evaluator<Family>> rough_about(const Fitted<Family>& model) const;
   bool is_done(const Assessed<Family>& winner) const;
   Assessed<Family> over_ripples(Assessed<Family> fitted) const;
   Assessed<Family> from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const;

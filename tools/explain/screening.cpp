@@ -49,9 +49,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   frozen_.u = current.u;
   std::vector<std::size_t> all(current.free.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  Eigen::VectorXd residual;
-  differentiate<Family>(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, residual,
-                        frozen_.jacobian);
+  differentiate<Family>(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, frozen_.jacobian);
   evaluator.predict(current.base, current.free, current.u, threads, prediction_);
   current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction_));
   goodness_ = goodness(evaluator.data(), prediction_);

@@ -40,7 +40,8 @@ class Search {
         options_(options),
         thin_(kRankedCoarsely<Family> ? thinned(data, kRankingPeriod) : data),
         fine_(data, Resolution::fine),
-        coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine),
+        coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine,
+                kRankedCoarsely<Family> ? Resolution::rough : Resolution::fine),
         rough_(thin_, Resolution::rough),
         refiner_(data, kRankedCoarsely<Family> ? rough_ : coarse_, coarse_, fine_, scales_, options.threads, options.watch) {
   }
@@ -86,7 +87,8 @@ class Search {
     std::erase_if(candidates, [&](const Candidate& c) {
       return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c);
     });
-    const Screening<Family> screening(refiner_.for_screening(current), current, scales_, options_.threads);
+    const Evaluator<Family> evaluator = refiner_.for_screening(current);
+    const Screening<Family> screening(evaluator, current, scales_, options_.threads);
     const auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     return !options_.watch.interrupted() && keep_best(round, screened);
   }
@@ -200,8 +202,8 @@ class Search {
   /// where it leaves clearly less on held-out data: listed effects that imitate it would be wrong names.
   void look_for_unlisted() {
     const int round = result_.trials.empty() ? 1 : result_.trials.back().round + 1;
-    const Screening<Family> screening(refiner_.for_screening(result_.calibrated.model), result_.calibrated.model, scales_,
-                                      options_.threads);
+    const Evaluator<Family> evaluator = refiner_.for_screening(result_.calibrated.model);
+    const Screening<Family> screening(evaluator, result_.calibrated.model, scales_, options_.threads);
     const auto screened = screening.run(unlisted_candidates<Family>(data_), "unlisted", options_.watch);
     const std::size_t wanted = unlisted_finalists(screened);
     std::vector<Trial> trials;

@@ -16,20 +16,18 @@ constexpr double kRunawaySlope = 1e6;
 template <class Family>
 bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
                  std::span<const FreeParameter> free, std::span<const double> u, std::span<const std::size_t> wanted,
-                 unsigned threads, Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
+                 unsigned threads, Eigen::MatrixXd& jacobian) {
   const std::size_t count = wanted.size();
-  std::vector<Eigen::VectorXd> sides(2 * count + 1);
+  std::vector<Eigen::VectorXd> sides(2 * count);
   std::vector<double> reached(2 * count, 0.0);
   parallel_for(sides.size(), threads, [&](std::size_t i) {
     std::vector<double> at(u.begin(), u.end());
-    if (i < 2 * count) {
-      const FreeParameter& parameter = free[wanted[i / 2]];
-      const double step = wide_step(parameter);
-      const auto [low, high] = parameter.range();
-      double& moved = at[wanted[i / 2]];
-      moved = std::clamp(moved + (i % 2 == 0 ? -step : step), low, high);
-      reached[i] = moved;
-    }
+    const FreeParameter& parameter = free[wanted[i / 2]];
+    const double step = wide_step(parameter);
+    const auto [low, high] = parameter.range();
+    double& moved = at[wanted[i / 2]];
+    moved = std::clamp(moved + (i % 2 == 0 ? -step : step), low, high);
+    reached[i] = moved;
     Prediction prediction;
     if (evaluator.predict(base, free, at, 1, prediction)) {
       sides[i] = evaluator.residuals(prediction);
@@ -38,8 +36,7 @@ bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Famil
   if (std::any_of(sides.begin(), sides.end(), [](const Eigen::VectorXd& side) { return side.size() == 0; })) {
     return false;
   }
-  residual = sides.back();
-  jacobian.resize(residual.size(), static_cast<Eigen::Index>(count));
+  jacobian.resize(static_cast<Eigen::Index>(evaluator.fit_rows()), static_cast<Eigen::Index>(count));
   for (std::size_t k = 0; k < count; ++k) {
     jacobian.col(static_cast<Eigen::Index>(k)) = (sides[2 * k + 1] - sides[2 * k]) / (reached[2 * k + 1] - reached[2 * k]);
   }
@@ -54,22 +51,19 @@ template <class Family>
 std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
                                     std::span<const FreeParameter> free, std::span<const double> u,
                                     std::span<const std::size_t> wanted, Slopes asked, unsigned threads,
-                                    Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian) {
-  if (asked == Slopes::exact && evaluator.differentiate(base, free, u, wanted, threads, residual, jacobian) &&
+                                    Eigen::MatrixXd& jacobian) {
+  if (asked == Slopes::exact && evaluator.differentiate(base, free, u, wanted, threads, jacobian) &&
       (jacobian.size() == 0 || jacobian.cwiseAbs().maxCoeff() < kRunawaySlope)) {
     return Slopes::exact;
   }
-  return differences(evaluator, base, free, u, wanted, threads, residual, jacobian) ? std::optional(Slopes::wide)
-                                                                                    : std::nullopt;
+  return differences(evaluator, base, free, u, wanted, threads, jacobian) ? std::optional(Slopes::wide) : std::nullopt;
 }
 
 template std::optional<Slopes> differentiate(const Evaluator<SimplexFamily>&, const PlainParameters<SimplexFamily>&,
                                              std::span<const FreeParameter>, std::span<const double>,
-                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::VectorXd&,
-                                             Eigen::MatrixXd&);
+                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::MatrixXd&);
 template std::optional<Slopes> differentiate(const Evaluator<DirectFamily>&, const PlainParameters<DirectFamily>&,
                                              std::span<const FreeParameter>, std::span<const double>,
-                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::VectorXd&,
-                                             Eigen::MatrixXd&);
+                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::MatrixXd&);
 
 }  // namespace hotfire::explain

@@ -29,18 +29,19 @@ bool Tangent<Family>::move_to(std::span<const double> u) {
 
 template <class Family>
 bool Tangent<Family>::differentiate_at(std::span<const double> u) {
-  if (!taken_at_.empty() && move_to(u) && holds_at(u)) {
+  if (!move_to(u)) {
+    return false;
+  }
+  if (!taken_at_.empty() && holds_at(u)) {
     return true;
   }
-  const auto taken = differentiate<Family>(evaluator_, base_, free_, u, wanted_, asked_, threads_, residual_, jacobian_);
+  const auto taken = differentiate<Family>(evaluator_, base_, free_, u, wanted_, asked_, threads_, jacobian_);
   if (!taken) {
-    at_.clear();
     taken_at_.clear();
     return false;
   }
   slopes_ = *taken;
   ++revision_;
-  at_.assign(u.begin(), u.end());
   taken_at_ = at_;
   taken_residual_ = residual_;
   return true;
