@@ -221,12 +221,7 @@ class Search {
       if (!finalists.back().good()) {
         continue;
       }
-      trials.back().refined = true;
-      trials.back().delta_criterion =
-          criterion_change(finalists.back(), result_.calibrated, finalists.back().goodness.fitted);
-      trials.back().held_out_ratio = held_out_ratio(finalists.back(), result_.calibrated);
-      trials.back().reason =
-          fmt::format("leaves {:.1f} % of the calibrated model's held-out error", 100.0 * trials.back().held_out_ratio);
+      compare_with_calibrated(trials.back(), finalists.back());
       if (!best || trials.back().held_out_ratio < trials[*best].held_out_ratio) {
         best = trials.size() - 1;
       }
@@ -234,7 +229,7 @@ class Search {
     if (best) {
       Assessed<Family> again = refiner_.settled(finalists[*best].model);
       if (again.good()) {
-        trials[*best].held_out_ratio = held_out_ratio(again, result_.calibrated);
+        compare_with_calibrated(trials[*best], again);
         finalists[*best] = std::move(again);
       }
     }
@@ -257,6 +252,14 @@ class Search {
       result_.explained = std::move(finalists[*best]);
     }
     result_.trials.insert(result_.trials.end(), trials.begin(), trials.end());
+  }
+
+  /// Sets how a term of unknown law does against the calibrated model, and says so.
+  void compare_with_calibrated(Trial& trial, const Assessed<Family>& with) const {
+    trial.refined = true;
+    trial.delta_criterion = criterion_change(with, result_.calibrated, with.goodness.fitted);
+    trial.held_out_ratio = held_out_ratio(with, result_.calibrated);
+    trial.reason = fmt::format("leaves {:.1f} % of the calibrated model's held-out error", 100.0 * trial.held_out_ratio);
   }
 
   /// What an effect looked like while another was missing may be a local minimum now.
