@@ -16,6 +16,9 @@ constexpr double kImmaterialExcess = 0.5;
 /// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
 /// is left then is of the noise's own size, and there is nothing in it to be named.
 constexpr double kImmaterialWhereChaotic = 1.5;
+/// A declared parameter that is further from its declaration than this many tolerances stands in for something: odds of one
+/// in a million if the tolerance is right, one in eighty if it was told half as large as it is.
+constexpr double kFarthestFromDeclared = 5.0;
 /// Change of the logarithm of a temper below which it stands.
 constexpr double kTemperStands = 0.2;
 /// A fit that ran out of iterations goes on where its last pass left less than this share of the error.
@@ -63,6 +66,21 @@ template <class Family>
 bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
   return excess_over_noise(data, assessed.prediction) <=
          (assessed.model.chaotic ? kImmaterialWhereChaotic : kImmaterialExcess);
+}
+
+template <class Family>
+bool is_within_tolerances(const Fitted<Family>& model) {
+  for (std::size_t k = 0; k < model.free.size(); ++k) {
+    if (model.free[k].is_declared() && std::abs(model.free[k].surprise(model.u[k])) > kFarthestFromDeclared) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class Family>
+bool lacks_nothing(const Dataset& data, const Assessed<Family>& assessed) {
+  return reaches_noise(data, assessed) && is_within_tolerances(assessed.model);
 }
 
 template <class Family>
@@ -114,7 +132,8 @@ template <class Family>
 double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
                         const std::vector<ChannelFit>& effective) {
   return information_criterion(with.goodness.fitted, effective, with.model.free.size()) -
-         information_criterion(without.goodness.fitted, effective, without.model.free.size());
+         information_criterion(without.goodness.fitted, effective, without.model.free.size()) +
+         prior_cost(with.model.free, with.model.u) - prior_cost(without.model.free, without.model.u);
 }
 
 template <class Family>
@@ -173,6 +192,8 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
   template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
                                     const Effort&);                                                                   \
   template bool reaches_noise(const Dataset&, const Assessed<Family>&);                                               \
+  template bool is_within_tolerances(const Fitted<Family>&);                                                          \
+  template bool lacks_nothing(const Dataset&, const Assessed<Family>&);                                               \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
   template Fitted<Family> with_declared_values(Fitted<Family>);                                                       \
   template bool is_far_from_declared(const Fitted<Family>&);                                                          \

@@ -44,6 +44,14 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
 template <class Family>
 bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed);
 
+/// True if no declared parameter had to go so far from its declaration that it stands in for something.
+template <class Family>
+bool is_within_tolerances(const Fitted<Family>& model);
+
+/// True if a model reaches the noise within its tolerances: there is nothing to be looked for.
+template <class Family>
+bool lacks_nothing(const Dataset& data, const Assessed<Family>& assessed);
+
 /// A model without one of its effects, the other parameters where they are.
 template <class Family>
 Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate);
@@ -62,7 +70,8 @@ bool is_far_from_declared(const Fitted<Family>& model);
 template <class Family>
 Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second);
 
-/// BIC of one model less that of another, on given effective samples.
+/// BIC of one model less that of another, on given effective samples. What the priors of the declared tolerances charge is
+/// part of it: a model that needs them less is the likelier.
 template <class Family>
 double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
                         const std::vector<ChannelFit>& effective);

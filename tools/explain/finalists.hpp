@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tools/explain/assessed.hpp"
 #include "tools/explain/screening.hpp"
 #include "tools/explain/trial.hpp"
 
@@ -16,6 +18,9 @@ inline constexpr std::size_t kFinalists = 3;
 inline constexpr std::size_t kUnlistedFinalists = 4;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
 inline constexpr double kCloseVariant = 0.9;
+
+/// A finalist that leaves less than this many times what the best leaves may be held up by the ripples of its error alone.
+inline constexpr double kContender = 1.5;
 
 /// A further effect has to leave less than this share of the mean square beyond noise, once that is below the noise's.
 inline constexpr double kClearsUp = 2.0 / 3.0;
@@ -55,6 +60,27 @@ std::vector<std::size_t> simplest_laws_first(const std::vector<std::size_t>& ord
     return std::pair(rank_of(a), screened[a].fitted.free.size()) < std::pair(rank_of(b), screened[b].fitted.free.size());
   });
   return sorted;
+}
+
+/// The finalists that may win yet where none reaches the noise: of each name the law that leaves least, if that is less than
+/// kContender times the best of all.
+template <class Family>
+std::vector<std::size_t> contenders_of(const std::vector<std::size_t>& order, const std::vector<Screened<Family>>& screened,
+                                       const std::vector<Assessed<Family>>& finalists) {
+  const auto left = [&](std::size_t i) { return Goodness::combined(finalists[i].goodness.fitted); };
+  std::vector<std::size_t> closest;
+  std::copy_if(order.begin(), order.end(), std::back_inserter(closest), [&](std::size_t i) { return finalists[i].good(); });
+  std::stable_sort(closest.begin(), closest.end(), [&](std::size_t a, std::size_t b) { return left(a) < left(b); });
+  std::vector<std::size_t> contenders;
+  for (const std::size_t i : closest) {
+    const bool has_better_law = std::any_of(contenders.begin(), contenders.end(), [&](std::size_t k) {
+      return screened[k].candidate.name == screened[i].candidate.name;
+    });
+    if (!has_better_law && left(i) < kContender * left(closest.front())) {
+      contenders.push_back(i);
+    }
+  }
+  return contenders;
 }
 
 /// How many of the screened terms of unknown law, the best first, are fitted jointly: those that look strong. Screening

@@ -70,10 +70,7 @@ class SimulationError : public ceres::CostFunction {
       return false;
     }
     residual = residual.cwiseProduct(weight_);
-    double cost = residual.squaredNorm();
-    for (std::size_t k = 0; k < fitted_.free.size(); ++k) {
-      cost += fitted_.free[k].prior_cost(u[k]);
-    }
+    const double cost = residual.squaredNorm() + prior_cost(fitted_.free, u);
     Eigen::Map<Eigen::VectorXd> out(residuals, count + 1);
     if (!want_jacobian) {
       out.setZero();

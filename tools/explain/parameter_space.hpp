@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,5 +81,14 @@ struct FreeParameter {
   bool is_declared() const { return scale == Scale::tolerance; }
   bool is_initial_state() const { return experiment >= 0; }
 };
+
+/// What the priors of all parameters add to a sum of squares at `u`.
+inline double prior_cost(std::span<const FreeParameter> free, std::span<const double> u) {
+  double cost = 0.0;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    cost += free[k].prior_cost(u[k]);
+  }
+  return cost;
+}
 
 }  // namespace hotfire::explain

@@ -65,14 +65,6 @@ Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Eff
 }
 
 template <class Family>
-Assessed<Family> Refiner<Family>::polished(int round, Assessed<Family> winner, const Candidate& candidate) const {
-  if (excess_over_noise(data_, winner.prediction) < kHighestRipple) {
-    winner = over_ripples(std::move(winner));
-  }
-  return from_other_starts(round, std::move(winner), candidate);
-}
-
-template <class Family>
 Assessed<Family> Refiner<Family>::from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const {
   if (is_done(winner)) {
     return winner;
@@ -91,20 +83,18 @@ Assessed<Family> Refiner<Family>::from_other_starts(int round, Assessed<Family> 
 
 template <class Family>
 bool Refiner<Family>::is_done(const Assessed<Family>& winner) const {
-  return reaches_noise(data_, winner) || watch_.interrupted();
+  return lacks_nothing(data_, winner) || watch_.interrupted();
 }
 
 template <class Family>
 Assessed<Family> Refiner<Family>::without(const Fitted<Family>& model, const Candidate& candidate) const {
   Assessed<Family> rest = ranked(without_effect(model, candidate), kCheck);
-  const bool is_near = rest.good() && excess_over_noise(data_, rest.prediction) < kHighestRipple;
-  return is_near ? over_ripples(std::move(rest)) : rest;
+  return rest.good() ? over_ripples(std::move(rest)) : rest;
 }
 
-/// Along differences that are wider than a ripple, and then along exact derivatives, from where those ended.
 template <class Family>
 Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted) const {
-  if (is_done(fitted)) {
+  if (is_done(fitted) || excess_over_noise(data_, fitted.prediction) >= kHighestRipple) {
     return fitted;
   }
   Assessed<Family> beyond = ranked(fitted.model, kOverRipples);

@@ -26,9 +26,10 @@ class Refiner {
   /// Fitted as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted) const { return refined(fine_, fine_, threads_, fitted, kFinal); }
 
-  /// A winner that does not reach the noise may sit in a local minimum: it is fitted over the ripples of its error, where it
-  /// is as near as they are high, and then from other starts. The best of all.
-  Assessed<Family> polished(int round, Assessed<Family> winner, const Candidate& candidate) const;
+  /// A model that is as near the noise as the ripples of its error are high, and does not reach it, may sit in one: it is
+  /// fitted along differences that are wider than a ripple, and then along exact derivatives, from where those ended. The
+  /// best of all.
+  Assessed<Family> over_ripples(Assessed<Family> fitted) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
   Assessed<Family> from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const;
 
@@ -38,7 +39,6 @@ class Refiner {
  private:
   std::optional<Evaluator<Family>> rough_about(const Fitted<Family>& model) const;
   bool is_done(const Assessed<Family>& winner) const;
-  Assessed<Family> over_ripples(Assessed<Family> fitted) const;
   Assessed<Family> from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const;
 
   const Dataset& data_;

@@ -66,7 +66,7 @@ class Search {
     result_.calibrated = calibrated(start);
     result_.explained = result_.calibrated;
     for (int round = 1; round <= options_.most_effects && !options_.watch.interrupted(); ++round) {
-      if (reaches_noise(data_, result_.explained) || !add_effect(round)) {
+      if (lacks_nothing(data_, result_.explained) || !add_effect(round)) {
         break;
       }
       take_out_superfluous(round);
@@ -145,10 +145,19 @@ class Search {
       finalists[i] = refiner_.ranked(screened[i].fitted, kRanking);
       trials[i].seconds += stopwatch.seconds();
     }
-    const std::optional<std::size_t> best = rank(trials, finalists, order);
+    std::optional<std::size_t> best = rank(trials, finalists, order);
+    if (best && clears_up(finalists[*best]) && !reaches_noise(data_, finalists[*best])) {
+      for (const std::size_t i : contenders_of(order, screened, finalists)) {
+        options_.watch.progress(fmt::format("round {}: fitting {} over ripples", round, label(screened[i].candidate)));
+        const Stopwatch stopwatch;
+        finalists[i] = refiner_.over_ripples(std::move(finalists[i]));
+        trials[i].seconds += stopwatch.seconds();
+      }
+      best = rank(trials, finalists, order);
+    }
     Assessed<Family> winner;
     if (best && clears_up(finalists[*best])) {
-      winner = refiner_.polished(round, std::move(finalists[*best]), trials[*best].candidate);
+      winner = refiner_.from_other_starts(round, std::move(finalists[*best]), trials[*best].candidate);
       options_.watch.progress(fmt::format("round {}: fitting {} with fine steps", round, label(trials[*best].candidate)));
       winner = simplest_law(fine_, scales_, options_.threads, refiner_.settled(winner.model), trials[*best].candidate);
       for (const std::size_t i : order) {
@@ -307,10 +316,11 @@ class Search {
   }
 
   /// Takes out every effect without which the model is as good, or reaches the noise, where the search would have ended:
-  /// earlier ones that the last has replaced, and the last if all it did was to lead the others out of a local minimum.
+  /// earlier ones that the last has replaced, and the last if all it did was to lead the others, or the calibration, out of a
+  /// local minimum.
   void take_out_superfluous(int round) {
     const std::size_t newest = result_.kept.size() - 1;
-    for (std::size_t i = newest + 1; i-- > 0 && result_.kept.size() > 1;) {
+    for (std::size_t i = newest + 1; i-- > 0;) {
       Trial trial{round,
                   result_.kept[i].trial.candidate,
                   false,
@@ -318,7 +328,7 @@ class Search {
                   1.0,
                   0.0,
                   "taken out",
-                  i == newest ? "the model is as good without it: it led the others to where they fit"
+                  i == newest ? "the model is as good without it: it led what stays to where it fits"
                               : "the model is as good without it since a later effect was added"};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
       const Stopwatch stopwatch;
@@ -327,13 +337,16 @@ class Search {
         compare(trial, rest, rest.goodness.fitted);
       }
       trial.seconds = stopwatch.seconds();
-      if (rest.good() && (trial.delta_criterion < kStrongEvidence || reaches_noise(data_, rest))) {
+      if (rest.good() && (trial.delta_criterion < kStrongEvidence || lacks_nothing(data_, rest))) {
         result_.trials.push_back(trial);
         if (i == newest) {
           result_.rival.reset();
         }
         result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
         result_.explained = refiner_.settled(rest.model);
+        if (result_.kept.empty()) {
+          result_.calibrated = result_.explained;
+        }
       }
     }
   }
