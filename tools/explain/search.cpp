@@ -316,8 +316,8 @@ class Search {
   }
 
   /// Takes out every effect without which the model is as good, or reaches the noise, where the search would have ended:
-  /// earlier ones that the last has replaced, and the last if all it did was to lead the others, or the calibration, out of a
-  /// local minimum.
+  /// earlier ones that the last has replaced, and the last if all it did was to lead the others, or the calibration, out of
+  /// a local minimum.
   void take_out_superfluous(int round) {
     const std::size_t newest = result_.kept.size() - 1;
     for (std::size_t i = newest + 1; i-- > 0;) {
