@@ -138,7 +138,17 @@ double criterion_change(const Assessed<Family>& with, const Assessed<Family>& wi
 
 template <class Family>
 double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without) {
-  return Goodness::combined(with.goodness.held_out) / Goodness::combined(without.goodness.held_out);
+  double logarithms = 0.0;
+  double channels = 0.0;
+  for (std::size_t c = 0; c < with.goodness.held_out.size(); ++c) {
+    const double before = without.goodness.held_out[c].mean_square;
+    if (before > 0.0) {
+      logarithms += 0.5 * std::log(with.goodness.held_out[c].mean_square / before);
+      channels += 1.0;
+    }
+  }
+  const double combined = Goodness::combined(with.goodness.held_out) / Goodness::combined(without.goodness.held_out);
+  return channels > 0.0 ? std::min(combined, std::exp(logarithms / channels)) : combined;
 }
 
 template <class Family>

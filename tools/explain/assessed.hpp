@@ -76,7 +76,8 @@ template <class Family>
 double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
                         const std::vector<ChannelFit>& effective);
 
-/// Held-out error of one model over that of another, all channels together.
+/// Held-out error of one model over that of another: rms over all channels or, if less, the geometric mean of the channels'
+/// ratios. A channel that is far off for a reason of its own would hide in the first what happens to the others.
 template <class Family>
 double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without);
 
