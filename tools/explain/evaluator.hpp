@@ -71,8 +71,8 @@ class Evaluator {
   int steps_of(const Parameters& base, const Experiment& experiment, Resolution resolution) const;
 
   const Dataset& data_;
-  Resolution resolution_;
-  Resolution slopes_;
+  Resolution resolution_ = Resolution::fine;
+  Resolution slopes_ = Resolution::fine;
   Prediction shift_;                        ///< empty: none
   std::vector<std::size_t> longest_first_;  ///< experiments in the order in which threads take them
   std::vector<Stretch> stretches_;
