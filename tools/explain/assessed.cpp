@@ -132,8 +132,7 @@ template <class Family>
 double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
                         const std::vector<ChannelFit>& effective) {
   return information_criterion(with.goodness.fitted, effective, with.model.free.size()) -
-         information_criterion(without.goodness.fitted, effective, without.model.free.size()) +
-         prior_cost(with.model.free, with.model.u) - prior_cost(without.model.free, without.model.u);
+         information_criterion(without.goodness.fitted, effective, without.model.free.size());
 }
 
 template <class Family>

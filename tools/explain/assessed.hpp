@@ -70,8 +70,7 @@ bool is_far_from_declared(const Fitted<Family>& model);
 template <class Family>
 Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second);
 
-/// BIC of one model less that of another, on given effective samples. What the priors of the declared tolerances charge is
-/// part of it: a model that needs them less is the likelier.
+/// BIC of one model less that of another, on given effective samples.
 template <class Family>
 double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
                         const std::vector<ChannelFit>& effective);

@@ -310,8 +310,7 @@ void Screening<Family>::improve(Screened<Family>& screened, int iterations) cons
                                   Eigen::Map<const Eigen::VectorXd>(frozen_.u.data(), count));
   fitted.temper = temper_of<Family>(evaluator_, residual);
   screened.criterion = information_criterion(mean_squares(residual), goodness_.fitted, fitted.free.size()) -
-                       information_criterion(goodness_.fitted, goodness_.fitted, current_.free.size()) +
-                       prior_cost(fitted.free, fitted.u) - prior_cost(current_.free, current_.u);
+                       information_criterion(goodness_.fitted, goodness_.fitted, current_.free.size());
   screened.seconds += stopwatch.seconds();
 }
 
