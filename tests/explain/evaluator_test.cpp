@@ -34,6 +34,27 @@ Dataset smooth_dataset() {
   return data;
 }
 
+/// That axis with two of its declared parameters free.
+struct InertiaAndStiffness {
+  const Dataset data = smooth_dataset();
+  const PlainParameters<SimplexFamily> base;
+  const std::vector<FreeParameter> free =
+      declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+
+  Prediction predicted(const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u, unsigned threads = 1) const {
+    Prediction prediction;
+    CHECK(evaluator.predict(base, free, u, threads, prediction));
+    return prediction;
+  }
+  Eigen::MatrixXd slopes(const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u,
+                         unsigned threads = 1) const {
+    const std::vector<std::size_t> all{0, 1};
+    Eigen::MatrixXd jacobian;
+    CHECK(evaluator.differentiate(base, free, u, all, threads, jacobian));
+    return jacobian;
+  }
+};
+
 }  // namespace
 
 TEST_GROUP(Evaluator){};
@@ -84,66 +105,39 @@ TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAnd
 }
 
 TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
-  const Dataset data = smooth_dataset();
-  const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
-  const PlainParameters<SimplexFamily> base;
-  const auto free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  const InertiaAndStiffness axis;
+  const Evaluator<SimplexFamily> evaluator(axis.data, Resolution::fine);
   const std::vector<double> u{0.3, -0.2};
-  const std::vector<std::size_t> all{0, 1};
-  Eigen::MatrixXd one;
-  Eigen::MatrixXd two;
-  evaluator.differentiate(base, free, u, all, 1, one);
-  evaluator.differentiate(base, free, u, all, 2, two);
-  CHECK((one.array() == two.array()).all());
-  Prediction one_prediction;
-  Prediction two_prediction;
-  evaluator.predict(base, free, u, 1, one_prediction);
-  evaluator.predict(base, free, u, 2, two_prediction);
-  CHECK(one_prediction == two_prediction);
+  CHECK((axis.slopes(evaluator, u, 1).array() == axis.slopes(evaluator, u, 2).array()).all());
+  CHECK(axis.predicted(evaluator, u, 1) == axis.predicted(evaluator, u, 2));
 }
 
 TEST(Evaluator, DerivativesMayBeThoseOfLongerStepsThanItsReadings) {
-  const Dataset data = smooth_dataset();
-  const PlainParameters<SimplexFamily> base;
-  const auto free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  const InertiaAndStiffness axis;
   const std::vector<double> u{0.3, -0.2};
-  const std::vector<std::size_t> all{0, 1};
-  const Evaluator<SimplexFamily> mixed(data, Resolution::coarse, Resolution::rough);
-  Eigen::MatrixXd slopes;
-  Eigen::MatrixXd rough_slopes;
-  mixed.differentiate(base, free, u, all, 1, slopes);
-  Evaluator<SimplexFamily>(data, Resolution::rough).differentiate(base, free, u, all, 1, rough_slopes);
-  CHECK((slopes.array() == rough_slopes.array()).all());
-  Prediction readings;
-  Prediction coarse_readings;
-  mixed.predict(base, free, u, 1, readings);
-  Evaluator<SimplexFamily>(data, Resolution::coarse).predict(base, free, u, 1, coarse_readings);
-  CHECK(readings == coarse_readings);
+  const Evaluator<SimplexFamily> coarse(axis.data, Resolution::coarse);
+  const Evaluator<SimplexFamily> rough(axis.data, Resolution::rough);
+  const Evaluator<SimplexFamily> mixed(axis.data, Resolution::coarse, Resolution::rough);
+  CHECK((axis.slopes(mixed, u).array() == axis.slopes(rough, u).array()).all());
+  CHECK(axis.predicted(mixed, u) == axis.predicted(coarse, u));
 }
 
 TEST(Evaluator, ShiftedLongStepsAreRightWhereTheShiftWasTakenAndNearlySoNearby) {
-  const Dataset data = smooth_dataset();
-  const PlainParameters<SimplexFamily> base;
-  const auto free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  const InertiaAndStiffness axis;
   const std::vector<double> there{0.3, -0.2};
   const std::vector<double> nearby{0.8, 0.3};
-  const Evaluator<SimplexFamily> fine(data, Resolution::fine);
-  const Evaluator<SimplexFamily> rough(data, Resolution::rough);
-  const auto readings = [&](const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u) {
-    Prediction prediction;
-    CHECK(evaluator.predict(base, free, u, 1, prediction));
-    return evaluator.residuals(prediction);
+  const Evaluator<SimplexFamily> fine(axis.data, Resolution::fine);
+  const Evaluator<SimplexFamily> rough(axis.data, Resolution::rough);
+  const Evaluator<SimplexFamily> shifted = rough.shifted(axis.predicted(rough, there), axis.predicted(fine, there));
+  const auto off = [&](const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u) {
+    return (evaluator.residuals(axis.predicted(evaluator, u)) - fine.residuals(axis.predicted(fine, u))).norm();
   };
-  Prediction by_rough;
-  Prediction by_fine;
-  CHECK(rough.predict(base, free, there, 1, by_rough) && fine.predict(base, free, there, 1, by_fine));
-  const Evaluator<SimplexFamily> shifted = rough.shifted(by_rough, by_fine);
-  const double lost = (readings(rough, there) - readings(fine, there)).norm();
+  const double lost = off(rough, there);
   // What is left is the rounding of two subtractions.
-  CHECK((readings(shifted, there) - readings(fine, there)).norm() <= 1e-9 * lost);
+  CHECK(off(shifted, there) <= 1e-9 * lost);
   // Half a tolerance away in each: by a hundredth of the inertia and a fortieth of the stiffness, and the error of a step
   // with both. A fifth leaves room for its higher powers.
-  CHECK((readings(shifted, nearby) - readings(fine, nearby)).norm() <= 0.2 * lost);
+  CHECK(off(shifted, nearby) <= 0.2 * lost);
 }
 
 TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARipple) {

@@ -69,13 +69,20 @@ bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
 }
 
 template <class Family>
-bool is_within_tolerances(const Fitted<Family>& model) {
+Moved farthest_from_declared(const Fitted<Family>& model) {
+  Moved farthest;
   for (std::size_t k = 0; k < model.free.size(); ++k) {
-    if (model.free[k].is_declared() && std::abs(model.free[k].surprise(model.u[k])) > kFarthestFromDeclared) {
-      return false;
+    const double tolerances = std::abs(model.free[k].surprise(model.u[k]));
+    if (model.free[k].is_declared() && tolerances > farthest.tolerances) {
+      farthest = {model.free[k].key, tolerances};
     }
   }
-  return true;
+  return farthest;
+}
+
+template <class Family>
+bool is_within_tolerances(const Fitted<Family>& model) {
+  return farthest_from_declared(model).tolerances <= kFarthestFromDeclared;
 }
 
 template <class Family>
@@ -201,6 +208,7 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
   template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
                                     const Effort&);                                                                   \
   template bool reaches_noise(const Dataset&, const Assessed<Family>&);                                               \
+  template Moved farthest_from_declared(const Fitted<Family>&);                                                       \
   template bool is_within_tolerances(const Fitted<Family>&);                                                          \
   template bool lacks_nothing(const Dataset&, const Assessed<Family>&);                                               \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \

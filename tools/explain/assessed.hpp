@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "tools/explain/candidates.hpp"
 #include "tools/explain/fit.hpp"
 #include "tools/explain/goodness.hpp"
@@ -43,6 +45,15 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
 /// True if every channel's residual is noise but for a part that the sensor could not show.
 template <class Family>
 bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed);
+
+/// The declared parameter that is furthest from its declaration: its key, and how many tolerances off. Zero and no key where
+/// none is free.
+struct Moved {
+  std::string key;
+  double tolerances = 0.0;
+};
+template <class Family>
+Moved farthest_from_declared(const Fitted<Family>& model);
 
 /// True if no declared parameter had to go so far from its declaration that it stands in for something.
 template <class Family>

@@ -108,11 +108,7 @@ class Surroundings {
   }
 
   double cost_of(const Eigen::VectorXd& weighted_residual, const std::vector<double>& u) const {
-    double cost = weighted_residual.squaredNorm();
-    for (std::size_t k = 0; k < u.size(); ++k) {
-      cost += optimum_.free[k].prior_cost(u[k]);
-    }
-    return cost;
+    return weighted_residual.squaredNorm() + prior_cost(optimum_.free, u);
   }
 
   Eigen::VectorXd gradient(const Eigen::VectorXd& weighted_residual, const std::vector<double>& u) const {

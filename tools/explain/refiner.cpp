@@ -20,8 +20,8 @@ constexpr double kHighestRipple = 3.0;
 /// that change, and what is left of it is the square of a share.
 constexpr double kLostToSteps = 0.5;
 
-/// True if two models leave nearly the same of every channel. One that is met to its noise counts with all its rows, and so
-/// it must not be lost in the residuals of another that is far off.
+/// True if what two models leave of every channel differs by less than that share of it. One that is met to its noise counts
+/// with all its rows, and so it must not be lost in the residuals of another that is far off.
 template <class Family>
 bool are_alike(const Evaluator<Family>& evaluator, const Eigen::VectorXd& left, const Eigen::VectorXd& other) {
   const std::vector<double> square = evaluator.squares_by_channel(left);

@@ -178,28 +178,17 @@ std::string phrase(const Candidate& candidate) {
                      candidate.site);
 }
 
-/// "engine.inertia 6.2 tolerances from its declared value".
-template <class Family>
-std::string farthest_from_declared(const Fitted<Family>& model) {
-  std::size_t farthest = 0;
-  const auto distance = [&](std::size_t k) {
-    return model.free[k].is_declared() ? std::abs(model.free[k].surprise(model.u[k])) : 0.0;
-  };
-  for (std::size_t k = 0; k < model.free.size(); ++k) {
-    farthest = distance(k) > distance(farthest) ? k : farthest;
-  }
-  return fmt::format("{} {:.1f} tolerances from its declared value", model.free[farthest].key, distance(farthest));
-}
-
 template <class Family>
 std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found) {
   const double before = Goodness::combined(found.declared.goodness.held_out);
   const double after = Goodness::combined(found.explained.goodness.held_out);
   if (verdict == "nothing-missing" && !is_within_tolerances(found.explained.model)) {
+    const Moved farthest = farthest_from_declared(found.explained.model);
     return fmt::format(
         "No effect is found to be missing, but a declared value is wrong or stands in for one: the model meets the records "
-        "down to the sensor noise ({:.2f} times its rms on held-out data) only with {}.",
-        after, farthest_from_declared(found.explained.model));
+        "down to the sensor noise ({:.2f} times its rms on held-out data) only with {} {:.1f} tolerances from its declared "
+        "value.",
+        after, farthest.key, farthest.tolerances);
   }
   if (verdict == "nothing-missing") {
     return fmt::format(
