@@ -1,5 +1,6 @@
 #include "tools/explain/search.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -10,13 +11,14 @@ namespace {
 using namespace hotfire;
 
 /// A mass on a spring under a smooth random force, stepped by fourth-order Runge-Kutta of its own: shares no code with the
-/// model. `cubic` is the stiffness that the declared model lacks.
-Record oscillator(double cubic, double noise) {
+/// model. What the declared model lacks: the stiffness `cubic`, and detents, 2 pi / 8 m apart, of up to so many newtons.
+Record oscillator(double cubic, double noise, double detents = 0.0) {
   constexpr double kMass = 1.0;
   constexpr double kDamping = 1.5;
   constexpr double kStiffness = 100.0;
   constexpr double kPeriod = 0.01;
   constexpr int kSubsteps = 20;
+  constexpr double kDetentWavenumber = 8.0;
   std::mt19937_64 generator(1918);
   std::normal_distribution<double> normal(0.0, 1.0);
   std::vector<double> phases(40);
@@ -31,7 +33,8 @@ Record oscillator(double cubic, double noise) {
     return force;
   };
   const auto acceleration = [&](double t, double x, double v) {
-    return (force_at(t) - kDamping * v - kStiffness * x - cubic * x * x * x) / kMass;
+    return (force_at(t) - kDamping * v - kStiffness * x - cubic * x * x * x - detents * std::sin(kDetentWavenumber * x)) /
+           kMass;
   };
   Record record;
   record.name = "oscillator.csv";
@@ -104,6 +107,17 @@ TEST(Search, ACalibrationFarBeyondItsTolerancesIsLookedBeyondAndStillGetsNoEffec
   DOUBLES_EQUAL(1.0, explain::Goodness::combined(found.calibrated.goodness.held_out), 0.1);
   CHECK(!found.trials.empty());
   LONGS_EQUAL(0, found.kept.size());
+}
+
+TEST(Search, AForceThatNoListedEffectHasIsTakenDownAsATableOverWhatItDependsOn) {
+  const auto found = found_in(oscillator(0.0, 1e-3, 2.0));
+  LONGS_EQUAL(1, found.kept.size());
+  STRCMP_EQUAL("unlisted_force", found.kept[0].trial.candidate.name.c_str());
+  STRCMP_EQUAL("position", found.kept[0].trial.candidate.option_name.c_str());
+  CHECK(explain::held_out_ratio(found.explained, found.calibrated) < 0.5);
+  // What was tried is told in the order in which it was.
+  CHECK(std::is_sorted(found.trials.begin(), found.trials.end(),
+                       [](const auto& a, const auto& b) { return a.round < b.round; }));
 }
 
 TEST(Search, AllowedNoEffectItCalibratesAndLooksForNoneUnlistedEither) {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "tools/explain/uncertainty.hpp"
-
 namespace hotfire::explain {
 
 namespace {
@@ -144,63 +142,16 @@ double criterion_change(const Assessed<Family>& with, const Assessed<Family>& wi
 
 template <class Family>
 double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without) {
-  double logarithms = 0.0;
-  double channels = 0.0;
-  for (std::size_t c = 0; c < with.goodness.held_out.size(); ++c) {
-    const double before = without.goodness.held_out[c].mean_square;
-    if (before > 0.0) {
-      logarithms += 0.5 * std::log(with.goodness.held_out[c].mean_square / before);
-      channels += 1.0;
-    }
-  }
-  const double combined = Goodness::combined(with.goodness.held_out) / Goodness::combined(without.goodness.held_out);
-  return channels > 0.0 ? std::min(combined, std::exp(logarithms / channels)) : combined;
+  return error_ratio(with.goodness.held_out, without.goodness.held_out);
 }
 
 template <class Family>
-Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scales, unsigned threads, Assessed<Family> winner,
-                              Candidate& candidate) {
-  if (!winner.good()) {
-    return winner;
+double least_held_out_ratio(const Assessed<Family>& model, const Assessed<Family>& without) {
+  std::vector<ChannelFit> at_noise = model.goodness.held_out;
+  for (ChannelFit& channel : at_noise) {
+    channel.mean_square = std::min(channel.mean_square, 1.0);
   }
-  const auto own = effect_parameters<Family>(winner.model.base, candidate, scales);
-  const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
-  const auto is_open = [&](const FreeParameter& parameter) {
-    for (std::size_t k = 0; k < estimated.size(); ++k) {
-      if (winner.model.free[k].key == parameter.key) {
-        return !estimated[k].interval.has_value();
-      }
-    }
-    return false;
-  };
-  for (const Candidate& law : all_candidates<Family>(fine.data())) {
-    const auto fewer = effect_parameters<Family>(winner.model.base, law, scales);
-    const auto has = [&](const FreeParameter& parameter) {
-      return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.key == parameter.key; });
-    };
-    const bool leaves_out_only_open = std::all_of(
-        own.begin(), own.end(), [&](const FreeParameter& parameter) { return has(parameter) || is_open(parameter); });
-    if (law.effect != candidate.effect || fewer.size() >= own.size() || !leaves_out_only_open) {
-      continue;
-    }
-    Fitted<Family> reduced = winner.model;
-    activate<Family>(reduced.base, law);
-    for (std::size_t k = reduced.free.size(); k-- > 0;) {
-      const std::string& key = reduced.free[k].key;
-      const auto is = [&](const FreeParameter& parameter) { return parameter.key == key; };
-      if (std::any_of(own.begin(), own.end(), is) && std::none_of(fewer.begin(), fewer.end(), is)) {
-        reduced.free.erase(reduced.free.begin() + static_cast<std::ptrdiff_t>(k));
-        reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
-      }
-    }
-    Assessed<Family> simple = refined(fine, fine, threads, reduced, kFinal);
-    const std::vector<ChannelFit>& effective = winner.goodness.fitted;
-    if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {
-      candidate = law;
-      return simple;
-    }
-  }
-  return winner;
+  return error_ratio(at_noise, without.goodness.held_out);
 }
 
 #define HOTFIRE_INSTANTIATE(Family)                                                                                   \
@@ -217,7 +168,7 @@ Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scale
   template Assessed<Family> better_of(Assessed<Family>, Assessed<Family>);                                            \
   template double criterion_change(const Assessed<Family>&, const Assessed<Family>&, const std::vector<ChannelFit>&); \
   template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);                                   \
-  template Assessed<Family> simplest_law(const Evaluator<Family>&, const Scales&, unsigned, Assessed<Family>, Candidate&);
+  template double least_held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);
 
 HOTFIRE_INSTANTIATE(SimplexFamily)
 HOTFIRE_INSTANTIATE(DirectFamily)

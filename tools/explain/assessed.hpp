@@ -86,15 +86,13 @@ template <class Family>
 double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
                         const std::vector<ChannelFit>& effective);
 
-/// Held-out error of one model over that of another: rms over all channels or, if less, the geometric mean of the channels'
-/// ratios. A channel that is far off for a reason of its own would hide in the first what happens to the others.
+/// Held-out error of one model over that of another, as `error_ratio` counts it.
 template <class Family>
 double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without);
 
-/// Where the data leave a parameter of the winner's law open, a law without that parameter, started from the winner's
-/// values, takes its place if the BIC is no worse. Sets `candidate` to the law that stays.
+/// The least that any model's held-out ratio can be: every channel at the sensor's noise, or at what `model` leaves there if
+/// that is less.
 template <class Family>
-Assessed<Family> simplest_law(const Evaluator<Family>& fine, const Scales& scales, unsigned threads, Assessed<Family> winner,
-                              Candidate& candidate);
+double least_held_out_ratio(const Assessed<Family>& model, const Assessed<Family>& without);
 
 }  // namespace hotfire::explain

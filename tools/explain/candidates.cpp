@@ -129,6 +129,13 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
 }
 
 template <class Family>
+std::vector<Candidate> laws_of(const Dataset& data, const Candidate& candidate) {
+  std::vector<Candidate> laws = all_candidates<Family>(data);
+  std::erase_if(laws, [&](const Candidate& law) { return law.effect != candidate.effect || law.site != candidate.site; });
+  return laws;
+}
+
+template <class Family>
 bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate) {
   std::string_view carried;
   visit_effect(parameters, candidate.effect, [&]<class E>(const auto&) {
@@ -271,6 +278,7 @@ void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
 
 #define HOTFIRE_INSTANTIATE(Family)                                                                               \
   template std::vector<Candidate> all_candidates<Family>(const Dataset&);                                         \
+  template std::vector<Candidate> laws_of<Family>(const Dataset&, const Candidate&);                              \
   template bool has_what_it_carries<Family>(const PlainParameters<Family>&, const Candidate&);                    \
   template std::vector<FreeParameter> declared_parameters<Family>(const PlainParameters<Family>&,                 \
                                                                   const std::map<std::string, double>&);          \

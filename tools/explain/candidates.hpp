@@ -23,6 +23,10 @@ struct Candidate {
 template <class Family>
 std::vector<Candidate> all_candidates(const Dataset& data);
 
+/// The laws of a candidate's effect at the same site, its own among them.
+template <class Family>
+std::vector<Candidate> laws_of(const Dataset& data, const Candidate& candidate);
+
 /// False for an effect that carries another one (`Effect` in model/effect.hpp) which is not active.
 template <class Family>
 bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate);

@@ -22,6 +22,8 @@ inline constexpr double kCloseVariant = 0.9;
 /// A finalist that leaves less than this many times what the best leaves may be held up by the ripples of its error alone.
 inline constexpr double kContender = 1.5;
 
+/// What is left beyond the noise is larger than the noise: worth a table of unknown law, and any effect that is supported.
+inline constexpr double kLargerThanNoise = 1.0;
 /// A further effect has to leave less than this share of the mean square beyond noise, once that is below the noise's.
 inline constexpr double kClearsUp = 2.0 / 3.0;
 /// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise

@@ -90,6 +90,20 @@ Goodness goodness(const Dataset& data, const Prediction& prediction) {
   return result;
 }
 
+double error_ratio(const std::vector<ChannelFit>& with, const std::vector<ChannelFit>& without) {
+  double logarithms = 0.0;
+  double channels = 0.0;
+  for (std::size_t c = 0; c < with.size(); ++c) {
+    const double before = without[c].mean_square;
+    if (before > 0.0) {
+      logarithms += 0.5 * std::log(with[c].mean_square / before);
+      channels += 1.0;
+    }
+  }
+  const double combined = Goodness::combined(with) / Goodness::combined(without);
+  return channels > 0.0 ? std::min(combined, std::exp(logarithms / channels)) : combined;
+}
+
 double information_criterion(const std::vector<ChannelFit>& part, const std::vector<ChannelFit>& effective,
                              std::size_t parameters) {
   double criterion = 0.0;

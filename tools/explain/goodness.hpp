@@ -28,6 +28,10 @@ struct Goodness {
 
 Goodness goodness(const Dataset& data, const Prediction& prediction);
 
+/// Error of one model over that of another on the same part: rms over all channels or, if less, the geometric mean of the
+/// channels' ratios. A channel that is far off for a reason of its own would hide in the first what happens to the others.
+double error_ratio(const std::vector<ChannelFit>& with, const std::vector<ChannelFit>& without);
+
 /// Bayesian information criterion of a model with `parameters` free values on the fitted rows, by the concentrated Gaussian
 /// likelihood with the effective number of samples: sum over channels of n_eff ln(mean square) + parameters ln(n_eff)
 /// [Schwarz 1978]. `effective` gives the sample sizes, so that two models are compared on the same ones.

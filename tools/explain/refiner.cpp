@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tools/explain/finalists.hpp"
 #include "tools/explain/trial.hpp"
+#include "tools/explain/uncertainty.hpp"
 
 namespace hotfire::explain {
 
@@ -82,6 +85,77 @@ Assessed<Family> Refiner<Family>::from_other_starts(int round, Assessed<Family> 
 }
 
 template <class Family>
+std::vector<OfLaw<Family>> Refiner<Family>::of_richer_laws(int round, const Assessed<Family>& winner,
+                                                           const Candidate& candidate) const {
+  std::vector<OfLaw<Family>> richer;
+  const std::size_t own = effect_parameters<Family>(winner.model.base, candidate, scales_).size();
+  for (const Candidate& law : laws_of<Family>(data_, candidate)) {
+    Fitted<Family> start = without_effect(winner.model, candidate);
+    activate<Family>(start.base, law);
+    const std::vector<FreeParameter> parameters = effect_parameters<Family>(start.base, law, scales_);
+    if (parameters.size() <= own || is_done(winner)) {
+      continue;
+    }
+    watch_.progress(fmt::format("round {}: fitting {} from where {} ended", round, label(law), label(candidate)));
+    for (const FreeParameter& parameter : parameters) {
+      start.free.push_back(parameter);
+      start.u.push_back(parameter.coordinate(parameter.unit_size));
+    }
+    Assessed<Family> fitted = ranked(start, kCheck);
+    if (fitted.good() && criterion_change(fitted, winner, fitted.goodness.fitted) < -kStrongEvidence) {
+      Assessed<Family> closer = ranked(fitted.model, kRanking);
+      richer.push_back({law, better_of(std::move(fitted), std::move(closer))});
+    }
+  }
+  return richer;
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candidate& candidate) const {
+  if (!winner.good()) {
+    return winner;
+  }
+  const auto own = effect_parameters<Family>(winner.model.base, candidate, scales_);
+  const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
+  const auto is_open = [&](const FreeParameter& parameter) {
+    for (std::size_t k = 0; k < estimated.size(); ++k) {
+      if (winner.model.free[k].key == parameter.key) {
+        return !estimated[k].interval.has_value();
+      }
+    }
+    return false;
+  };
+  for (const Candidate& law : laws_of<Family>(data_, candidate)) {
+    const auto fewer = effect_parameters<Family>(winner.model.base, law, scales_);
+    const auto has = [&](const FreeParameter& parameter) {
+      return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.key == parameter.key; });
+    };
+    const bool leaves_out_only_open = std::all_of(
+        own.begin(), own.end(), [&](const FreeParameter& parameter) { return has(parameter) || is_open(parameter); });
+    if (fewer.size() >= own.size() || !leaves_out_only_open) {
+      continue;
+    }
+    Fitted<Family> reduced = winner.model;
+    activate<Family>(reduced.base, law);
+    for (std::size_t k = reduced.free.size(); k-- > 0;) {
+      const std::string& key = reduced.free[k].key;
+      const auto is = [&](const FreeParameter& parameter) { return parameter.key == key; };
+      if (std::any_of(own.begin(), own.end(), is) && std::none_of(fewer.begin(), fewer.end(), is)) {
+        reduced.free.erase(reduced.free.begin() + static_cast<std::ptrdiff_t>(k));
+        reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
+      }
+    }
+    Assessed<Family> simple = settled(reduced);
+    const std::vector<ChannelFit>& effective = winner.goodness.fitted;
+    if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {
+      candidate = law;
+      return simple;
+    }
+  }
+  return winner;
+}
+
+template <class Family>
 bool Refiner<Family>::is_done(const Assessed<Family>& winner) const {
   return lacks_nothing(data_, winner) || watch_.interrupted();
 }
@@ -94,7 +168,8 @@ Assessed<Family> Refiner<Family>::without(const Fitted<Family>& model, const Can
 
 template <class Family>
 Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted) const {
-  if (is_done(fitted) || excess_over_noise(data_, fitted.prediction) >= kHighestRipple) {
+  const double left = excess_over_noise(data_, fitted.prediction);
+  if (left < kNothingLeft || left >= kHighestRipple || watch_.interrupted()) {
     return fitted;
   }
   Assessed<Family> beyond = ranked(fitted.model, kOverRipples);

@@ -7,6 +7,13 @@
 
 namespace hotfire::explain {
 
+/// A model with an effect by one of its laws.
+template <class Family>
+struct OfLaw {
+  Candidate candidate;
+  Assessed<Family> model;
+};
+
 /// Joint fits of everything that is free, as a search needs them.
 template <class Family>
 class Refiner {
@@ -26,12 +33,21 @@ class Refiner {
   /// Fitted as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted) const { return refined(fine_, fine_, threads_, fitted, kFinal); }
 
-  /// A model that is as near the noise as the ripples of its error are high, and does not reach it, may sit in one: it is
+  /// A model that is as near the noise as the ripples of its error are high, and leaves something, may sit in one: it is
   /// fitted along differences that are wider than a ripple, and then along exact derivatives, from where those ended. The
   /// best of all.
   Assessed<Family> over_ripples(Assessed<Family> fitted) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
   Assessed<Family> from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const;
+
+  /// An effect by each of its laws that have more parameters, from the typical values of those beside what the model was
+  /// calibrated to with the simpler law. Screening ranks the laws beside a calibration without the effect, from which the
+  /// one that is right may look no better than one that it contains. Those that are better; none if the model lacks nothing.
+  std::vector<OfLaw<Family>> of_richer_laws(int round, const Assessed<Family>& winner, const Candidate& candidate) const;
+
+  /// Where the data leave a parameter of the winner's law open, a law without that parameter, started from the winner's
+  /// values, takes its place if the BIC is no worse. Sets `candidate` to the law that stays.
+  Assessed<Family> by_simplest_law(Assessed<Family> winner, Candidate& candidate) const;
 
   /// Without an effect, the others fitted again from where they are; over the ripples too, if that ends near the noise.
   Assessed<Family> without(const Fitted<Family>& model, const Candidate& candidate) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "tools/explain/parallel.hpp"
 #include "tools/explain/spectrum.hpp"
@@ -18,8 +19,8 @@ namespace {
 
 /// Names that go on to the full fit, starts of an effect with several parameters, and the lengths of the fits.
 constexpr std::size_t kSemifinalists = 6;
-/// Behind the first names, one goes on only with this share of the leader's gain: what is missing beside the leader is
-/// looked for again when that is in the model.
+/// Behind the first names, one goes on only with this share of the leader's gain, and a law only with this share of its
+/// name's best: what is missing beside the leader is looked for again when that is in the model.
 constexpr std::size_t kFirstNames = 3;
 constexpr double kHopeful = 0.1;
 /// A law with more parameters of its own is not scanned: it starts from where the laws that it contains end.
@@ -27,6 +28,7 @@ constexpr std::size_t kMostScanned = 6;
 constexpr std::size_t kStarts = 3;
 constexpr int kShortFit = 6;
 constexpr int kFullFit = 12;
+constexpr int kFullFits = 2;
 /// How far a parameter is set off when a fit is started again, and how many of the starts are fitted.
 constexpr double kRestartFactor = 5.0;
 constexpr std::size_t kRestarts = 4;
@@ -38,6 +40,18 @@ void sort_best_first(std::vector<Screened<Family>>& screened) {
   std::erase_if(screened, [](const Screened<Family>& s) { return !s.good; });
   std::sort(screened.begin(), screened.end(),
             [](const Screened<Family>& a, const Screened<Family>& b) { return a.criterion < b.criterion; });
+}
+
+/// True if a law's criterion is close enough to its name's best, of either sign.
+bool is_hopeful_law(double criterion, double best) { return criterion <= best + (1.0 - kHopeful) * std::abs(best); }
+
+/// True if two candidates have one of their own parameters, those from `first` on, in common.
+template <class Family>
+bool share_a_parameter(const Screened<Family>& one, const Screened<Family>& other, std::size_t first) {
+  const auto own = [&](const Screened<Family>& s) { return std::span(s.fitted.free).subspan(first); };
+  return std::ranges::any_of(own(one), [&](const FreeParameter& parameter) {
+    return std::ranges::any_of(own(other), [&](const FreeParameter& p) { return p.key == parameter.key; });
+  });
 }
 
 }  // namespace
@@ -72,6 +86,19 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   normal_.compute(matrix);
   Eigen::VectorXd move;
   cost_ = eliminated_cost(evaluator.residuals(prediction_), move);
+
+  Screened<Family> unaided{{}, current_, 0.0, 0.0, true};
+  for (std::size_t k = 0; k < frozen_.u.size(); ++k) {
+    unaided.fitted.u[k] += move(static_cast<Eigen::Index>(k));
+  }
+  std::array<double, kStages> reached{};
+  for (const Stage stage : {Stage::scan, Stage::short_fit, Stage::full_fit}) {
+    for (int pass = 0; pass < (stage == Stage::full_fit ? kFullFits : 1); ++pass) {
+      improve(unaided, stage);
+    }
+    reached[static_cast<std::size_t>(stage)] = unaided.criterion;
+  }
+  unaided_ = reached;
 }
 
 template <class Family>
@@ -92,22 +119,25 @@ std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate
   sort_best_first(screened);
 
   std::vector<std::string> names;
+  std::vector<double> reached;
   std::vector<std::size_t> semifinalists;
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    const std::string& name = screened[i].candidate.name;
-    const bool hopeful = names.size() < kFirstNames || screened[i].criterion < kHopeful * screened.front().criterion;
-    if (std::find(names.begin(), names.end(), name) == names.end() && names.size() < kSemifinalists && hopeful) {
-      names.push_back(name);
+    const Screened<Family>& one = screened[i];
+    const bool hopeful = names.size() < kFirstNames || one.criterion < kHopeful * screened.front().criterion;
+    auto name = std::find(names.begin(), names.end(), one.candidate.name);
+    if (name == names.end() && names.size() < kSemifinalists && hopeful) {
+      name = names.insert(names.end(), one.candidate.name);
+      reached.push_back(one.criterion);
     }
-    if (std::find(names.begin(), names.end(), name) != names.end()) {
+    if (name != names.end() && is_hopeful_law(one.criterion, reached[static_cast<std::size_t>(name - names.begin())])) {
       semifinalists.push_back(i);
     }
   }
   done = 0;
   parallel_for(semifinalists.size(), threads_, [&](std::size_t i) {
     Screened<Family>& semifinalist = screened[semifinalists[i]];
-    for (int pass = 0; pass < 2 && semifinalist.scanned && !watch.interrupted(); ++pass) {
-      improve(semifinalist, kFullFit);
+    for (int pass = 0; pass < kFullFits && semifinalist.scanned && !watch.interrupted(); ++pass) {
+      improve(semifinalist, Stage::full_fit);
     }
     watch.progress(fmt::format("{}: {} of {} best candidates fitted", stage, ++done, semifinalists.size()));
   });
@@ -207,7 +237,7 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate, const std:
   for (std::size_t i = 0; i < starts.size() && i < (hopeless ? 1 : valleys); ++i) {
     Screened<Family> screened{candidate, fitted, 0.0, 0.0, true};
     screened.fitted.u = starts[i].u;
-    improve(screened, hopeless ? 0 : kShortFit);
+    improve(screened, hopeless ? Stage::scan : Stage::short_fit);
     if (screened.good && (!best.good || screened.criterion < best.criterion)) {
       best = std::move(screened);
     }
@@ -238,21 +268,21 @@ Screened<Family> Screening<Family>::restart(const Candidate& candidate, const st
   }
   parallel_for(restarts.size(), threads_, [&](std::size_t i) {
     if (!watch.interrupted()) {
-      improve(restarts[i], kShortFit);
+      improve(restarts[i], Stage::short_fit);
     }
   });
   sort_best_first(restarts);
   restarts.resize(std::min<std::size_t>(restarts.size(), 2));
   parallel_for(restarts.size(), threads_, [&](std::size_t i) {
-    for (int pass = 0; pass < 2 && !watch.interrupted(); ++pass) {
-      improve(restarts[i], kFullFit);
+    for (int pass = 0; pass < kFullFits && !watch.interrupted(); ++pass) {
+      improve(restarts[i], Stage::full_fit);
     }
   });
   sort_best_first(restarts);
   Screened<Family> stands{candidate, fitted, 0.0, 0.0, true};
   stands.fitted.u = frozen_.u;
   stands.fitted.u.insert(stands.fitted.u.end(), own.begin(), own.end());
-  improve(stands, 0);
+  improve(stands, Stage::scan);
   const bool elsewhere =
       !restarts.empty() && (!stands.good || restarts.front().criterion < stands.criterion - kStrongEvidence);
   return elsewhere ? restarts.front() : Screened<Family>{candidate, fitted, 0.0, 0.0, false};
@@ -267,7 +297,8 @@ void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& scree
   parallel_for(screened.size(), threads_, [&](std::size_t i) {
     const auto best = std::find_if(ended.begin(), ended.end(),
                                    [&](const Screened<Family>& s) { return s.candidate.name == ended[i].candidate.name; });
-    const bool wanted = std::find(names.begin(), names.end(), ended[i].candidate.name) != names.end();
+    const bool wanted = std::find(names.begin(), names.end(), ended[i].candidate.name) != names.end() &&
+                        share_a_parameter(*best, ended[i], first);
     if (!wanted || best == ended.begin() + static_cast<std::ptrdiff_t>(i) || watch.interrupted()) {
       return;
     }
@@ -282,7 +313,7 @@ void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& scree
       }
     }
     std::copy(best->fitted.u.begin(), best->fitted.u.begin() + static_cast<std::ptrdiff_t>(first), again.fitted.u.begin());
-    improve(again, kFullFit);
+    improve(again, Stage::full_fit);
     if (again.good && (!screened[i].scanned || again.criterion < screened[i].criterion)) {
       screened[i] = std::move(again);
     } else {
@@ -293,11 +324,12 @@ void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& scree
 }
 
 template <class Family>
-void Screening<Family>::improve(Screened<Family>& screened, int iterations) const {
+void Screening<Family>::improve(Screened<Family>& screened, Stage stage) const {
   if (!screened.good) {
     return;
   }
   const Stopwatch stopwatch;
+  const int iterations = stage == Stage::scan ? 0 : stage == Stage::short_fit ? kShortFit : kFullFit;
   Fitted<Family>& fitted = screened.fitted;
   screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, Slopes::exact, &frozen_});
   Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
@@ -310,7 +342,7 @@ void Screening<Family>::improve(Screened<Family>& screened, int iterations) cons
                                   Eigen::Map<const Eigen::VectorXd>(frozen_.u.data(), count));
   fitted.temper = temper_of<Family>(evaluator_, residual);
   screened.criterion = information_criterion(mean_squares(residual), goodness_.fitted, fitted.free.size()) -
-                       information_criterion(goodness_.fitted, goodness_.fitted, current_.free.size());
+                       unaided_[static_cast<std::size_t>(stage)];
   screened.seconds += stopwatch.seconds();
 }
 

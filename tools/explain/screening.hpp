@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ template <class Family>
 struct Screened {
   Candidate candidate;
   Fitted<Family> fitted;
-  double criterion = 0.0;  ///< BIC against the current model; negative is better
+  /// BIC less that of the current model, whose own parameters were moved by the same linear fits; negative is better.
+  double criterion = 0.0;
   double seconds = 0.0;
   bool good = false;    ///< false: no start could be simulated
   bool scanned = true;  ///< false: still waits for a law that it contains, to start from there
@@ -49,6 +51,9 @@ class Screening {
   Screened<Family> restart(const Candidate& candidate, const std::vector<double>& own, const Watch& watch) const;
 
  private:
+  enum class Stage { scan, short_fit, full_fit };
+  static constexpr std::size_t kStages = 3;
+
   struct Start {
     std::vector<double> u;  ///< all coordinates, the frozen ones moved linearly
     double cost = 0.0;
@@ -62,7 +67,8 @@ class Screening {
   Screened<Family> start(const Candidate& candidate, const std::vector<double>& sharpened) const;
   void start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
                            const Watch& watch) const;
-  void improve(Screened<Family>& screened, int iterations) const;
+  /// Fits on from where a candidate stands, as a stage does.
+  void improve(Screened<Family>& screened, Stage stage) const;
   Eigen::VectorXd residuals_at_frozen(const Fitted<Family>& fitted) const;
   double eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const;
   std::vector<ChannelFit> mean_squares(const Eigen::VectorXd& residual) const;
@@ -80,6 +86,8 @@ class Screening {
   Eigen::VectorXd prior_gradient_;
   Eigen::LLT<Eigen::MatrixXd> normal_;
   double cost_ = 0.0;  ///< of the current model, as `eliminated_cost` counts it
+  /// BIC of the current model where its own parameters go in each stage without a candidate.
+  std::array<double, kStages> unaided_{};
 };
 
 extern template class Screening<SimplexFamily>;

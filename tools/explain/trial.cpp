@@ -13,6 +13,9 @@ std::string reason_of(const Trial& trial, const Trial* best) {
     return fmt::format("lowers the held-out error by {:.1f} % and the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
                        -trial.delta_criterion);
   }
+  if (!trial.screened) {
+    return "not fitted: none of the laws that it contains goes on";
+  }
   if (!trial.refined) {
     return trial.delta_criterion > -kStrongEvidence ? "does not lower the BIC" : "behind the finalists in screening";
   }
@@ -20,8 +23,8 @@ std::string reason_of(const Trial& trial, const Trial* best) {
     return fmt::format("{} is better by {:.0f} in BIC", label(best->candidate),
                        trial.delta_criterion - best->delta_criterion);
   }
-  return fmt::format("lowers the held-out error by only {:.2f} %, the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
-                     -trial.delta_criterion);
+  return fmt::format("changes the held-out error by {:+.2f} % and the BIC by {:+.0f}: too little",
+                     100.0 * (trial.held_out_ratio - 1.0), trial.delta_criterion);
 }
 
 }  // namespace hotfire::explain

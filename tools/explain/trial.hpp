@@ -22,6 +22,7 @@ struct Trial {
   double seconds = 0.0;
   std::string decision;  ///< "kept", "dropped", "taken out"
   std::string reason;
+  bool screened = true;  ///< false: never fitted, a law that was to start from where one that it contains ends
 };
 
 /// An effect the search kept, with what it reached when it was added and the other effects tried in its place, best first.
