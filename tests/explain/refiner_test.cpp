@@ -1,13 +1,17 @@
 #include "tools/explain/refiner.hpp"
 
-#include "tools/simulate/simulate.hpp"
-
 #include <CppUTest/TestHarness.h>
+
+#include <cmath>
+
+#include "tests/explain/coloured_noise.hpp"
+#include "tools/simulate/simulate.hpp"
 
 namespace {
 
 using namespace hotfire;
 using explain::Dataset;
+using explain::DirectFamily;
 using explain::Evaluator;
 using explain::Fitted;
 using explain::Resolution;
@@ -54,9 +58,77 @@ bool screens_roughly(bool with_pressure) {
   return refiner.for_screening(declared).resolution() == Resolution::rough;
 }
 
+/// The law of sliding friction with a name.
+explain::Candidate sliding_friction(const Dataset& data, const std::string& law) {
+  for (const explain::Candidate& candidate : explain::all_candidates<DirectFamily>(data)) {
+    if (candidate.name == "sliding_friction" && candidate.option_name == law) {
+      return candidate;
+    }
+  }
+  return {};
+}
+
+/// A guided mass under a law of friction, its parameters `above` the typical ones in their coordinates, which are
+/// logarithms.
+Fitted<DirectFamily> guided_mass(const Dataset& data, const explain::Scales& scales, const std::string& law, double above) {
+  Fitted<DirectFamily> model;
+  model.base.mass.inertia = 1.0;
+  model.base.mass.damping = 0.5;
+  model.base.mass.stiffness = 100.0;
+  const explain::Candidate candidate = sliding_friction(data, law);
+  explain::activate<DirectFamily>(model.base, candidate);
+  model.free = explain::effect_parameters<DirectFamily>(model.base, candidate, scales);
+  for (const explain::FreeParameter& parameter : model.free) {
+    model.u.push_back(parameter.coordinate(parameter.unit_size) + above);
+  }
+  model.temper.assign(data.channels.size(), 1.0);
+  return model;
+}
+
+/// The mass under `lugre` friction pushed to and fro, read to a ten-thousandth of its travel.
+Dataset pushed_to_and_fro() {
+  Record record;
+  record.name = "strokes.csv";
+  record.path = record.name;
+  record.period = 5e-3;
+  record.rows = 4000;
+  record.channels = {{"force", "N", std::vector<double>(record.rows)}, {"position", "m", std::vector<double>(record.rows)}};
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    const double t = static_cast<double>(row) * record.period;
+    record.channels[0].values[row] = 20.0 * std::sin(1.7 * t) * std::sin(0.31 * t);
+  }
+  ModelFile model;
+  model.parameters = DirectParameters{};
+  model.noise = {{"position", 1e-5}};
+  const Dataset shape = explain::make_dataset(model, {record});
+  const Fitted<DirectFamily> truth = guided_mass(shape, {10.0, 0.1, 0.5}, "lugre", 0.4);
+  model.parameters = Evaluator<DirectFamily>::with_values(truth.base, truth.free, truth.u);
+  record.channels[1].values = simulate(model, record).find("position")->values;
+  const std::vector<double> noise = test::coloured_noise(record.rows, 0.0, 3);
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    record.channels[1].values[row] += 1e-5 * noise[row];
+  }
+  return explain::make_dataset(model, {record});
+}
+
 }  // namespace
 
 TEST_GROUP(Refiner){};
+
+TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther) {
+  const Dataset data = pushed_to_and_fro();
+  const Evaluator<DirectFamily> fine(data, Resolution::fine);
+  const explain::Scales scales{10.0, 0.1, 0.5};
+  const explain::Watch watch;
+  const explain::Refiner<DirectFamily> refiner(data, fine, fine, fine, scales, 2, watch);
+  const auto dahl = refiner.ranked(guided_mass(data, scales, "dahl", 0.0), explain::kRanking);
+  CHECK_FALSE(explain::reaches_noise(data, dahl));
+  const auto richer = refiner.of_richer_laws(1, dahl, sliding_friction(data, "dahl"));
+  LONGS_EQUAL(1, richer.size());
+  STRCMP_EQUAL("lugre", richer.front().candidate.option_name.c_str());
+  CHECK_TRUE(explain::reaches_noise(data, richer.front().model));
+  CHECK_TRUE(refiner.of_richer_laws(1, richer.front().model, richer.front().candidate).empty());
+}
 
 TEST(Refiner, ScreensWithRoughStepsWhereTheyChangeLittleOfWhatIsLeft) { CHECK_TRUE(screens_roughly(false)); }
 
