@@ -134,8 +134,13 @@ class Search {
     if (!is_settled_) {
       take(refiner_.settled(result_.explained.model));
     }
+    const int round = result_.trials.back().round;
     for (Kept& kept : result_.kept) {
-      take(refiner_.by_simplest_law(result_.explained, kept.trial.candidate));
+      Candidate law = kept.trial.candidate;
+      Assessed<Family> simple = refiner_.by_simplest_law(result_.explained, law);
+      if (label(law) != label(kept.trial.candidate)) {
+        give_law(kept.trial.candidate, {law, std::move(simple)}, round, "leaves out only what the data leave open of");
+      }
     }
     Assessed<Family> beyond = refiner_.over_ripples(result_.explained);
     if (excess_over_noise(data_, beyond.prediction) < excess_over_noise(data_, result_.explained.prediction)) {
@@ -209,15 +214,25 @@ class Search {
   /// Gives an effect that was kept before a law with more parameters, if that is clearly better now.
   void take_richer_law(int round, Candidate& candidate) {
     for (OfLaw<Family>& richer : refiner_.of_richer_laws(round, result_.explained, candidate)) {
-      Trial trial{round, richer.candidate, false, 0.0, 1.0, 0.0, "kept", ""};
+      Trial trial;
       compare(trial, richer.model, result_.explained, richer.model.goodness.fitted);
       if (is_supported(trial)) {
-        trial.reason = fmt::format("takes the place of {} since a later effect was added", label(candidate));
-        candidate = trial.candidate;
-        result_.trials.push_back(std::move(trial));
-        take(refiner_.settled(richer.model.model));
+        richer.model = refiner_.settled(richer.model.model);
+        give_law(candidate, std::move(richer), round, "is better, with a later effect added, than");
       }
     }
+  }
+
+  /// Gives an effect that was kept another law, and says why.
+  void give_law(Candidate& candidate, OfLaw<Family> other, int round, const std::string& why) {
+    if (!other.model.good()) {
+      return;
+    }
+    Trial trial{round, other.candidate, true, 0.0, 1.0, 0.0, "kept", why + " " + label(candidate)};
+    compare(trial, other.model, result_.explained, other.model.goodness.fitted);
+    result_.trials.push_back(std::move(trial));
+    candidate = other.candidate;
+    result_.explained = std::move(other.model);
   }
 
   /// Takes out every effect without which the model is as good, or reaches the noise, where the search would have ended:
