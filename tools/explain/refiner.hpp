@@ -30,8 +30,10 @@ class Refiner {
 
   /// Fitted as its rank needs it, the way to near the end under rough steps where they serve.
   Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const;
-  /// Fitted as the report says it.
-  Assessed<Family> settled(const Fitted<Family>& fitted) const { return refined(fine_, fine_, threads_, fitted, kFinal); }
+  /// Fitted under fine steps, as the report says it.
+  Assessed<Family> settled(const Fitted<Family>& fitted, const Effort& effort = kFinal) const {
+    return refined(fine_, fine_, threads_, fitted, effort);
+  }
 
   /// A model that is as near the noise as the ripples of its error are high, and leaves something, may sit in one: it is
   /// fitted along differences that are wider than a ripple, and then along exact derivatives, from where those ended. The

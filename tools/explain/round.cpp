@@ -171,13 +171,21 @@ void Round<Family>::rank() {
 }
 
 /// The best finalist, by the simplest of its laws and under fine steps where it may be the last, with which all others are
-/// compared once more.
+/// compared once more. One that is not supported as it was ranked rarely is under fine steps: a short fit tells.
 template <class Family>
 Assessed<Family> Round<Family>::winner() {
   Assessed<Family> winner = finalists_[*best_];
   if (is_near_noise(*best_)) {
     tell("with fine steps", *best_);
-    winner = refiner_.by_simplest_law(refiner_.settled(winner.model), trials_[*best_].candidate);
+    if (!is_supported(trials_[*best_])) {
+      winner = refiner_.settled(winner.model, kCheck);
+      if (winner.good()) {
+        compare(trials_[*best_], winner, current_, winner.goodness.fitted);
+      }
+    }
+    if (winner.good() && is_supported(trials_[*best_])) {
+      winner = refiner_.by_simplest_law(refiner_.settled(winner.model), trials_[*best_].candidate);
+    }
   }
   for (const std::size_t i : order_) {
     const Assessed<Family>& finalist = i == *best_ ? winner : finalists_[i];
