@@ -94,12 +94,7 @@ Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& cand
   rest.base = Evaluator<Family>::with_values(rest.base, rest.free, rest.u);
   rest.base.effects.active[candidate.effect] = false;
   const std::string prefix = "effects." + candidate.name + ".";
-  for (std::size_t k = rest.free.size(); k-- > 0;) {
-    if (rest.free[k].key.starts_with(prefix)) {
-      rest.free.erase(rest.free.begin() + static_cast<std::ptrdiff_t>(k));
-      rest.u.erase(rest.u.begin() + static_cast<std::ptrdiff_t>(k));
-    }
-  }
+  drop_parameters(rest, [&](const FreeParameter& parameter) { return parameter.key.starts_with(prefix); });
   return rest;
 }
 

@@ -63,6 +63,17 @@ bool is_within_tolerances(const Fitted<Family>& model);
 template <class Family>
 bool lacks_nothing(const Dataset& data, const Assessed<Family>& assessed);
 
+/// Takes the free parameters of which `unwanted` is true out of a model.
+template <class Family, class F>
+void drop_parameters(Fitted<Family>& model, F&& unwanted) {
+  for (std::size_t k = model.free.size(); k-- > 0;) {
+    if (unwanted(model.free[k])) {
+      model.free.erase(model.free.begin() + static_cast<std::ptrdiff_t>(k));
+      model.u.erase(model.u.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+}
+
 /// A model without one of its effects, the other parameters where they are.
 template <class Family>
 Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate);

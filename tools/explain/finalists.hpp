@@ -30,6 +30,15 @@ inline constexpr double kClearsUp = 2.0 / 3.0;
 /// itself is told to one or two percent, which is as much.
 inline constexpr double kNothingLeft = 0.2;
 
+/// Sets how a model does against another, on given effective samples.
+template <class Family>
+void compare(Trial& trial, const Assessed<Family>& with, const Assessed<Family>& without,
+             const std::vector<ChannelFit>& effective) {
+  trial.refined = true;
+  trial.delta_criterion = criterion_change(with, without, effective);
+  trial.held_out_ratio = held_out_ratio(with, without);
+}
+
 /// The screened candidates that are fitted jointly: the best names, each with its close variants.
 template <class Family>
 std::vector<std::size_t> finalists_of(const std::vector<Screened<Family>>& screened) {

@@ -88,15 +88,19 @@ template <class Family>
 std::vector<OfLaw<Family>> Refiner<Family>::of_richer_laws(int round, const Assessed<Family>& winner,
                                                            const Candidate& candidate) const {
   std::vector<OfLaw<Family>> richer;
+  if (lacks_nothing(data_, winner)) {
+    return richer;
+  }
   const std::size_t own = effect_parameters<Family>(winner.model.base, candidate, scales_).size();
+  const Fitted<Family> rest = without_effect(winner.model, candidate);
   for (const Candidate& law : laws_of<Family>(data_, candidate)) {
-    Fitted<Family> start = without_effect(winner.model, candidate);
-    activate<Family>(start.base, law);
-    const std::vector<FreeParameter> parameters = effect_parameters<Family>(start.base, law, scales_);
-    if (parameters.size() <= own || is_done(winner)) {
+    const std::vector<FreeParameter> parameters = effect_parameters<Family>(rest.base, law, scales_);
+    if (parameters.size() <= own || watch_.interrupted()) {
       continue;
     }
     watch_.progress(fmt::format("round {}: fitting {} from where {} ended", round, label(law), label(candidate)));
+    Fitted<Family> start = rest;
+    activate<Family>(start.base, law);
     for (const FreeParameter& parameter : parameters) {
       start.free.push_back(parameter);
       start.u.push_back(parameter.coordinate(parameter.unit_size));
@@ -137,14 +141,10 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
     }
     Fitted<Family> reduced = winner.model;
     activate<Family>(reduced.base, law);
-    for (std::size_t k = reduced.free.size(); k-- > 0;) {
-      const std::string& key = reduced.free[k].key;
-      const auto is = [&](const FreeParameter& parameter) { return parameter.key == key; };
-      if (std::any_of(own.begin(), own.end(), is) && std::none_of(fewer.begin(), fewer.end(), is)) {
-        reduced.free.erase(reduced.free.begin() + static_cast<std::ptrdiff_t>(k));
-        reduced.u.erase(reduced.u.begin() + static_cast<std::ptrdiff_t>(k));
-      }
-    }
+    drop_parameters(reduced, [&](const FreeParameter& parameter) {
+      const auto is = [&](const FreeParameter& p) { return p.key == parameter.key; };
+      return std::any_of(own.begin(), own.end(), is) && !has(parameter);
+    });
     Assessed<Family> simple = settled(reduced);
     const std::vector<ChannelFit>& effective = winner.goodness.fitted;
     if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {

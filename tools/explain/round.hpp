@@ -56,15 +56,6 @@ class Round {
   std::optional<std::size_t> best_;          ///< by the BIC, of those that were
 };
 
-/// Sets how a model does against another, on given effective samples.
-template <class Family>
-void compare(Trial& trial, const Assessed<Family>& with, const Assessed<Family>& without,
-             const std::vector<ChannelFit>& effective) {
-  trial.refined = true;
-  trial.delta_criterion = criterion_change(with, without, effective);
-  trial.held_out_ratio = held_out_ratio(with, without);
-}
-
 /// True if what was tried lowers the BIC and the held-out error clearly.
 bool is_supported(const Trial& trial);
 

@@ -101,11 +101,12 @@ class Search {
     });
     const Evaluator<Family> evaluator = refiner_.for_screening(current);
     const Screening<Family> screening(evaluator, current, scales_, options_.threads);
-    const auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
+    auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     if (options_.watch.interrupted()) {
       return false;
     }
-    RoundResult<Family> found = Round<Family>(round, data_, refiner_, result_.explained, screened, options_.watch).run();
+    Round<Family> fits(round, data_, refiner_, result_.explained, std::move(screened), options_.watch);
+    RoundResult<Family> found = fits.run();
     result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());
     if (!found.kept) {
       return false;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "tools/explain/finalists.hpp"
-#include "tools/explain/round.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
