@@ -12,17 +12,11 @@ namespace hotfire::explain {
 
 namespace {
 
-/// An effect is kept only if it lowers the held-out error by this share of it.
-constexpr double kLeastHeldOutDrop = 0.01;
 /// A model that leaves less than this many times the noise may be the last; one that leaves more is fitted again beside the
 /// next effect.
 constexpr double kNearNoise = 3.0;
 
 }  // namespace
-
-bool is_supported(const Trial& trial) {
-  return trial.delta_criterion < -kStrongEvidence && trial.held_out_ratio < 1.0 - kLeastHeldOutDrop;
-}
 
 template <class Family>
 Round<Family>::Round(int number, const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& current,

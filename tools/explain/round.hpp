@@ -56,8 +56,6 @@ class Round {
   std::optional<std::size_t> best_;          ///< by the BIC, of those that were
 };
 
-/// True if what was tried lowers the BIC and the held-out error clearly.
-bool is_supported(const Trial& trial);
 
 extern template class Round<SimplexFamily>;
 extern template class Round<DirectFamily>;

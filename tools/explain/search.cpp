@@ -258,7 +258,7 @@ class Search {
         compare(trial, rest, result_.explained, rest.goodness.fitted);
       }
       trial.seconds = stopwatch.seconds();
-      if (rest.good() && (trial.delta_criterion < kStrongEvidence || lacks_nothing(data_, rest))) {
+      if (rest.good() && (is_as_good(trial) || lacks_nothing(data_, rest))) {
         result_.trials.push_back(trial);
         if (i == newest) {
           result_.rival.reset();

@@ -8,6 +8,14 @@ std::string label(const Candidate& candidate) {
   return candidate.option_name.empty() ? candidate.name : candidate.name + " (" + candidate.option_name + ")";
 }
 
+bool is_supported(const Trial& trial) {
+  return trial.delta_criterion < -kStrongEvidence && trial.held_out_ratio < 1.0 - kLeastHeldOutDrop;
+}
+
+bool is_as_good(const Trial& trial) {
+  return trial.delta_criterion < kStrongEvidence && trial.held_out_ratio < 1.0 + kLeastHeldOutDrop;
+}
+
 std::string reason_of(const Trial& trial, const Trial* best) {
   if (trial.decision == "kept") {
     return fmt::format("lowers the held-out error by {:.1f} % and the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),

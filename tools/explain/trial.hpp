@@ -9,6 +9,8 @@ namespace hotfire::explain {
 
 /// An effect is kept if it lowers the BIC by at least this much: odds beyond 150 to 1 [Kass and Raftery 1995, p. 777].
 inline constexpr double kStrongEvidence = 10.0;
+/// And only if it lowers the held-out error by this share of it.
+inline constexpr double kLeastHeldOutDrop = 0.01;
 /// Two candidates whose BIC differs by less than this are not told apart by the data.
 inline constexpr double kTied = 10.0;
 
@@ -33,6 +35,13 @@ struct Kept {
 
 /// "gimbal_friction (lugre)".
 std::string label(const Candidate& candidate);
+
+/// True if what was tried lowers the BIC and the held-out error clearly.
+bool is_supported(const Trial& trial);
+
+/// True if what was tried, a model without an effect, raises neither clearly. The BIC alone would not do: each of two models
+/// that leave another channel far off is the better one on its own effective samples.
+bool is_as_good(const Trial& trial);
 
 /// Why a candidate was kept or dropped, in words. `best` is the one with the lowest BIC of its round, if any was fitted
 /// jointly.
