@@ -68,7 +68,8 @@ class Axis {
     Eigen::Matrix<S, 8, 1> y = Eigen::Matrix<S, 8, 1>::Zero();
     Eigen::Matrix<S, 6, 1> inputs = Eigen::Matrix<S, 6, 1>::Zero();
     S spring_force{0.0};
-    S clock{0.0};  ///< time of the record [s], for effects that depend on it
+    S built_up{0.0};  ///< of the flow input, what the effects of the oil add [m^3/s]
+    S clock{0.0};     ///< time of the record [s], for effects that depend on it
     EffectStates<S, List> effects{};
     std::array<S, 3> measured{};
   };
@@ -80,6 +81,7 @@ class Axis {
     Eigen::Matrix<S, 8, 1> start;
     Eigen::Matrix<S, 8, 1> free;
     Eigen::Matrix<S, 8, 1> end;
+    S built_up{0.0};  ///< flow of the oil's effects among those inputs [m^3/s]
 
     /// Mean over the step, and mean rate: displacement over the step.
     S mean(int index) const noexcept { return S(0.5) * (start(index) + end(index)); }
@@ -130,6 +132,10 @@ class Axis {
     hold_ = exact_hold<S, 8, 6>(linear, driven, h);
     piston_compliance_ = -hold_.response(kPiston, kPistonForce) / h;
     engine_compliance_ = -hold_.response(kAngle, kEngineTorque) / h;
+    const S relief = actuator.piston_area * hold_.response(kPiston, kFlow) / h +
+                     0.5 * actuator.leakage * hold_.response(kPressure, kFlow) -
+                     0.5 * valve.rated_flow * hold_.response(kOpening, kFlow);
+    flow_relief_ = relief < kMostRelief ? relief : S{kMostRelief};
   }
 
   const Parameters& parameters() const noexcept { return parameters_; }
@@ -181,6 +187,7 @@ class Axis {
   /// Where the inputs found so far take the step.
   void predict(const State& state, Advance& advance) const noexcept {
     advance.end = advance.free + times(hold_.response, state.inputs);
+    advance.built_up = state.built_up;
   }
 
   /// Valve, oil, piston and load spring over a predicted step: fills their inputs and the spring's force.
@@ -206,8 +213,9 @@ class Axis {
     const S piston_rate = advance.rate(kPiston, h_);
     const S net_flow = valve.rated_flow * mean(kOpening) + state.inputs(kFlow) - actuator.piston_area * piston_rate -
                        actuator.leakage * mean(kPressure);
-    state.inputs(kFlow) +=
-        sum_over<Site::pressure>(effects, state.effects, Compression<S>{net_flow, mean(kPressure), h_}, keep);
+    const Compression<S> oil_compression{net_flow + flow_relief_ * advance.built_up, flow_relief_, mean(kPressure), h_};
+    state.built_up = sum_over<Site::pressure>(effects, state.effects, oil_compression, keep);
+    state.inputs(kFlow) += state.built_up;
     state.inputs(kPistonForce) = sum_over<Site::piston>(
         effects, state.effects, Motion<S>{mean(kPiston), piston_rate, piston_rate, piston_compliance_, h_, time}, keep);
 
@@ -252,6 +260,10 @@ class Axis {
   static const std::array<S, 3>& measured(const State& state) noexcept { return state.measured; }
 
  private:
+  /// A step of several cycles of the oil's resonance may take away more flow than is added: a law that takes nearly all
+  /// compliance from the oil would have no solution.
+  static constexpr double kMostRelief = 0.95;
+
   enum Input { kCommand, kValveCommand, kFlow, kPistonForce, kSpringForce, kEngineTorque };
 
   static Spring<S> spring_around(const Uncoupled&, const Spring<S>& own) noexcept { return own; }
@@ -342,6 +354,7 @@ class Axis {
   ExactHold<S, 8, 6> hold_;
   S piston_compliance_{0.0};
   S engine_compliance_{0.0};
+  S flow_relief_{0.0};
 };
 
 }  // namespace hotfire::model

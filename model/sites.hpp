@@ -57,10 +57,15 @@ struct Hydraulics {
 };
 
 /// What an effect sees at the site `pressure`: it returns flow added to the flow that builds up pressure [m^3/s].
+///
+/// The piston yields to the pressure within the step: `free_flow` is the net flow without this effect, and `relief` how much
+/// of it a unit of added flow takes away, in [0, 1), so that the law can solve net = free_flow - relief * added in closed
+/// form instead of being stepped explicitly, which the oil's resonance would not stand.
 template <class S>
 struct Compression {
   using Scalar = S;
-  S net_flow;       ///< into the extend chamber less what the piston takes, mean over the step [m^3/s]
+  S free_flow;      ///< into the extend chamber less what the piston takes, mean over the step [m^3/s]
+  S relief;         ///< [-]
   S load_pressure;  ///< mean over the step [Pa]
   double h;
 };

@@ -61,8 +61,8 @@ struct UnlistedFlow {
   }
 };
 
-/// Oil whose compressibility depends on the load pressure: what flows in builds pressure up to a share that is a table over
-/// it, 1 + share(P) (aerated oil, a hose that stiffens).
+/// Oil whose compressibility depends on the load pressure: that of the declared bulk modulus, and of it a further share that
+/// is a table over the pressure (aerated oil, a hose that stiffens): dP/dt = (4 beta_e / V_T) net flow / (1 + share(P)).
 struct UnlistedPressure {
   static constexpr std::string_view name = "unlisted_pressure";
   static constexpr Site site = Site::pressure;
@@ -78,8 +78,8 @@ struct UnlistedPressure {
     static constexpr auto fields() { return std::array<Field<Params>, 0>{}; }
     static constexpr auto tables() {
       return std::array{TableField<Params, UnlistedTable<S>>{
-          "load_pressure", "Pa", "share_at_pressure", "1", -1.0, 10.0,
-          "share by which pressure builds up faster than declared at a load pressure", &Params::table, 0b1, 0.2}};
+          "load_pressure", "Pa", "compressibility_at_pressure", "1", -0.5, 1000.0,
+          "share by which the oil is more compressible than declared at a load pressure", &Params::table, 0b1, 0.2}};
     }
   };
 
@@ -88,7 +88,9 @@ struct UnlistedPressure {
 
   template <class S>
   static S step(const Params<S>& params, State<S>&, const Compression<S>& input) noexcept {
-    return input.net_flow * unlisted::value_at<S>(params.table, input.load_pressure);
+    const S share = unlisted::value_at<S>(params.table, input.load_pressure);
+    // Of the net flow, what does not build up pressure as declared is -share / (1 + share).
+    return -share * input.free_flow / (1.0 + share * (1.0 - input.relief));
   }
 };
 

@@ -193,7 +193,8 @@ inline void randomise(Random& random, model::Hydraulics<double>& input) {
   input.flow = random.either_sign(1e-12, 1.0);
 }
 inline void randomise(Random& random, model::Compression<double>& input) {
-  input.net_flow = random.either_sign(1e-9, 1.0);
+  input.free_flow = random.either_sign(1e-9, 1.0);
+  input.relief = random.uniform(0.0, 0.95);
   input.load_pressure = random.either_sign(1.0, 1e8);
 }
 inline void randomise(Random& random, model::Motion<double>& input) {
@@ -232,7 +233,7 @@ inline void move(double t, model::Hydraulics<double>& input) {
   input = {4e6 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), 20.684e6, input.h, t, 2e-4 * std::sin(5.0 * t)};
 }
 inline void move(double t, model::Compression<double>& input) {
-  input = {1e-3 * std::cos(9.0 * t), 4e6 * std::sin(9.0 * t), input.h};
+  input = {1e-3 * std::cos(9.0 * t), 0.2, 4e6 * std::sin(9.0 * t), input.h};
 }
 inline void move(double t, model::Motion<double>& input) {
   const double velocity = 0.7 * std::cos(7.0 * t) + 0.3 * std::cos(20.0 * t);
@@ -270,7 +271,7 @@ model::Hydraulics<S> converted(const model::Hydraulics<double>& in) {
 }
 template <class S>
 model::Compression<S> converted(const model::Compression<double>& in) {
-  return {S(in.net_flow), S(in.load_pressure), in.h};
+  return {S(in.free_flow), S(in.relief), S(in.load_pressure), in.h};
 }
 template <class S>
 model::Motion<S> converted(const model::Motion<double>& in) {
