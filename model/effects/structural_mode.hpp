@@ -7,7 +7,7 @@
 
 namespace hotfire::model {
 
-/// One more lightly damped mode at the attach point:
+/// One more lightly damped mode at the attach point (a damping ratio beyond 0.2 is no mode of a structure: it is creep):
 ///   eta'' + 2 zeta w eta' + w^2 eta = shape F,   motion = shape eta,   w = 2 pi frequency.
 ///
 /// Advanced exactly with F held over the step (2x2 block), never by an explicit rule. Returns the mean motion over the step,
@@ -28,7 +28,7 @@ struct StructuralMode {
     static constexpr auto fields() {
       return std::array{
           Field<Params>{"frequency", "Hz", 0.1, 200.0, 6.0, "natural frequency of the mode", &Params::frequency},
-          Field<Params>{"damping_ratio", "1", 1e-4, 0.9, 0.02, "damping ratio of the mode", &Params::damping_ratio},
+          Field<Params>{"damping_ratio", "1", 1e-4, 0.2, 0.02, "damping ratio of the mode", &Params::damping_ratio},
           Field<Params>{"shape", "kg^-0.5", 0.0, 1.0, 3e-3, "mass-normalised shape at the attach point", &Params::shape}};
     }
   };
