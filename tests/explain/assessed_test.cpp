@@ -49,3 +49,16 @@ TEST(Assessed, ADeclaredParameterSixTolerancesOffStandsInForSomethingAndAnEffect
   model.free[1].scale = FreeParameter::Scale::logarithmic;
   CHECK(is_within_tolerances(model));
 }
+
+TEST(Assessed, ADeclaredValueMovedByTolerancesKeepsItsSignAndComesBackFromItsCoordinate) {
+  const Fitted<SimplexFamily> model;
+  const auto free = declared_parameters<SimplexFamily>(model.base, {{"actuator.piston_damping", 0.3}});
+  LONGS_EQUAL(1, free.size());
+  DOUBLES_EQUAL(free[0].declared, free[0].value(0.0), 1e-9);
+  DOUBLES_EQUAL(1.3, free[0].value(1.0) / free[0].declared, 1e-12);
+  for (const double u : {-40.0, -3.0, 0.5, 4.0}) {
+    CHECK(free[0].value(u) > 0.0);
+    DOUBLES_EQUAL(u, free[0].coordinate(free[0].value(u)), 1e-9);
+    DOUBLES_EQUAL((free[0].value(u + 1e-6) - free[0].value(u - 1e-6)) / 2e-6, free[0].slope(u), 1e-6 * free[0].slope(u));
+  }
+}

@@ -7,6 +7,9 @@ namespace hotfire::explain {
 
 namespace {
 
+/// Least share of its declared value that a declared parameter may be moved to.
+constexpr double kLeastOfDeclared = 1e-6;
+
 /// Largest factor by which a start lies above or below a field's typical value.
 constexpr double kStartSpan = 4.0;
 /// ... and of the two further starts that stand for a small effect.
@@ -167,8 +170,9 @@ std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& ba
       parameter.declared = value;
       parameter.tolerance = found->second;
       parameter.prior_deviation = 1.0;
-      parameter.lower = field.lower;
-      parameter.upper = field.upper;
+      // Moved by factors, it keeps its sign.
+      parameter.lower = value > 0.0 ? std::max(field.lower, kLeastOfDeclared * value) : field.lower;
+      parameter.upper = value < 0.0 ? std::min(field.upper, kLeastOfDeclared * value) : field.upper;
       free.push_back(std::move(parameter));
     }
     ++index;

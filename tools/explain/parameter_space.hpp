@@ -12,7 +12,8 @@ namespace hotfire::explain {
 /// One parameter that a fit may move, as the fit sees it: a number u without unit, with the parameter p = value(u).
 struct FreeParameter {
   enum class Scale {
-    tolerance,    ///< p = declared (1 + tolerance u), u ~ N(0, 1): a declared value within its tolerance
+    tolerance,    ///< p = declared (1 + tolerance u) upwards and declared e^(tolerance u) downwards, u ~ N(0, 1): a declared
+                  ///< value within its relative tolerance, which no number of tolerances takes to nothing
     logarithmic,  ///< p = e^u: an effect's parameter that can't be negative
     linear        ///< p = unit u
   };
@@ -35,7 +36,7 @@ struct FreeParameter {
   double value(double u) const {
     switch (scale) {
       case Scale::tolerance:
-        return declared * (1.0 + tolerance * u);
+        return u < 0.0 ? declared * std::exp(tolerance * u) : declared * (1.0 + tolerance * u);
       case Scale::logarithmic:
         return std::exp(u);
       case Scale::linear:
@@ -47,7 +48,7 @@ struct FreeParameter {
   double slope(double u) const {
     switch (scale) {
       case Scale::tolerance:
-        return declared * tolerance;
+        return u < 0.0 ? tolerance * value(u) : tolerance * declared;
       case Scale::logarithmic:
         return std::exp(u);
       case Scale::linear:
@@ -59,7 +60,7 @@ struct FreeParameter {
   double coordinate(double p) const {
     switch (scale) {
       case Scale::tolerance:
-        return (p / declared - 1.0) / tolerance;
+        return (p / declared < 1.0 ? std::log(p / declared) : p / declared - 1.0) / tolerance;
       case Scale::logarithmic:
         return std::log(p);
       case Scale::linear:
