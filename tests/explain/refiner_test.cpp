@@ -58,10 +58,10 @@ bool screens_roughly(bool with_pressure) {
   return refiner.for_screening(declared).resolution() == Resolution::rough;
 }
 
-/// The law of sliding friction with a name.
-explain::Candidate sliding_friction(const Dataset& data, const std::string& law) {
+/// The candidate with a name and law.
+explain::Candidate candidate_of(const Dataset& data, const std::string& name, const std::string& law = "") {
   for (const explain::Candidate& candidate : explain::all_candidates<DirectFamily>(data)) {
-    if (candidate.name == "sliding_friction" && candidate.option_name == law) {
+    if (candidate.name == name && candidate.option_name == law) {
       return candidate;
     }
   }
@@ -75,7 +75,7 @@ Fitted<DirectFamily> guided_mass(const Dataset& data, const explain::Scales& sca
   model.base.mass.inertia = 1.0;
   model.base.mass.damping = 0.5;
   model.base.mass.stiffness = 100.0;
-  const explain::Candidate candidate = sliding_friction(data, law);
+  const explain::Candidate candidate = candidate_of(data, "sliding_friction", law);
   explain::activate<DirectFamily>(model.base, candidate);
   model.free = explain::effect_parameters<DirectFamily>(model.base, candidate, scales);
   for (const explain::FreeParameter& parameter : model.free) {
@@ -123,11 +123,28 @@ TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther)
   const explain::Refiner<DirectFamily> refiner(data, fine, fine, fine, scales, 2, watch);
   const auto dahl = refiner.ranked(guided_mass(data, scales, "dahl", 0.0), explain::kRanking);
   CHECK_FALSE(explain::reaches_noise(data, dahl));
-  const auto richer = refiner.of_richer_laws(1, dahl, sliding_friction(data, "dahl"));
+  const auto richer = refiner.of_richer_laws(1, dahl, candidate_of(data, "sliding_friction", "dahl"));
   LONGS_EQUAL(1, richer.size());
   STRCMP_EQUAL("lugre", richer.front().candidate.option_name.c_str());
   CHECK_TRUE(explain::reaches_noise(data, richer.front().model));
   CHECK_TRUE(refiner.of_richer_laws(1, richer.front().model, richer.front().candidate).empty());
+}
+
+// A linear move of what was free before may end anywhere: here where the mass runs away.
+TEST(Refiner, AScreenedCandidateThatWasMovedTooFarIsFittedFromWhereTheErrorIsLeastOnTheWay) {
+  const Dataset data = pushed_to_and_fro();
+  const Evaluator<DirectFamily> fine(data, Resolution::fine);
+  const explain::Scales scales{10.0, 0.1, 0.5};
+  const explain::Watch watch;
+  const explain::Refiner<DirectFamily> refiner(data, fine, fine, fine, scales, 2, watch);
+  Fitted<DirectFamily> screened = guided_mass(data, scales, "lugre", 0.2);
+  const explain::Candidate earlier = candidate_of(data, "quadratic_stiffness");
+  explain::activate<DirectFamily>(screened.base, earlier);
+  const auto before = explain::effect_parameters<DirectFamily>(screened.base, earlier, scales);
+  screened.free.insert(screened.free.begin(), before.begin(), before.end());
+  screened.u.insert(screened.u.begin(), before.size(), 1e6);
+  CHECK_FALSE(refiner.ranked(screened, explain::kRanking).good());
+  CHECK_TRUE(explain::reaches_noise(data, refiner.of_screened(screened, std::vector<double>(before.size(), 0.0))));
 }
 
 TEST(Refiner, ScreensWithRoughStepsWhereTheyChangeLittleOfWhatIsLeft) { CHECK_TRUE(screens_roughly(false)); }

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +25,8 @@ constexpr double kHighestRipple = 3.0;
 /// Rough steps serve where they change the residuals of every channel by less than this share of them. They are shifted by
 /// that change, and what is left of it is the square of a share.
 constexpr double kLostToSteps = 0.5;
+/// Places on the way that screening moves what was free before, the whole way first: it stands where another is no better.
+constexpr std::array kSharesOfMove{1.0, 0.5, 0.25, 0.0};
 
 /// True if what two models leave of every channel differs by less than that share of it. One that is met to its noise counts
 /// with all its rows, and so it must not be lost in the residuals of another that is far off.
@@ -65,6 +70,37 @@ Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Eff
     }
   }
   return refined(coarse_, fine_, threads_, std::move(start), rest);
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, std::span<const double> frozen) const {
+  std::vector<Fitted<Family>> starts;
+  for (const double share : kSharesOfMove) {
+    starts.push_back(screened);
+    for (std::size_t k = 0; k < frozen.size(); ++k) {
+      starts.back().u[k] = std::lerp(frozen[k], screened.u[k], share);
+    }
+  }
+  starts.push_back(starts.back());
+  for (std::size_t k = frozen.size(); k < screened.free.size(); ++k) {
+    if (screened.free[k].is_ordinate) {
+      starts.back().u[k] = 0.0;
+    }
+  }
+  Fitted<Family> best = screened;
+  double least = std::numeric_limits<double>::infinity();
+  for (Fitted<Family>& start : starts) {
+    Prediction prediction;
+    if (!coarse_.predict(start.base, start.free, start.u, threads_, prediction)) {
+      continue;
+    }
+    const double left = Goodness::combined(goodness(coarse_.data(), prediction).fitted);
+    if (left < least) {
+      least = left;
+      best = std::move(start);
+    }
+  }
+  return ranked(best, kRanking);
 }
 
 template <class Family>
@@ -193,7 +229,7 @@ Assessed<Family> Refiner<Family>::from_other_values(const Assessed<Family>& winn
   const Evaluator<Family> evaluator = for_screening(anchor);
   const Screening<Family> screening(evaluator, anchor, scales_, threads_);
   const Screened<Family> again = screening.restart(candidate, own, watch_);
-  return again.good ? ranked(again.fitted, kRanking) : Assessed<Family>{};
+  return again.good ? of_screened(again.fitted, anchor.u) : Assessed<Family>{};
 }
 
 template class Refiner<SimplexFamily>;

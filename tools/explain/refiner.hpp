@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "tools/explain/assessed.hpp"
 #include "tools/explain/screening.hpp"
@@ -30,6 +31,9 @@ class Refiner {
 
   /// Fitted as its rank needs it, the way to near the end under rough steps where they serve.
   Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const;
+  /// A screened candidate, ranked. Screening moves what was free before along its derivatives from `frozen`, which may carry
+  /// it too far: the fit starts where the simulated error is least on that way, or where a table is nothing yet.
+  Assessed<Family> of_screened(const Fitted<Family>& screened, std::span<const double> frozen) const;
   /// Fitted under fine steps, as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted, const Effort& effort = kFinal) const {
     return refined(fine_, fine_, threads_, fitted, effort);

@@ -16,6 +16,12 @@ namespace {
 /// next effect.
 constexpr double kNearNoise = 3.0;
 
+/// True if a trial ranks before another: by the BIC, but one that held-out data do not support never before one that they
+/// do.
+bool is_before(const Trial& one, const Trial& other) {
+  return is_supported(one) == is_supported(other) ? one.delta_criterion < other.delta_criterion : is_supported(one);
+}
+
 }  // namespace
 
 template <class Family>
@@ -109,7 +115,7 @@ void Round<Family>::fit_finalists() {
     }
     tell("with everything else", i);
     const Stopwatch stopwatch;
-    finalists_[i] = refiner_.ranked(screened_[i].fitted, kRanking);
+    finalists_[i] = refiner_.of_screened(screened_[i].fitted, current_.model.u);
     trials_[i].seconds += stopwatch.seconds();
   }
 }
@@ -157,7 +163,7 @@ void Round<Family>::rank() {
   for (const std::size_t i : order_) {
     if (finalists_[i].good()) {
       compare(trials_[i], finalists_[i], current_, finalists_[*closest].goodness.fitted);
-      if (!best_ || trials_[i].delta_criterion < trials_[*best_].delta_criterion) {
+      if (!best_ || is_before(trials_[i], trials_[*best_])) {
         best_ = i;
       }
     }

@@ -56,7 +56,6 @@ class Round {
   std::optional<std::size_t> best_;          ///< by the BIC, of those that were
 };
 
-
 extern template class Round<SimplexFamily>;
 extern template class Round<DirectFamily>;
 

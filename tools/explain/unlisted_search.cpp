@@ -29,8 +29,10 @@ template <class Family>
 UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner,
                                        const Assessed<Family>& calibrated, const Scales& scales, unsigned threads,
                                        const Watch& watch, int round) {
-  const Evaluator<Family> evaluator = refiner.for_screening(calibrated.model);
-  const Screening<Family> screening(evaluator, calibrated.model, scales, threads);
+  const Fitted<Family> around =
+      is_within_tolerances(calibrated.model) ? calibrated.model : with_declared_values(calibrated.model);
+  const Evaluator<Family> evaluator = refiner.for_screening(around);
+  const Screening<Family> screening(evaluator, around, scales, threads);
   const auto screened = screening.run(unlisted_candidates<Family>(data), "unlisted", watch);
   const std::size_t wanted = unlisted_finalists(screened);
   UnlistedSearch<Family> result;
@@ -38,7 +40,7 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
     Trial trial{round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "behind the finalists in screening"};
     if (result.trials.size() < wanted && !watch.interrupted()) {
       watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
-      Assessed<Family> finalist = refiner.ranked(s.fitted, kRanking);
+      Assessed<Family> finalist = refiner.of_screened(s.fitted, around.u);
       if (finalist.good()) {
         compare_and_say(trial, finalist, calibrated);
         if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
