@@ -56,7 +56,7 @@ TEST(Assessed, ADeclaredValueMovedByTolerancesKeepsItsSignAndComesBackFromItsCoo
   LONGS_EQUAL(1, free.size());
   DOUBLES_EQUAL(free[0].declared, free[0].value(0.0), 1e-9);
   DOUBLES_EQUAL(1.3, free[0].value(1.0) / free[0].declared, 1e-12);
-  for (const double u : {-40.0, -3.0, 0.5, 4.0}) {
+  for (const double u : {-40.0, -3.0, -1.0, 0.5, 4.0}) {
     CHECK(free[0].value(u) > 0.0);
     DOUBLES_EQUAL(u, free[0].coordinate(free[0].value(u)), 1e-9);
     DOUBLES_EQUAL((free[0].value(u + 1e-6) - free[0].value(u - 1e-6)) / 2e-6, free[0].slope(u), 1e-6 * free[0].slope(u));

@@ -12,8 +12,8 @@ namespace hotfire::explain {
 /// One parameter that a fit may move, as the fit sees it: a number u without unit, with the parameter p = value(u).
 struct FreeParameter {
   enum class Scale {
-    tolerance,    ///< p = declared (1 + tolerance u) upwards and declared e^(tolerance u) downwards, u ~ N(0, 1): a declared
-                  ///< value within its relative tolerance, which no number of tolerances takes to nothing
+    tolerance,  ///< p = declared (1 + tolerance u), u ~ N(0, 1): a declared value within its tolerance; below half of it on
+                ///< along the tangent of the logarithm, so that no number of tolerances takes it to nothing
     logarithmic,  ///< p = e^u: an effect's parameter that can't be negative
     linear        ///< p = unit u
   };
@@ -36,7 +36,7 @@ struct FreeParameter {
   double value(double u) const {
     switch (scale) {
       case Scale::tolerance:
-        return u < 0.0 ? declared * std::exp(tolerance * u) : declared * (1.0 + tolerance * u);
+        return declared * (is_fading(u) ? kFading * std::exp((1.0 + tolerance * u) / kFading - 1.0) : 1.0 + tolerance * u);
       case Scale::logarithmic:
         return std::exp(u);
       case Scale::linear:
@@ -48,7 +48,7 @@ struct FreeParameter {
   double slope(double u) const {
     switch (scale) {
       case Scale::tolerance:
-        return u < 0.0 ? tolerance * value(u) : tolerance * declared;
+        return tolerance * (is_fading(u) ? value(u) / kFading : declared);
       case Scale::logarithmic:
         return std::exp(u);
       case Scale::linear:
@@ -60,7 +60,8 @@ struct FreeParameter {
   double coordinate(double p) const {
     switch (scale) {
       case Scale::tolerance:
-        return (p / declared < 1.0 ? std::log(p / declared) : p / declared - 1.0) / tolerance;
+        return ((p / declared < kFading ? kFading * (std::log(p / (kFading * declared)) + 1.0) : p / declared) - 1.0) /
+               tolerance;
       case Scale::logarithmic:
         return std::log(p);
       case Scale::linear:
@@ -81,6 +82,11 @@ struct FreeParameter {
   double prior_curvature() const { return has_prior() ? 1.0 / (prior_deviation * prior_deviation) : 0.0; }
   bool is_declared() const { return scale == Scale::tolerance; }
   bool is_initial_state() const { return experiment >= 0; }
+
+ private:
+  /// Share of a declared value below which its tolerance is one of the logarithm.
+  static constexpr double kFading = 0.5;
+  bool is_fading(double u) const { return 1.0 + tolerance * u < kFading; }
 };
 
 /// What the priors of all parameters add to a sum of squares at `u`.

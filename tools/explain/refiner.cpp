@@ -25,8 +25,10 @@ constexpr double kHighestRipple = 3.0;
 /// Rough steps serve where they change the residuals of every channel by less than this share of them. They are shifted by
 /// that change, and what is left of it is the square of a share.
 constexpr double kLostToSteps = 0.5;
-/// Places on the way that screening moves what was free before, the whole way first: it stands where another is no better.
+/// Places on the way that screening moves what was free before, the whole way first. It stands unless it leaves more than so
+/// many times what another leaves: what little a linear move misses is for the fit.
 constexpr std::array kSharesOfMove{1.0, 0.5, 0.25, 0.0};
+constexpr double kMovedTooFar = 2.0;
 
 /// True if what two models leave of every channel differs by less than that share of it. One that is met to its noise counts
 /// with all its rows, and so it must not be lost in the residuals of another that is far off.
@@ -96,7 +98,7 @@ Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, st
     }
     const double left = Goodness::combined(goodness(coarse_.data(), prediction).fitted);
     if (left < least) {
-      least = left;
+      least = &start == &starts.front() ? left / kMovedTooFar : left;
       best = std::move(start);
     }
   }

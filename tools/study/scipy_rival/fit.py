@@ -18,7 +18,7 @@ DIVERGED = 1e4
 class Fit:
     """Simulation error in units of the noise, and declared tolerances as a prior.
 
-    Coordinates: tolerances from the declared value (downwards of its logarithm), and of an effect's field the logarithm over its start (or the value in
+    Coordinates: tolerances from the declared value (below half of it of the logarithm), and of an effect's field the logarithm over its start (or the value in
     starts where it may be negative).
 
     `side_by_side`: all parameter sets of a Jacobian and all records in one integration of arrays; otherwise one after the
@@ -42,15 +42,15 @@ class Fit:
         return numpy.array([0.0] * len(self.keys) + [0.0 if low > 0.0 else 1.0 for _, _, low in self.effect.fields])
 
     def lowest(self):
-        return numpy.array([numpy.log(0.1) / self.case.tolerance[key] for key in self.keys] +
+        return numpy.array([(0.1 - 1.0) / self.case.tolerance[key] for key in self.keys] +
                            [numpy.log(low / start) if low > 0.0 else low / start for _, start, low in self.effect.fields])
 
     def values(self, x):
         """Parameters of one coordinate vector, or of several as columns."""
         p = dict(self.case.declared)
         for key, u in zip(self.keys, x):
-            moved = self.case.tolerance[key] * u
-            p[key] = p[key] * numpy.where(moved < 0.0, numpy.exp(numpy.minimum(moved, 0.0)), 1.0 + moved)
+            share = 1.0 + self.case.tolerance[key] * u
+            p[key] = p[key] * numpy.where(share < 0.5, 0.5 * numpy.exp(2.0 * numpy.minimum(share, 0.5) - 1.0), share)
         for (name, start, low), u in zip(self.effect.fields, x[len(self.keys):]):
             p[f"{self.effect.name}.{name}"] = start * (numpy.exp(u) if low > 0.0 else u)
         return p
