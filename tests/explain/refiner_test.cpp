@@ -111,16 +111,24 @@ Dataset pushed_to_and_fro() {
   return explain::make_dataset(model, {record});
 }
 
+/// The strokes, and what fits a model to them under one kind of steps.
+struct Strokes {
+  Dataset data = pushed_to_and_fro();
+  Evaluator<DirectFamily> fine{data, Resolution::fine};
+  explain::Scales scales{10.0, 0.1, 0.5};
+  explain::Watch watch;
+  explain::Refiner<DirectFamily> refiner{data, fine, fine, fine, scales, 2, watch};
+};
+
 }  // namespace
 
 TEST_GROUP(Refiner){};
 
 TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther) {
-  const Dataset data = pushed_to_and_fro();
-  const Evaluator<DirectFamily> fine(data, Resolution::fine);
-  const explain::Scales scales{10.0, 0.1, 0.5};
-  const explain::Watch watch;
-  const explain::Refiner<DirectFamily> refiner(data, fine, fine, fine, scales, 2, watch);
+  const Strokes strokes;
+  const Dataset& data = strokes.data;
+  const explain::Scales& scales = strokes.scales;
+  const explain::Refiner<DirectFamily>& refiner = strokes.refiner;
   const auto dahl = refiner.ranked(guided_mass(data, scales, "dahl", 0.0), explain::kRanking);
   CHECK_FALSE(explain::reaches_noise(data, dahl));
   const auto richer = refiner.of_richer_laws(1, dahl, candidate_of(data, "sliding_friction", "dahl"));
@@ -132,11 +140,10 @@ TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther)
 
 // A linear move of what was free before may end anywhere: here where the mass runs away.
 TEST(Refiner, AScreenedCandidateThatWasMovedTooFarIsFittedFromWhereTheErrorIsLeastOnTheWay) {
-  const Dataset data = pushed_to_and_fro();
-  const Evaluator<DirectFamily> fine(data, Resolution::fine);
-  const explain::Scales scales{10.0, 0.1, 0.5};
-  const explain::Watch watch;
-  const explain::Refiner<DirectFamily> refiner(data, fine, fine, fine, scales, 2, watch);
+  const Strokes strokes;
+  const Dataset& data = strokes.data;
+  const explain::Scales& scales = strokes.scales;
+  const explain::Refiner<DirectFamily>& refiner = strokes.refiner;
   Fitted<DirectFamily> screened = guided_mass(data, scales, "lugre", 0.2);
   const explain::Candidate earlier = candidate_of(data, "quadratic_stiffness");
   explain::activate<DirectFamily>(screened.base, earlier);

@@ -83,10 +83,12 @@ Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, st
       starts.back().u[k] = std::lerp(frozen[k], screened.u[k], share);
     }
   }
-  starts.push_back(starts.back());
-  for (std::size_t k = frozen.size(); k < screened.free.size(); ++k) {
-    if (screened.free[k].is_ordinate) {
-      starts.back().u[k] = 0.0;
+  if (std::ranges::any_of(screened.free, &FreeParameter::is_ordinate)) {
+    starts.push_back(starts.back());
+    for (std::size_t k = frozen.size(); k < screened.free.size(); ++k) {
+      if (screened.free[k].is_ordinate) {
+        starts.back().u[k] = 0.0;
+      }
     }
   }
   Fitted<Family> best = screened;

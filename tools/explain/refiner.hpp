@@ -32,7 +32,8 @@ class Refiner {
   /// Fitted as its rank needs it, the way to near the end under rough steps where they serve.
   Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const;
   /// A screened candidate, ranked. Screening moves what was free before along its derivatives from `frozen`, which may carry
-  /// it too far: the fit starts where the simulated error is least on that way, or where a table is nothing yet.
+  /// it too far: where another place on that way, or a table that is nothing yet, leaves less than half as much, the fit
+  /// starts at the least of them.
   Assessed<Family> of_screened(const Fitted<Family>& screened, std::span<const double> frozen) const;
   /// Fitted under fine steps, as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted, const Effort& effort = kFinal) const {

@@ -18,8 +18,8 @@ DIVERGED = 1e4
 class Fit:
     """Simulation error in units of the noise, and declared tolerances as a prior.
 
-    Coordinates: tolerances from the declared value (below half of it of the logarithm), and of an effect's field the logarithm over its start (or the value in
-    starts where it may be negative).
+    Coordinates: tolerances from the declared value (below half of it of the logarithm), and of an effect's field the
+    logarithm over its start (or the value in starts where it may be negative).
 
     `side_by_side`: all parameter sets of a Jacobian and all records in one integration of arrays; otherwise one after the
     other, in floats.
