@@ -33,6 +33,7 @@ struct ExplainArguments {
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   int most_effects = 4;
   std::vector<std::string> excluded;
+  std::vector<std::string> held_out;
   bool json = false;
   CandumpOptions candump;
 };
@@ -64,20 +65,36 @@ class Progress {
 
 std::string number(const nlohmann::json& value) { return fmt::format("{:.4g}", value.get<double>()); }
 
+/// A line for each channel: its rms error under the three models.
+std::string error_rows(const nlohmann::json& channels) {
+  std::string text;
+  for (const auto& [name, channel] : channels.items()) {
+    text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   noise {}\n", name, channel["unit"].get<std::string>(),
+                        number(channel["before"]["rms"]), number(channel["calibrated"]["rms"]),
+                        number(channel["after"]["rms"]), number(channel["noise"]));
+  }
+  return text;
+}
+
 /// What a person wants to read first, in a dozen lines.
 std::string summary(const nlohmann::json& report, const std::filesystem::path& out) {
   std::string text = report["verdict"].get<std::string>() + ": " + report["sentence"].get<std::string>() + "\n\n";
   text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   (rms error on held-out data)\n", "channel", "unit", "declared",
                       "calibrated", "explained");
-  for (const auto& [name, channel] : report["channels"].items()) {
-    text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   noise {}\n", name, channel["unit"].get<std::string>(),
-                        number(channel["before"]["rms"]), number(channel["calibrated"]["rms"]),
-                        number(channel["after"]["rms"]), number(channel["noise"]));
+  text += error_rows(report["channels"]);
+  for (const auto& record : report.value("held_out_records", nlohmann::json::array())) {
+    text += fmt::format("\n{}, held out whole\n", record["path"].get<std::string>());
+    text += error_rows(record["channels"]);
   }
   for (const auto& effect : report["effects"]) {
     text += fmt::format("\n{} at {}{}{}\n", effect["name"].get<std::string>(), effect["site"].get<std::string>(),
                         effect.contains("axis") ? " of the " + effect["axis"].get<std::string>() + " axis" : "",
                         effect.contains("law") ? ", " + effect["law"].get<std::string>() : "");
+    for (const char* words : {"looks_like", "is_not"}) {
+      if (const std::string told = effect.value(words, ""); !told.empty()) {
+        text += "  " + told + "\n";
+      }
+    }
     for (const auto& [name, parameter] : effect["parameters"].items()) {
       const auto& interval = parameter["ci95"];
       text +=
@@ -128,6 +145,9 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   for (const std::string& text : arguments.excluded) {
     options.exclusions.push_back(explain::exclusion_from(text));
   }
+  for (const std::string& path : arguments.held_out) {
+    options.kept_back.push_back(load_record_or_log(path, arguments.candump));
+  }
   const std::filesystem::path out(arguments.out);
   std::error_code failed;
   std::filesystem::create_directories(out, failed);
@@ -165,7 +185,7 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
 
 }  // namespace
 
-void add_explain(CLI::App& program) {
+void add_explain(CLI::App& program, const std::string& typed) {
   const auto arguments = std::make_shared<ExplainArguments>();
   CLI::App* command = program.add_subcommand("explain", "Find what a declared model lacks against measured records");
   command->add_option("--model", arguments->model, "declared model (.toml)")->required();
@@ -177,22 +197,16 @@ void add_explain(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--exclude", arguments->excluded, "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out")
       ->allow_extra_args(false);
+  command
+      ->add_option("--hold-out", arguments->held_out, "a further record that no fit and no choice sees: judged at the end")
+      ->allow_extra_args(false);
   add_candump_options(*command, arguments->candump);
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(
-      "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv ramps.csv\n"
+      "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv --hold-out ramps.csv\n"
       "A taos model takes records with channels of its axes: command.pitch, piston.pitch, engine.yaw ...\n"
       "Ctrl-C ends the search and reports what is known so far (exit status 130).");
-  command->callback([arguments] {
-    std::string line = "hotfire explain --model " + arguments->model + " --out " + arguments->out;
-    for (const std::string& record : arguments->records) {
-      line += " " + record;
-    }
-    for (const std::string& excluded : arguments->excluded) {
-      line += " --exclude " + excluded;
-    }
-    run_explain(*arguments, line);
-  });
+  command->callback([arguments, typed] { run_explain(*arguments, typed); });
 }
 
 }  // namespace hotfire

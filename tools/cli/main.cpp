@@ -2,6 +2,7 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/cli/commands.hpp"
@@ -52,6 +53,25 @@ std::string problem_of(const CLI::App& program, const CLI::ParseError& error) {
   return "unknown word \"" + strangers.front() + "\"; " + suggestion(strangers.front(), {known.begin(), known.end()});
 }
 
+/// The words of the command line as a shell would take them again.
+std::string typed_line(int argc, char** argv) {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  std::string line = "hotfire";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+      line += " " + word;
+      continue;
+    }
+    line += " '";
+    for (const char c : word) {
+      line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    }
+    line += "'";
+  }
+  return line;
+}
+
 int run(int argc, char** argv) {
   CLI::App program{"Hotfire explains what a test record has and a declared model lacks, and runs the explained model.",
                    "hotfire"};
@@ -60,7 +80,7 @@ int run(int argc, char** argv) {
   program.footer(
       "Example: hotfire check declared.toml steps.csv\nExit status: 0 good, 1 the verdict is bad, 2 wrong use, 3 hardware, "
       "4 real-time contract not met, 5 interlock, 6 bad data.");
-  add_explain(program);
+  add_explain(program, typed_line(argc, argv));
   add_check(program);
   add_convert(program);
   add_import(program);

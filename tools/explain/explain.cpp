@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "tools/explain/conclusion.hpp"
+#include "tools/explain/held_out_records.hpp"
 #include "tools/explain/report_json.hpp"
 #include "tools/explain/search.hpp"
 
@@ -44,6 +45,9 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
     fit_to_all_rows(data, options.threads, found);
   }
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
+  if (!options.kept_back.empty()) {
+    explanation.report["held_out_records"] = held_out_records_json(model, options.kept_back, found, options.threads);
+  }
   if (found.rival) {
     add_next_experiment(data, *found.rival, found.explained.model, options.threads, explanation);
   }

@@ -27,6 +27,7 @@ struct ExplainOptions {
   int most_effects = 4;  ///< to add; 0: calibrate only
   Watch watch;
   std::vector<Exclusion> exclusions{};
+  std::vector<Record> kept_back{};  ///< whole records that no fit and no choice is to see: judged at the end
 };
 
 /// Closes the loop: calibrates the declared model within its tolerances, traces what is left, adds the effects that the data

@@ -4,6 +4,7 @@
 
 #include "tools/explain/conclusion.hpp"
 #include "tools/explain/explain.hpp"
+#include "tools/explain/held_out_records.hpp"
 #include "tools/explain/report_json.hpp"
 #include "tools/explain/two_axes.hpp"
 #include "tools/explain/two_axis_report.hpp"
@@ -80,6 +81,36 @@ void judge_together(const TaosParameters& declared, unsigned threads, const TwoA
   }
 }
 
+/// How both axes together do on the records that were kept back, as `held_out_records_json`, channels by their axis.
+nlohmann::json held_out_together(const VehicleFile& vehicle, const std::vector<Record>& kept_back, unsigned threads,
+                                 const FoundAxes& found) {
+  const TaosParameters declared = std::get<TaosParameters>(vehicle.parameters);
+  nlohmann::json records = nlohmann::json::array();
+  for (const Record& record : kept_back) {
+    TwoAxes axes = axes_of(vehicle, {record}, {});
+    std::array<std::vector<std::pair<const char*, Prediction>>, 2> stages;
+    for (const auto& [name, stage] : {std::pair("before", &Found::declared), std::pair("calibrated", &Found::calibrated),
+                                      std::pair("after", &Found::explained)}) {
+      const auto run = run_coupled(together(declared, found, stage), axes, threads);
+      if (!run) {
+        throw FileError(fmt::format("{}: a model runs away on this record, which was held out", record.path.string()));
+      }
+      for (std::size_t i = 0; i < axes.size(); ++i) {
+        stages[i].emplace_back(name, run->prediction[i]);
+      }
+    }
+    std::vector<AxisReport> reports;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (axes[i].measured) {
+        fit_every_row(axes[i].data);
+        reports.push_back({axes[i].name, held_out_record_json(axes[i].records.front(), axes[i].data, stages[i])});
+      }
+    }
+    records.push_back(joined_channels(reports));
+  }
+  return records;
+}
+
 }  // namespace
 
 TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& records, const ExplainOptions& options) {
@@ -124,6 +155,9 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
     append_series(axes[i].name, series_of(axes[i].records, axes[i].data, *found[i]), explanation.series);
   }
   explanation.report = joined_report(reports);
+  if (!options.kept_back.empty()) {
+    explanation.report["held_out_records"] = held_out_together(vehicle, options.kept_back, options.threads, found);
+  }
   explanation.model.parameters = together(declared, found, &Found::explained);
   return explanation;
 }

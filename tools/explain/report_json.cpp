@@ -7,6 +7,7 @@
 #include <map>
 
 #include "tools/explain/curve.hpp"
+#include "tools/explain/held_out_records.hpp"
 #include "tools/explain/identifiability.hpp"
 #include "tools/explain/report_evidence.hpp"
 #include "tools/explain/report_residual.hpp"
@@ -14,6 +15,7 @@
 #include "tools/explain/trace.hpp"
 #include "tools/explain/uncertainty.hpp"
 #include "tools/explain/unlisted.hpp"
+#include "tools/explain/verdict.hpp"
 
 namespace hotfire::explain {
 
@@ -41,10 +43,6 @@ std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
     }
   }
   return estimated;
-}
-
-json errors_of(const ChannelFit& fit) {
-  return {{"rms", fit.rms}, {"max", fit.max}, {"bias", fit.bias}, {"fit_percent", fit.fit_percent}};
 }
 
 template <class Family>
@@ -130,6 +128,9 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
         effect["alternatives"].push_back(alternative);
       }
     }
+    if (unlisted) {
+      effect["is_not"] = what_it_is_not(found);
+    }
     if (const auto table = unlisted ? table_of<Family>(parameters, candidate) : std::nullopt) {
       effect["looks_like"] = in_words(*table);
       effect["curve"] = {{"x_label", table->x_name},
@@ -137,7 +138,9 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
                          {"y_label", table->meaning},
                          {"y_unit", table->y_unit},
                          {"series", {{{"name", "as found"}, {"x", table->x}, {"y", table->y}}}}};
-    } else if (!unlisted) {
+    } else if (unlisted) {
+      effect["looks_like"] = law_in_words(candidate.option_name);
+    } else {
       effect["curve"] = curve_of<Family>(parameters, candidate.effect, reach);
     }
     effects.push_back(std::move(effect));
@@ -157,69 +160,6 @@ json calibration_json(const SearchResult<Family>& found, const std::vector<Estim
     }
   }
   return calibration;
-}
-
-template <class Family>
-std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
-  if (!found.kept.empty() && is_unlisted<Family>(found.kept.front().trial.candidate)) {
-    return "unlisted-effect";
-  }
-  if (reaches_noise(data, found.explained)) {
-    return found.kept.empty() ? "nothing-missing" : "explained";
-  }
-  return found.kept.empty() ? "unlisted-effect" : "partly-explained";
-}
-
-/// "a gimbal friction (lugre) at the engine torque".
-std::string phrase(const Candidate& candidate) {
-  std::string name = candidate.name;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return fmt::format("{}{} at {}", name, candidate.option_name.empty() ? "" : " (" + candidate.option_name + ")",
-                     candidate.site);
-}
-
-template <class Family>
-std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found) {
-  const double before = Goodness::combined(found.declared.goodness.held_out);
-  const double after = Goodness::combined(found.explained.goodness.held_out);
-  if (verdict == "nothing-missing" && !is_within_tolerances(found.explained.model)) {
-    const Moved farthest = farthest_from_declared(found.explained.model);
-    return fmt::format(
-        "No effect is found to be missing, but a declared value is wrong or stands in for one: the model meets the records "
-        "down to the sensor noise ({:.2f} times its rms on held-out data) only with {} {:.1f} tolerances from its declared "
-        "value.",
-        after, farthest.key, farthest.tolerances);
-  }
-  if (verdict == "nothing-missing") {
-    return fmt::format(
-        "Nothing is missing: within its tolerances the declared model meets the records down to the sensor noise "
-        "({:.2f} times its rms on held-out data).",
-        after);
-  }
-  if (verdict == "unlisted-effect" && !found.kept.empty()) {
-    const Candidate& candidate = found.kept.front().trial.candidate;
-    std::string dependence = candidate.option_name;
-    std::replace(dependence.begin(), dependence.end(), '_', ' ');
-    return fmt::format(
-        "The records hold an effect that is in no list: a term at {} that is told by {} takes the error on held-out data "
-        "from "
-        "{:.1f} to {:.2f} times the noise; the explained model holds it as a table.",
-        candidate.site, dependence, before, after);
-  }
-  if (verdict == "unlisted-effect") {
-    return fmt::format(
-        "The records hold an effect that is in no list: the calibrated model is still {:.1f} times the noise "
-        "off on held-out data, and no candidate is supported.",
-        after);
-  }
-  std::string names;
-  for (std::size_t i = 0; i < found.kept.size(); ++i) {
-    names += (i == 0 ? "" : i + 1 == found.kept.size() ? " and " : ", ") + phrase(found.kept[i].trial.candidate);
-  }
-  return fmt::format(
-      "The declared model lacks {}: with {} the error on held-out data falls from {:.1f} to {:.2f} times the noise{}.",
-      names, found.kept.size() == 1 ? "it" : "them", before, after,
-      verdict == "explained" ? ", close to what the sensors can tell" : "; a part is left unexplained");
 }
 
 /// Rows that are simulated and not compared.

@@ -43,10 +43,10 @@ Round<Family>::Round(int number, const Dataset& data, const Refiner<Family>& ref
 template <class Family>
 RoundResult<Family> Round<Family>::run() {
   fit_finalists();
-  if (watch_.interrupted()) {
-    return {};
-  }
   rank();
+  if (watch_.interrupted()) {
+    return undecided();
+  }
   if (best_ && clears_up(finalists_[*best_]) && !reaches_noise(data_, finalists_[*best_])) {
     cross_ripples();
     rank();
@@ -194,6 +194,20 @@ Assessed<Family> Round<Family>::winner() {
     }
   }
   return winner;
+}
+
+/// What was known of every candidate when the search was interrupted.
+template <class Family>
+RoundResult<Family> Round<Family>::undecided() {
+  for (Trial& trial : trials_) {
+    trial.decision = kUndecided;
+    trial.reason = trial.refined    ? "fitted jointly, not all others were, when the search was interrupted"
+                   : trial.screened ? "screened when the search was interrupted"
+                                    : "not fitted when the search was interrupted";
+  }
+  RoundResult<Family> result;
+  result.trials = trials_;
+  return result;
 }
 
 /// The closest of the other finalists, fitted as well as the winner was, if the data do not tell the two apart.

@@ -29,7 +29,7 @@ class Round {
   Round(int number, const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& current,
         std::vector<Screened<Family>> screened, const Watch& watch);
 
-  /// Runs the round. Without trials if it was interrupted.
+  /// Runs the round. If it was interrupted it keeps none, and its trials say how far it came.
   RoundResult<Family> run();
 
  private:
@@ -41,6 +41,7 @@ class Round {
   void add_richer_laws();
   void rank();
   Assessed<Family> winner();
+  RoundResult<Family> undecided();
   std::optional<Rival<Family>> rival_of(const Kept& kept) const;
   void tell(const std::string& what, std::size_t finalist) const;
 

@@ -85,6 +85,7 @@ class Search {
       look_for_unlisted();
       take_unlisted_if_better();
     }
+    result_.searched = options_.most_effects > 0;
     result_.interrupted = options_.watch.interrupted();
     return std::move(result_);
   }
@@ -102,9 +103,6 @@ class Search {
     const Evaluator<Family> evaluator = refiner_.for_screening(current);
     const Screening<Family> screening(evaluator, current, scales_, options_.threads);
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
-    if (options_.watch.interrupted()) {
-      return false;
-    }
     Round<Family> fits(round, data_, refiner_, result_.explained, std::move(screened), options_.watch);
     RoundResult<Family> found = fits.run();
     result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());

@@ -20,6 +20,7 @@ struct SearchResult {
   std::vector<Trial> trials;
   std::optional<Rival<Family>> rival;  ///< of the effect kept last
   Intervals profiles;                  ///< of the explained model's parameters whose error is no parabola
+  bool searched = true;                ///< effects were looked for
   bool interrupted = false;
 };
 

@@ -14,6 +14,9 @@ inline constexpr double kLeastHeldOutDrop = 0.01;
 /// Two candidates whose BIC differs by less than this are not told apart by the data.
 inline constexpr double kTied = 10.0;
 
+/// What becomes of a candidate whose round was interrupted.
+inline constexpr const char* kUndecided = "undecided";
+
 /// One candidate in one round, and what became of it.
 struct Trial {
   int round = 0;
@@ -22,7 +25,7 @@ struct Trial {
   double delta_criterion = 0.0;  ///< BIC with it minus without it (negative is better)
   double held_out_ratio = 1.0;   ///< held-out error with it over without it; 1 if not refined
   double seconds = 0.0;
-  std::string decision;  ///< "kept", "dropped", "taken out"
+  std::string decision;  ///< "kept", "dropped", "taken out", kUndecided
   std::string reason;
   bool screened = true;  ///< false: never fitted, a law that was to start from where one that it contains ends
 };

@@ -53,7 +53,8 @@ json joined_texts(const std::vector<AxisReport>& reports, const char* key) {
 }
 
 std::string joined_verdict(const std::vector<AxisReport>& reports) {
-  constexpr std::array<const char*, 4> kFromWorst{"unlisted-effect", "partly-explained", "explained", "nothing-missing"};
+  constexpr std::array<const char*, 5> kFromWorst{"undecided", "unlisted-effect", "partly-explained", "explained",
+                                                  "nothing-missing"};
   for (const char* verdict : kFromWorst) {
     if (std::any_of(reports.begin(), reports.end(),
                     [&](const AxisReport& r) { return r.report.at("verdict") == verdict; })) {
@@ -73,6 +74,15 @@ std::string joined_sentence(const std::vector<AxisReport>& reports) {
 }
 
 }  // namespace
+
+json joined_channels(const std::vector<AxisReport>& reports) {
+  json joined = reports.front().report;
+  joined["channels"] = json::object();
+  for (const AxisReport& own : reports) {
+    add_named(own.report.at("channels"), own.axis, joined["channels"]);
+  }
+  return joined;
+}
 
 json joined_report(const std::vector<AxisReport>& reports) {
   json joined = reports.front().report;

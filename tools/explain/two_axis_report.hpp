@@ -19,6 +19,9 @@ struct AxisReport {
 /// of one axis only told with its name.
 nlohmann::json joined_report(const std::vector<AxisReport>& reports);
 
+/// The "channels" of both under their names with the axis; all else as the first has it.
+nlohmann::json joined_channels(const std::vector<AxisReport>& reports);
+
 /// Adds the records of one axis to what the page draws, as records of their own.
 void append_series(const std::string& axis, ReportSeries own, ReportSeries& all);
 

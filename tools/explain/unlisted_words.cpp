@@ -30,8 +30,9 @@ double at(const FittedTable& table, double x) {
 
 std::string in_words(const FittedTable& table) {
   const auto [least, most] = std::minmax_element(table.y.begin(), table.y.end());
-  std::string text = fmt::format("{} from {:.3g} to {:.3g} {} over {} from {:.3g} to {:.3g} {}", table.meaning, *least,
-                                 *most, table.y_unit, table.x_name, table.x.front(), table.x.back(), table.x_unit);
+  std::string text = fmt::format(
+      "{} from {:.3g} to {:.3g} {} over {} from {:.3g} to {:.3g} {} (its bounds: beyond them the value at the end holds)",
+      table.meaning, *least, *most, table.y_unit, table.x_name, table.x.front(), table.x.back(), table.x_unit);
   constexpr int kSamples = 101;
   const double reach = std::min(std::abs(table.x.front()), std::abs(table.x.back()));
   const bool two_sided = table.x.front() < 0.0 && table.x.back() > 0.0;
@@ -67,6 +68,16 @@ std::string in_words(const FittedTable& table) {
     text += rises ? "; rises throughout" : "; falls throughout";
   }
   return text;
+}
+
+std::string law_in_words(std::string_view depends_on) {
+  if (depends_on == "periodic") {
+    return "a sinusoid of one frequency and one amplitude over the whole of every record, whatever the axis does";
+  }
+  if (depends_on == "creep") {
+    return "a share of the deflection that follows the load late, at one time constant, and goes back as late";
+  }
+  return "";
 }
 
 }  // namespace hotfire::explain

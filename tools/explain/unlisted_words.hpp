@@ -20,4 +20,7 @@ struct FittedTable {
 /// What a table looks like in words: its size, whether it is odd, even or constant, rises or falls, jumps about zero.
 std::string in_words(const FittedTable& table);
 
+/// The same of a term of unknown law without a table, by what it depends on: "periodic", "creep". Empty for any other.
+std::string law_in_words(std::string_view depends_on);
+
 }  // namespace hotfire::explain

@@ -58,7 +58,6 @@ function searchTable(report) {
     ...(ofAxes ? [{ title: "axis", cell: (row) => String(row.axis ?? "") }] : []),
     { title: "round", number: true, cell: (row) => String(row.round ?? "") },
     { title: "candidate", cell: withLaw },
-    { title: "started from", cell: (row) => String(row.start ?? ""), text: true },
     { title: "judged by", cell: (row) => (isFittedJointly(row) ? "joint fit" : "screening") },
     { title: "held-out error, ratio", number: true, cell: (row) => (isFittedJointly(row) ? fixed(row.held_out_rms_ratio, 3) : "") },
     { title: "BIC change", number: true, cell: (row) => (Number.isFinite(row.delta_bic) ? number(row.delta_bic, 3) : "") },

@@ -45,7 +45,7 @@ function fillPage({ report, series }) {
   const next = report.residual?.next_experiment;
   const sections = [
     (report.warnings ?? []).map((warning) => paragraph(warning, "warning")),
-    errorTable(report), isFilled(next) ? element("p", { class: "next" }, element("strong", {}, "Next experiment: "), next) : null,
+    ...errorTables(report), isFilled(next) ? element("p", { class: "next" }, element("strong", {}, "Next experiment: "), next) : null,
     time?.node, trace(report), effects(report), identifiability(report), residual(report), calibration(report), evidence(report),
     data(report), signatures()];
   document.getElementById("main").append(...sections.flat().filter(Boolean));

@@ -7,6 +7,7 @@ const VERDICTS = {
   "nothing-missing": ["Nothing missing", "The declared model already fits the records down to the noise: no effect is missing."],
   "partly-explained": ["Partly explained", "A part of the declared model's error is explained; something else is left in it."],
   "unlisted-effect": ["Unlisted effect", "The declared model lacks an effect that is none of the known ones."],
+  undecided: ["Undecided", "The search did not come to an end: more than noise is left, and nothing is known to explain it."],
 };
 const STAGES = [{ key: "before", title: "as declared", colour: "declared" },
   { key: "calibrated", title: "calibrated", colour: "calibrated" }, { key: "after", title: "with the effects", colour: "explained" }];
@@ -49,8 +50,8 @@ function noiseNote(channels) {
   return `The noise (rms) is estimated from the records${declared ? ` for ${estimated.join(", ")}, otherwise declared` : ""}.`;
 }
 
-function errorTable(report) {
-  const rows = errorRows(report.channels);
+function errorTable(title, channels) {
+  const rows = errorRows(channels);
   if (!rows.length) return null;
   const ratios = finite(rows.map((row) => row.ratio));
   const range = [Math.min(0.8, ...ratios), Math.max(1.25, ...ratios)];
@@ -67,9 +68,16 @@ function errorTable(report) {
     { title: "rms over noise", number: true, cell: (row) => (Number.isFinite(row.ratio) ? number(row.ratio) : "") },
     { title: "", type: "strip", cell: (row) => (Number.isFinite(row.ratio) ? ratioStrip(row, range) : "") },
   ], rows, (row) => (row.first ? "round" : null));
-  return section("Error on data that no fit has seen", grid, paragraph("Fit: 100 % less the rms error over the measurement's rms " +
-    `about its mean. Calibrated: declared parameters moved within their tolerances. ${noiseNote(report.channels)}`, "note"));
+  return section(title, grid, paragraph("Fit: 100 % less the rms error over the measurement's rms " +
+    `about its mean. Calibrated: declared parameters moved within their tolerances. ${noiseNote(channels)}`, "note"));
 }
+
+/** On held-out blocks of the records, then on every record that was kept back whole. */
+const errorTables = (report) => [
+  errorTable("Error on data that no fit has seen", report.channels),
+  paragraph("Of the model before its last fit, which takes the held-out blocks in as well: explained.toml is of that one.", "note"),
+  ...(report.held_out_records ?? []).map((record) =>
+    errorTable(`Error on ${record.path}, which neither fit nor choice has seen`, record.channels))];
 
 /** The interval of a parameter; one from a profile carries a mark, for which `parameterTable` has a footnote. */
 function intervalOf(row) {
@@ -122,7 +130,8 @@ function effects(report) {
     { class: "together" },
     element("h3", {}, sentenceCase(withLaw(effect)), element("span", { class: "note" }, "  at ", code(effect.site ?? ""),
       isFilled(effect.axis) ? ` of the ${effect.axis} axis` : "")),
-    paragraph(effect.meaning), paragraph(evidenceText(effect.evidence)),
+    paragraph(effect.meaning), isFilled(effect.looks_like) ? paragraph(`${sentenceCase(effect.looks_like)}.`) : null,
+    paragraph(effect.is_not), paragraph(evidenceText(effect.evidence)),
     element("div", { class: "figures" },
       isFilled(effect.curve) ? element("figure", {}, curveChart(effect.curve, effect === traced ? report.trace.points : null)) : null,
       element("div", { class: "beside" }, isFilled(effect.parameters) ? parameterTable(effect.parameters) : null,

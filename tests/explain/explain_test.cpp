@@ -1,0 +1,95 @@
+#include "tools/explain/explain.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "tests/explain/oscillator.hpp"
+#include "tools/simulate/simulate.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace {
+
+using namespace hotfire;
+using test::declared_oscillator;
+using test::oscillator;
+
+constexpr double kNoise = 1e-3;
+
+explain::Explanation explained(const Record& record, explain::ExplainOptions options = {}) {
+  options.threads = 2;
+  return explain::explain(declared_oscillator(97.0), {record}, options);
+}
+
+std::string text_of(const nlohmann::json& report, const char* key) { return report.at(key).get<std::string>(); }
+
+}  // namespace
+
+TEST_GROUP(Explain){};
+
+TEST(Explain, ARecordHeldOutWholeChangesNothingOfWhatIsFoundAndIsJudgedWithTheModelThatIsWritten) {
+  const Record record = oscillator(400.0, kNoise);
+  Record kept_back = oscillator(400.0, 2.0 * kNoise);
+  kept_back.name = "kept_back.csv";
+  kept_back.path = kept_back.name;
+  explain::ExplainOptions options;
+  options.kept_back = {kept_back};
+  const auto alone = explained(record);
+  const auto beside = explained(record, options);
+  STRCMP_EQUAL(model_text(alone.model).c_str(), model_text(beside.model).c_str());
+  CHECK(!alone.report.contains("held_out_records"));
+  const auto& judged = beside.report.at("held_out_records").at(0);
+  STRCMP_EQUAL("kept_back.csv", text_of(judged, "path").c_str());
+  const auto& position = judged.at("channels").at("position");
+  // The cubic force is there in both, so that the written model leaves what its sensor adds; the declared one does not.
+  DOUBLES_EQUAL(2.0 * kNoise, position.at("after").at("rms").get<double>(), 0.1 * kNoise);
+  CHECK(position.at("before").at("rms").get<double>() > 2.0 * position.at("after").at("rms").get<double>());
+  // It is what `simulate` says of that model, but for the start, which both take from the record.
+  const Record simulated = simulate(beside.model, kept_back);
+  double square = 0.0;
+  for (std::size_t row = 0; row < kept_back.rows; ++row) {
+    const double error = simulated.find("position")->values[row] - kept_back.find("position")->values[row];
+    square += error * error / static_cast<double>(kept_back.rows);
+  }
+  DOUBLES_EQUAL(std::sqrt(square), position.at("after").at("rms").get<double>(), 0.1 * kNoise);
+}
+
+TEST(Explain, InterruptedAtAnyMomentItSaysThatItIsUndecidedAndWhatItKnowsByThen) {
+  const Record record = oscillator(400.0, kNoise);
+  const auto interrupted_after = [&](int calls) {
+    explain::ExplainOptions options;
+    auto asked = std::make_shared<std::atomic<int>>(0);
+    options.watch.interrupted = [asked, calls] { return ++*asked > calls; };
+    return explained(record, options).report;
+  };
+  // How often the whole search asks is not fixed: a moment before its first round, one within and one at its end.
+  const auto at_once = interrupted_after(0);
+  STRCMP_EQUAL("undecided", text_of(at_once, "verdict").c_str());
+  CHECK(text_of(at_once, "sentence").find("interrupted") != std::string::npos);
+  const auto in_round = interrupted_after(12);
+  STRCMP_EQUAL("undecided", text_of(in_round, "verdict").c_str());
+  CHECK(!in_round.at("search").empty());
+  for (const auto& row : in_round.at("search")) {
+    STRCMP_EQUAL("undecided", text_of(row, "decision").c_str());
+  }
+  CHECK(in_round.at("effects").empty());
+  STRCMP_EQUAL("explained", text_of(interrupted_after(1'000'000), "verdict").c_str());
+}
+
+TEST(Explain, AskedForNoEffectItDoesNotSayThatNoneFits) {
+  explain::ExplainOptions options;
+  options.most_effects = 0;
+  const auto report = explained(oscillator(400.0, kNoise), options).report;
+  STRCMP_EQUAL("undecided", text_of(report, "verdict").c_str());
+  CHECK(text_of(report, "sentence").find("no effect was looked for") != std::string::npos);
+}
+
+TEST(Explain, OfATermThatNobodyListedItSaysWhatItLooksLikeWithinWhichBoundsAndWhatItIsNot) {
+  const auto report = explained(oscillator(0.0, kNoise, 2.0)).report;
+  STRCMP_EQUAL("unlisted-effect", text_of(report, "verdict").c_str());
+  const auto& effect = report.at("effects").at(0);
+  CHECK(text_of(effect, "looks_like").find("its bounds: beyond them the value at the end holds") != std::string::npos);
+  CHECK(text_of(effect, "is_not").find("isted effect") != std::string::npos);
+}

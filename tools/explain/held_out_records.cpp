@@ -1,0 +1,73 @@
+#include "tools/explain/held_out_records.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "tools/files/error.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// What a model found on other records predicts of `data`.
+template <class Family>
+Prediction prediction_of(Fitted<Family> model, const Dataset& data, unsigned threads) {
+  drop_parameters(model, [](const FreeParameter& parameter) { return parameter.is_initial_state(); });
+  Scales scales;
+  if constexpr (std::is_same_v<Family, DirectFamily>) {
+    scales = scales_of(data);
+  }
+  for (const FreeParameter& state : initial_states(data, scales, model.u)) {
+    model.free.push_back(state);
+  }
+  Prediction prediction;
+  if (!Evaluator<Family>(data, Resolution::fine).predict(model.base, model.free, model.u, threads, prediction)) {
+    throw FileError(fmt::format("{}: a model runs away on this record, which was held out", data.experiments.front().name));
+  }
+  return prediction;
+}
+
+}  // namespace
+
+nlohmann::json errors_of(const ChannelFit& fit) {
+  return {{"rms", fit.rms}, {"max", fit.max}, {"bias", fit.bias}, {"fit_percent", fit.fit_percent}};
+}
+
+nlohmann::json held_out_record_json(const Record& record, const Dataset& data,
+                                    const std::vector<std::pair<const char*, Prediction>>& stages) {
+  nlohmann::json channels = nlohmann::json::object();
+  for (const auto& [stage, prediction] : stages) {
+    const Goodness reached = goodness(data, prediction);
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      if (data.used[c]) {
+        channels[data.channels[c]]["unit"] = record.find(data.channels[c])->unit;
+        channels[data.channels[c]]["noise"] = data.noise[c];
+        channels[data.channels[c]][stage] = errors_of(reached.fitted[c]);
+      }
+    }
+  }
+  return {{"path", record.path.string()}, {"rows", record.rows}, {"period", record.period}, {"channels", channels}};
+}
+
+template <class Family>
+nlohmann::json held_out_records_json(const ModelFile& model, const std::vector<Record>& kept_back,
+                                     const SearchResult<Family>& found, unsigned threads) {
+  nlohmann::json records = nlohmann::json::array();
+  for (const Record& record : kept_back) {
+    Dataset data = make_dataset(model, {record});
+    fit_every_row(data);
+    records.push_back(held_out_record_json(record, data,
+                                           {{"before", prediction_of(found.declared.model, data, threads)},
+                                            {"calibrated", prediction_of(found.calibrated.model, data, threads)},
+                                            {"after", prediction_of(found.explained.model, data, threads)}}));
+  }
+  return records;
+}
+
+template nlohmann::json held_out_records_json(const ModelFile&, const std::vector<Record>&,
+                                              const SearchResult<SimplexFamily>&, unsigned);
+template nlohmann::json held_out_records_json(const ModelFile&, const std::vector<Record>&,
+                                              const SearchResult<DirectFamily>&, unsigned);
+
+}  // namespace hotfire::explain
