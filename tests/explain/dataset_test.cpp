@@ -83,6 +83,18 @@ TEST(Dataset, AnExclusionThatNamesNoRecordOrNoTimeIsRefusedWithItsForm) {
   }
 }
 
+TEST(Dataset, AnExclusionBesideTheRecordIsRefusedWithWhereTheRecordLies) {
+  const std::vector<double> values(5001, 0.001);
+  try {
+    hotfire::explain::make_dataset(axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)},
+                                   {hotfire::explain::exclusion_from("record.csv@900-901")});
+    FAIL("rows that are not there were excluded");
+  } catch (const hotfire::UsageError& error) {
+    STRCMP_CONTAINS("record.csv@900-901", error.what());
+    STRCMP_CONTAINS("0 to 10 s", error.what());
+  }
+}
+
 TEST(Dataset, ADeclaredNoiseIsTakenAndAnUndeclaredOneIsEstimated) {
   std::vector<double> wave(5000);
   for (std::size_t i = 0; i < wave.size(); ++i) {

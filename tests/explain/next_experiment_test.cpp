@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/lab_image.hpp"
+#include "tests/files/scratch.hpp"
 #include "tools/files/model_file.hpp"
+#include "tools/files/profile_file.hpp"
 #include "tools/simulate/simulate.hpp"
 
 #include <CppUTest/TestHarness.h>
@@ -11,6 +14,7 @@
 namespace {
 
 using namespace hotfire;
+using explain::CommandLimits;
 using explain::Dataset;
 using explain::Fitted;
 using explain::SimplexFamily;
@@ -47,12 +51,12 @@ Fitted<SimplexFamily> with_deadband(double half_width) {
 TEST_GROUP(NextExperiment){};
 
 TEST(NextExperiment, FindsNothingBetweenAModelAndItself) {
-  const auto next = explain::best_separation(records(), with_deadband(0.02), with_deadband(0.02), 2);
+  const auto next = explain::best_separation(records(), with_deadband(0.02), with_deadband(0.02), limits_of(records()), 2);
   DOUBLES_EQUAL(0.0, next.separation, 0.0);
 }
 
 TEST(NextExperiment, StaysWithinTheLargestCommandAndSeparatesAsItSays) {
-  const auto next = explain::best_separation(records(), with_deadband(0.0), with_deadband(0.02), 2);
+  const auto next = explain::best_separation(records(), with_deadband(0.0), with_deadband(0.02), limits_of(records()), 2);
   const std::vector<double>& command = next.command.find("command")->values;
   for (const double value : command) {
     CHECK(std::abs(value) <= kLargest * (1.0 + 1e-12));
@@ -72,4 +76,44 @@ TEST(NextExperiment, StaysWithinTheLargestCommandAndSeparatesAsItSays) {
   // A dead band of 2 % of the valve's opening holds the piston back by 2 % over the position gain, 0.23 mm: 29 times the
   // noise. Half of that has to show.
   CHECK(next.separation > 14.0);
+}
+
+TEST(NextExperiment, EveryProfileStaysWithinTheRigsLimitsOfPositionAndRate) {
+  const CommandLimits limits{-0.01, 0.03, 0.5};
+  constexpr double kPeriod = 1e-3;
+  const auto profiles = explain::test_profiles(limits, 20.0);
+  CHECK(!profiles.empty());
+  bool has_bias = false;
+  for (const auto& profile : profiles) {
+    const std::vector<double> commands = profile.commands(kPeriod);
+    has_bias = has_bias || profile.bias != 0.0;
+    for (std::size_t row = 0; row < commands.size(); ++row) {
+      CHECK(commands[row] <= limits.highest * (1.0 + 1e-12));
+      CHECK(commands[row] >= limits.lowest * (1.0 + 1e-12));
+      if (row > 0) {
+        CHECK(std::abs(commands[row] - commands[row - 1]) <= limits.rate * kPeriod * (1.0 + 1e-9));
+      }
+    }
+  }
+  CHECK(has_bias);
+}
+
+TEST(NextExperiment, ALabRunsEveryProfileAsItsRecordHasIt) {
+  test::Scratch files;
+  const std::filesystem::path lab = HOTFIRE_LAB_PROFILE;
+  constexpr double kPeriod = 1e-3;
+  for (const auto& profile : explain::test_profiles({-0.02, 0.02}, 20.0)) {
+    const LabProfile read = load_profile(files.write("next.toml", profile_with_parts(lab, profile.parts)));
+    const auto image = firmware::parse_lab_image(read.image, "next.toml", kPeriod);
+    STRCMP_EQUAL("", image.error.c_str());
+    const std::vector<double> commands = profile.commands(kPeriod);
+    DOUBLES_EQUAL(profile.kLeadIn + profile.seconds, image.settings->profile.duration(), 1e-9);
+    std::size_t differ = 0;
+    for (std::size_t row = 0; row < commands.size(); ++row) {
+      const double asked = image.settings->profile.at(static_cast<double>(row) * kPeriod).front();
+      differ += std::abs(asked - commands[row]) > 1e-9 ? 1 : 0;
+    }
+    // At a step the one may come a row after the other, by rounding; there are four at most.
+    CHECK(differ <= 4);
+  }
 }

@@ -44,6 +44,28 @@ TEST(ProfileFile, ProfileBecomesLinesOfAnImageInSi) {
              "segment.8.duration 0x1p+1\nsegment.8.from 0x1p-3\nsegment.8.to 0x0p+0\n", "segment.9.duration 0x1p+0\n"});
 }
 
+TEST(ProfileFile, ASineOrASweepSwingsAboutItsBiasAndIsHeldToTheLimitsThere) {
+  const std::string text = lines(
+      "[[profile]]\nkind = \"sines\"\namplitudes = [0.0625]\nfrequencies = [1]\nperiods = 3\nbias = -0.0625\n"
+      "[[profile]]\nkind = \"sweep\"\namplitude = 0.0625\nfrom = 1\nto = 2\nduration = 4\nbias = 0.03125\n");
+  test::expect_message(text, {"segment.0.from -0x1p-4\nsegment.0.to -0x1p-4\nsegment.0.amplitude 0x1p-4\n",
+                              "segment.1.from 0x1p-5\nsegment.1.to 0x1p-5\nsegment.1.amplitude 0x1p-4\n"});
+  refused("[[profile]]\nkind = \"sines\"\namplitudes = [0.0625]\nfrequencies = [1]\nperiods = 3\nbias = 0.0635\n",
+          {"limits.highest_position"});
+}
+
+TEST(ProfileFile, OtherPartsTakeThePlaceOfItsOwnAndAllElseStays) {
+  const auto path = scratch.write("p.toml", head + "[[profile]]\nkind = \"rest\"\nduration = 1\n");
+  const LabProfile was = load_profile(path);
+  const std::string text = profile_with_parts(path, "[[profile]]\nkind = \"rest\"\nduration = 2\n");
+  const LabProfile is = load_profile(scratch.write("q.toml", text));
+  DOUBLES_EQUAL(2.0, is.duration, 0.0);
+  DOUBLES_EQUAL(0.125, is.highest_command, 0.0);
+  DOUBLES_EQUAL(80.0, is.command_rate, 0.0);
+  const auto settings_of = [](const std::string& image) { return image.substr(0, image.find("segment.0.")); };
+  STRCMP_EQUAL(settings_of(was.image).c_str(), settings_of(is.image).c_str());
+}
+
 TEST(ProfileFile, AnAngleIsOneForAllActuatorsOrAListWithOneForEach) {
   head.replace(head.find("actuators = 1"), 13, "actuators = 2");
   const std::string text = lines(

@@ -19,6 +19,7 @@
 #include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/files/error.hpp"
+#include "tools/files/profile_file.hpp"
 #include "tools/files/whole_file.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
@@ -34,9 +35,14 @@ struct ExplainArguments {
   int most_effects = 4;
   std::vector<std::string> excluded;
   std::vector<std::string> held_out;
+  std::string lab;
   bool json = false;
   CandumpOptions candump;
 };
+
+/// The next experiment, for `hotfire simulate` and for `hotfire lab`.
+constexpr const char* kNextRecord = "next_experiment.csv";
+constexpr const char* kNextProfile = "next_experiment.toml";
 
 volatile std::sig_atomic_t interrupted = 0;
 
@@ -117,7 +123,7 @@ struct Outcome {
   nlohmann::json report;
   ReportSeries series;
   std::string model;
-  std::optional<Record> next_experiment;
+  std::optional<explain::NextExperiment> next_experiment;
 };
 
 using AnyModel = std::variant<ModelFile, VehicleFile>;
@@ -148,6 +154,10 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   for (const std::string& path : arguments.held_out) {
     options.kept_back.push_back(load_record_or_log(path, arguments.candump));
   }
+  if (!arguments.lab.empty()) {
+    const LabProfile lab = load_profile(arguments.lab);
+    options.limits = explain::CommandLimits{lab.lowest_command, lab.highest_command, lab.command_rate};
+  }
   const std::filesystem::path out(arguments.out);
   std::error_code failed;
   std::filesystem::create_directories(out, failed);
@@ -169,11 +179,14 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   outcome.report["seconds"] = progress.seconds();
 
   write_whole_file(out / "explained.toml", outcome.model);
+  // One of an earlier run would be taken for this one's.
+  std::filesystem::remove(out / kNextRecord);
+  std::filesystem::remove(out / kNextProfile);
   if (outcome.next_experiment) {
-    write_record(*outcome.next_experiment, out / outcome.next_experiment->name);
-  } else {
-    // One of an earlier run would be taken for this one's.
-    std::filesystem::remove(out / "next_experiment.csv");
+    write_record(outcome.next_experiment->command, out / kNextRecord);
+    if (!arguments.lab.empty()) {
+      write_whole_file(out / kNextProfile, profile_with_parts(arguments.lab, outcome.next_experiment->parts));
+    }
   }
   write_whole_file(out / "report.json", outcome.report.dump(1) + "\n");
   write_whole_file(out / "report.html", report_page(outcome.report, outcome.series));
@@ -200,6 +213,9 @@ void add_explain(CLI::App& program, const std::string& typed) {
   command
       ->add_option("--hold-out", arguments->held_out, "a further record that no fit and no choice sees: judged at the end")
       ->allow_extra_args(false);
+  command->add_option(
+      "--lab", arguments->lab,
+      "profile of the rig (docs/lab.md): the next experiment stays within its limits, and is written as one");
   add_candump_options(*command, arguments->candump);
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(

@@ -62,6 +62,11 @@ std::vector<Block> excluded_rows(const Record& record, const std::vector<Exclusi
           std::clamp(std::ceil((time - record.start) / record.period - 1e-6), 0.0, static_cast<double>(record.rows)));
     };
     rows.push_back({row_at(exclusion.from), row_at(exclusion.to)});
+    if (rows.back().first == rows.back().last) {
+      throw UsageError(fmt::format("--exclude {}@{:g}-{:g}: no row of the record lies there; it goes from {:g} to {:g} s",
+                                   exclusion.record, exclusion.from, exclusion.to, record.start,
+                                   record.start + static_cast<double>(record.rows - 1) * record.period));
+    }
   }
   std::sort(rows.begin(), rows.end(), [](const Block& a, const Block& b) { return a.first < b.first; });
   return rows;

@@ -13,24 +13,26 @@ namespace {
 
 /// Says which test would tell two effects apart, and leaves its command in the explanation.
 template <class Family>
-void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const Fitted<Family>& explained, unsigned threads,
-                         Explanation& explanation) {
+void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const Fitted<Family>& explained,
+                         const ExplainOptions& options, Explanation& explanation) {
   std::string text = fmt::format("{} and {} explain these records equally well", label(rival.kept), label(rival.other));
   if constexpr (std::is_same_v<Family, SimplexFamily>) {
-    NextExperiment next = best_separation(data, explained, rival.model, threads);
+    options.watch.progress("looking for the experiment that tells them apart");
+    const char* limits = options.limits ? "the rig's limits" : "these records' largest command";
+    NextExperiment next =
+        best_separation(data, explained, rival.model, options.limits.value_or(limits_of(data)), options.threads);
     // Over some thousand rows a mean square of a hundredth of the noise's is beyond chance.
     constexpr double kTells = 0.1;
-    if (next.separation > kTells) {
+    if (next.words.empty()) {
+      text += fmt::format(", and {} leave no profile to tell them apart", limits);
+    } else if (next.separation > kTells) {
       text += fmt::format(
-          ": under {} they differ by {:.2g} times the sensor noise (rms), more than under any other profile "
-          "tried within these records' largest command",
-          next.words, next.separation);
-      explanation.next_experiment = std::move(next.command);
+          ": under {} they differ by {:.2g} times the sensor noise (rms), more than under any other profile tried within {}",
+          next.words, next.separation, limits);
+      explanation.next_experiment = std::move(next);
     } else {
-      text += fmt::format(
-          ", and no profile within their largest command tells them apart: the best, {}, shows {:.2g} of the "
-          "sensor noise",
-          next.words, next.separation);
+      text += fmt::format(", and no profile within {} tells them apart: the best, {}, shows {:.2g} of the sensor noise",
+                          limits, next.words, next.separation);
     }
   }
   explanation.report["residual"]["next_experiment"] = text + ".";
@@ -49,7 +51,7 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
     explanation.report["held_out_records"] = held_out_records_json(model, options.kept_back, found, options.threads);
   }
   if (found.rival) {
-    add_next_experiment(data, *found.rival, found.explained.model, options.threads, explanation);
+    add_next_experiment(data, *found.rival, found.explained.model, options, explanation);
   }
   const Fitted<Family>& fitted = found.explained.model;
   explanation.model.parameters = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/explain/next_experiment.hpp"
 #include "tools/explain/screening.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/record.hpp"
@@ -18,8 +19,8 @@ struct Explanation {
   nlohmann::json report;  ///< report.json, docs/report.md
   ReportSeries series;    ///< what the page draws
   ModelFile model;        ///< the explained model: what the rig runs next
-  /// The command that would tell the effect kept last from its rival best, if they explain these records equally well.
-  std::optional<Record> next_experiment;
+  /// The test that would tell the effect kept last from its rival best, if they explain these records equally well.
+  std::optional<NextExperiment> next_experiment;
 };
 
 struct ExplainOptions {
@@ -27,7 +28,8 @@ struct ExplainOptions {
   int most_effects = 4;  ///< to add; 0: calibrate only
   Watch watch;
   std::vector<Exclusion> exclusions{};
-  std::vector<Record> kept_back{};  ///< whole records that no fit and no choice is to see: judged at the end
+  std::optional<CommandLimits> limits{};  ///< of the rig, for the next experiment; none: the records' largest command
+  std::vector<Record> kept_back{};        ///< whole records that no fit and no choice is to see: judged at the end
 };
 
 /// Closes the loop: calibrates the declared model within its tolerances, traces what is left, adds the effects that the data

@@ -4,6 +4,7 @@
 
 #include "tools/explain/candidates.hpp"
 #include "tools/explain/fit.hpp"
+#include "tools/explain/test_profiles.hpp"
 #include "tools/files/record.hpp"
 
 namespace hotfire::explain {
@@ -18,15 +19,19 @@ struct Rival {
 
 /// The test that tells two models of the same rig apart.
 struct NextExperiment {
-  std::string words;        ///< "a sine of 0.4 deg at 2 Hz about 0.8 deg, for 8 s"
+  std::string words;        ///< TestProfile::words
   double separation = 0.0;  ///< rms of the difference of what they predict over the sensor noise, largest channel
-  Record command;           ///< time and command: what `hotfire simulate` and a rig run
+  Record command;           ///< time and command: what `hotfire simulate` runs
+  std::string parts;        ///< TestProfile::parts: what `hotfire lab` runs
 };
 
-/// Simulates both models over sines, sweeps, steps and ramps within the largest command of the records (amplitude and bias
-/// together) and below a tenth of their sampling rate; returns the profile under which they differ most. Of two that differ
-/// alike the shorter one wins.
+/// The largest command of the records, either way.
+CommandLimits limits_of(const Dataset& data);
+
+/// Simulates both models over the profiles of test_profiles.hpp within the limits and below a tenth of the records' sampling
+/// rate; returns the one under which they differ most. Of two that differ alike the shorter one wins. Without words where
+/// the limits leave no profile.
 NextExperiment best_separation(const Dataset& data, const Fitted<SimplexFamily>& one, const Fitted<SimplexFamily>& other,
-                               unsigned threads);
+                               const CommandLimits& limits, unsigned threads);
 
 }  // namespace hotfire::explain

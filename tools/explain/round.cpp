@@ -61,7 +61,8 @@ RoundResult<Family> Round<Family>::run() {
   }
   const bool kept = best_ && result.model.good() && is_supported(trials_[*best_]);
   for (std::size_t i = 0; i < trials_.size(); ++i) {
-    trials_[i].decision = kept && i == *best_ ? "kept" : "dropped";
+    const bool is_tied = kept && trials_[i].refined && trials_[i].delta_criterion - trials_[*best_].delta_criterion < kTied;
+    trials_[i].decision = kept && i == *best_ ? "kept" : is_tied ? "tied" : "dropped";
     trials_[i].reason = reason_of(trials_[i], best_ ? &trials_[*best_] : nullptr);
   }
   result.trials = trials_;

@@ -21,6 +21,10 @@ std::string reason_of(const Trial& trial, const Trial* best) {
     return fmt::format("lowers the held-out error by {:.1f} % and the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
                        -trial.delta_criterion);
   }
+  if (trial.decision == "tied") {
+    return fmt::format("the data do not tell it from {}: {:+.1f} in BIC", label(best->candidate),
+                       trial.delta_criterion - best->delta_criterion);
+  }
   if (!trial.screened) {
     return "not fitted: none of the laws that it contains goes on";
   }

@@ -25,7 +25,7 @@ struct Trial {
   double delta_criterion = 0.0;  ///< BIC with it minus without it (negative is better)
   double held_out_ratio = 1.0;   ///< held-out error with it over without it; 1 if not refined
   double seconds = 0.0;
-  std::string decision;  ///< "kept", "dropped", "taken out", kUndecided
+  std::string decision;  ///< "kept", "dropped", "tied" with the one kept, "taken out", kUndecided
   std::string reason;
   bool screened = true;  ///< false: never fitted, a law that was to start from where one that it contains ends
 };

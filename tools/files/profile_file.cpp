@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <sstream>
 #include <vector>
 
 #include "tools/files/error.hpp"
@@ -83,7 +84,12 @@ class Reader {
     read_limits();
     read_lines();
     read_profile();
-    return {actuators_, duration_, text_};
+    return {actuators_,
+            duration_,
+            lowest_ / piston_per_command_,
+            highest_ / piston_per_command_,
+            command_rate_ / piston_per_command_,
+            text_};
   }
 
  private:
@@ -142,6 +148,7 @@ class Reader {
       line("limits." + std::string(wanted.key), exact(value));
       lowest_ = wanted.key == "lowest_position" ? value : lowest_;
       highest_ = wanted.key == "highest_position" ? value : highest_;
+      command_rate_ = wanted.key == "command_rate" ? value : command_rate_;
     }
     const toml::node* overruns = limits.get("overruns");
     line("limits.overruns", std::to_string(overruns == nullptr ? 0 : count(*overruns, "limits.overruns", 0, 1'000'000)));
@@ -223,6 +230,12 @@ class Reader {
     return number(table, prefix, {"duration", "s", 1e-3, 1e6});
   }
 
+  /// What a sine swings about: 0 where nothing is said.
+  Angles bias(const toml::table& table, const std::string& prefix) const {
+    const toml::node* node = table.get("bias");
+    return node == nullptr ? all(0.0) : angles(*node, prefix + "bias");
+  }
+
   std::vector<Stretch> steps(const toml::table& table, const std::string& prefix) const {
     refuse_unknown_keys(source_, table, prefix, {"kind", "levels", "hold"});
     const double hold = number(table, prefix, {"hold", "s", 1e-3, 1e6});
@@ -234,21 +247,23 @@ class Reader {
   }
 
   std::vector<Stretch> sweep(const toml::table& table, const std::string& prefix) const {
-    refuse_unknown_keys(source_, table, prefix, {"kind", "amplitude", "from", "to", "duration"});
+    refuse_unknown_keys(source_, table, prefix, {"kind", "amplitude", "bias", "from", "to", "duration"});
     const Angles amplitude = angles(needed(table, prefix, "amplitude", angles_allowed()), prefix + "amplitude");
     const double from = number(table, prefix, {"from", "Hz", 1e-3, kHighestFrequency});
     const double to = number(table, prefix, {"to", "Hz", 1e-3, kHighestFrequency});
-    return {{duration(table, prefix), all(0.0), all(0.0), amplitude, from, to}};
+    const Angles middle = bias(table, prefix);
+    return {{duration(table, prefix), middle, middle, amplitude, from, to}};
   }
 
   std::vector<Stretch> sines(const toml::table& table, const std::string& prefix) const {
-    refuse_unknown_keys(source_, table, prefix, {"kind", "amplitudes", "frequencies", "periods"});
+    refuse_unknown_keys(source_, table, prefix, {"kind", "amplitudes", "bias", "frequencies", "periods"});
     const toml::node& node = needed(table, prefix, "periods", "a whole number");
     const auto periods = static_cast<double>(count(node, prefix + "periods", 1, 100'000));
+    const Angles middle = bias(table, prefix);
     std::vector<Stretch> result;
     for (const Angles& amplitude : list_of_angles(table, prefix, "amplitudes")) {
       for (const double frequency : numbers(table, prefix, {"frequencies", "Hz", 1e-3, kHighestFrequency})) {
-        result.push_back({periods / frequency, all(0.0), all(0.0), amplitude, frequency, frequency});
+        result.push_back({periods / frequency, middle, middle, amplitude, frequency, frequency});
       }
     }
     return result;
@@ -352,12 +367,21 @@ class Reader {
   double piston_per_command_ = 0.0;
   double lowest_ = 0.0;
   double highest_ = 0.0;
+  double command_rate_ = 0.0;
   std::string text_;
 };
 
 }  // namespace
 
 bool is_profile(const std::filesystem::path& path) { return TomlSource(path).root().contains("lab"); }
+
+std::string profile_with_parts(const std::filesystem::path& path, const std::string& parts) {
+  toml::table whole = TomlSource(path).root();
+  whole.insert_or_assign("profile", *toml::parse(parts).get("profile"));
+  std::ostringstream text;
+  text << whole << '\n';
+  return text.str();
+}
 
 LabProfile load_profile(const std::filesystem::path& path) { return Reader(path).profile(); }
 
