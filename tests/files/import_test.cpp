@@ -6,7 +6,6 @@
 
 #include "tests/files/expect.hpp"
 #include "tests/files/scratch.hpp"
-#include "tests/files/write_matlab.hpp"
 
 using namespace hotfire;
 using namespace hotfire::test;
@@ -89,43 +88,4 @@ TEST(Import, AMapIsRefusedWithLineKeyAndMend) {
                  {"map.toml:4", "channels.piston.colum", "column, unit, factor"});
   expect_message(refused("schema = 1\nperiod = \"2 s\"\n[channels.piston]\ncolumn = \"x\"\nunit = \"m\"\n", ""),
                  {"map.toml:2", "period", "50 us to 20 ms"});
-}
-
-TEST(Import, AMatlabFileGivesVectorsMatrixColumnsAndFieldsOfStructs) {
-  std::vector<double> time;
-  std::vector<double> matrix;
-  for (int i = 0; i < 50; ++i) {
-    time.push_back(1e-3 * i);
-  }
-  for (int i = 0; i < 100; ++i) {
-    matrix.push_back(0.1 * i);
-  }
-  const auto path = scratch.path("run.mat");
-  write_matlab(path, {{"t", 50, 1, time}, {"X", 50, 2, matrix}}, {"data", "beta", time});
-  const auto map = load_import_map(scratch.write(
-      "map.toml",
-      "schema = 1\ntime = {column = \"t\", unit = \"s\"}\n[channels]\ncommand = {column = \"data.beta\", unit = "
-      "\"rad\"}\npiston = {column = \"X:2\", unit = \"mm\"}\n"));
-  const Record record = import_record(path, map, scratch.path("run.csv"));
-  LONGS_EQUAL(50, record.rows);
-  DOUBLES_EQUAL(7e-3, record.find("command")->values[7], 1e-15);
-  DOUBLES_EQUAL(5.7e-3, record.find("piston")->values[7], 1e-15);
-}
-
-TEST(Import, AMatlabVariableThatIsNotThereIsRefusedWithThoseThatAre) {
-  const auto path = scratch.path("run.mat");
-  write_matlab(path, {{"t", 3, 1, {0.0, 0.001, 0.002}}, {"X", 3, 2, {1, 2, 3, 4, 5, 6}}}, {"data", "beta", {1, 2, 3}});
-  const auto refused_column = [&](const std::string& column) {
-    const auto map = load_import_map(scratch.write(
-        "map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"" + column + "\"\n"));
-    return refusal([&] { import_record(path, map, scratch.path("run.csv")); });
-  };
-  expect_message(refused_column("xp"), {"run.mat", "no variable \"xp\"", "t, X, data"});
-  expect_message(refused_column("X"), {"3 x 2", "X:1"});
-  expect_message(refused_column("X:3"), {"has 2 columns"});
-  expect_message(refused_column("data.gamma"), {"no field \"gamma\""});
-  const auto text = scratch.write("text.mat", "time,piston\n");
-  const auto map = load_import_map(
-      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
-  expect_message(refusal([&] { import_record(text, map, scratch.path("run.csv")); }), {"text.mat", "no MATLAB file"});
 }

@@ -33,7 +33,8 @@ ImportMap load_import_map(const std::filesystem::path& path);
 std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& path, const ImportMap& map);
 
 /// The same from a MATLAB file (version 4 to 7.2; 7.3 where the library has HDF5). Throws FileError: not such a file, no
-/// such variable (with those that there are), not a real vector or matrix column.
+/// such variable (with those that there are), not a real vector or matrix column of numbers or logicals, an integer beyond
+/// 2^53, which no double holds.
 std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path& path, const ImportMap& map);
 
 /// Reads `source` (.mat, else CSV) through the map and writes a record, which is then read as `load_record` reads any other:

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 #include <matio.h>
 
+#include <algorithm>
 #include <charconv>
+#include <limits>
 #include <memory>
+#include <span>
+#include <type_traits>
 
 #include "tools/files/error.hpp"
 #include "tools/files/import.hpp"
@@ -101,12 +105,19 @@ class MatlabReader {
     }
     const std::size_t first = place.column == 0 ? 0 : (place.column - 1) * rows;
     const std::size_t count = place.column == 0 ? rows * columns : rows;
-    const auto copy = [&]<class T>(const T* data) { return std::vector<double>(data + first, data + first + count); };
+    const auto copy = [&]<class T>(const T* data) {
+      require_exact(std::span(data + first, count), column);
+      return std::vector<double>(data + first, data + first + count);
+    };
     switch (variable.class_type) {
       case MAT_C_DOUBLE:
         return copy(static_cast<const double*>(variable.data));
       case MAT_C_SINGLE:
         return copy(static_cast<const float*>(variable.data));
+      case MAT_C_INT64:
+        return copy(static_cast<const std::int64_t*>(variable.data));
+      case MAT_C_UINT64:
+        return copy(static_cast<const std::uint64_t*>(variable.data));
       case MAT_C_INT32:
         return copy(static_cast<const std::int32_t*>(variable.data));
       case MAT_C_UINT32:
@@ -115,8 +126,27 @@ class MatlabReader {
         return copy(static_cast<const std::int16_t*>(variable.data));
       case MAT_C_UINT16:
         return copy(static_cast<const std::uint16_t*>(variable.data));
+      case MAT_C_INT8:
+        return copy(static_cast<const std::int8_t*>(variable.data));
+      case MAT_C_UINT8:  // and logical
+        return copy(static_cast<const std::uint8_t*>(variable.data));
       default:
-        refuse(column, "holds neither floating-point numbers nor integers of 16 or 32 bits");
+        refuse(column, "holds no numbers; allowed: double, single, int8 to int64, uint8 to uint64, logical");
+    }
+  }
+
+  /// A double has every integer up to 2^53 alone.
+  template <class T>
+  void require_exact(std::span<const T> values, const ImportColumn& column) const {
+    if constexpr (std::is_integral_v<T> && sizeof(T) == sizeof(std::int64_t)) {
+      constexpr T kLargest = T{1} << std::numeric_limits<double>::digits;
+      const auto found = std::find_if(values.begin(), values.end(), [](T value) {
+        return value > kLargest || (std::is_signed_v<T> && value < T{0} - kLargest);
+      });
+      if (found != values.end()) {
+        refuse(column, fmt::format("row {}: {} does not fit a double; allowed: integers of at most 2^53 = {}",
+                                   found - values.begin() + 1, *found, kLargest));
+      }
     }
   }
 
