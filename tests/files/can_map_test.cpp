@@ -79,11 +79,15 @@ TEST(CanMap, message_or_signal_that_is_not_there_is_named) {
 
 TEST(CanMap, what_is_wrong_is_refused_with_file_and_line) {
   expect_message(refused_signal("x : 40|16@1- (1,0) [0|1] \"\" Plant"), {"rig.dbc:4: x: bits 40 to 55 of a frame of 48"});
-  expect_message(refused_signal("x : 12|8@1- (1,0) [0|1] \"\" Plant"), {"rig.dbc:4: x: has the name or a bit of counter"});
+  expect_message(refused_signal("x : 12|8@1- (1,0) [0|1] \"\" Plant"), {"rig.dbc:4: x: has a bit of counter"});
   expect_message(refused_signal("x : 16|8@0- (1,0) [0|1] \"\" Plant"), {"rig.dbc:4: x: big-endian; allowed: @1"});
-  expect_message(refused_signal("x m1 : 16|8@1- (1,0) [0|1] \"\" Plant"), {"rig.dbc:4: not a signal", "multiplexed"});
-  expect_message(refused_signal("x : 16|8@1- (0,0) [0|1] \"\" Plant"), {"rig.dbc:4: x: factor 0; allowed: above 0"});
+  expect_message(refused_signal("x m1 : 16|8@1- (1,0) [0|1] \"\" Plant"), {"rig.dbc:4: x: multiplexed"});
+  expect_message(refused_signal("x : 16|8@1- (-1,0) [0|1] \"\" Plant"), {"rig.dbc:4: x: factor -1; allowed: above 0"});
   expect_message(refused_signal("x : 16|8@1- (0.5,0) [-70|1] \"\" Plant"), {"rig.dbc:4: x: range -70 to 1", "-64 to 63.5"});
+  expect_message(refused_signal("x : 16|32@1- (1,0) [0|1] \"\" Plant\nSIG_VALTYPE_ 256 x : 1;"),
+                 {"rig.dbc:4: x: floating-point"});
+  expect_message(refused("BO_ 256 A: 8 X\n" + kProtection + " SG_ x : 16|33@1- (1,0) [0|1] \"\" Plant\n"),
+                 {"rig.dbc:4: x: 33 bits; allowed: up to 32"});
   expect_message(refused_signal("x : 16|8@1- (1,y) [0|1] \"\" Plant"), {"rig.dbc:4: \"y\" is no number"});
   expect_message(refused("BO_ 2147484000 A: 8 X\n"), {"rig.dbc:1: A: id 352 of 29 bits; allowed: 0 to 2047"});
   expect_message(refused("BO_ 256 COMMAND: 6 Controller\n SG_ x : 0|8@1+ (1,0) [0|255] \"\" Plant\n"),

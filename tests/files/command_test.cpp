@@ -91,8 +91,8 @@ TEST(Command, without_what_it_needs_is_wrong_use) {
 }
 
 TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
-  for (const std::string command :
-       {"", "check ", "simulate ", "sweep ", "step ", "stiffness ", "hammer ", "quiescent ", "strings ", "findings "}) {
+  for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "stiffness ", "hammer ", "quiescent ",
+                                    "strings ", "findings ", "import "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));
@@ -250,6 +250,25 @@ TEST(Command, candump_log_is_written_read_back_and_simulated) {
   LONGS_EQUAL(6, status_of("simulate --model " + model() + " --input " + log + " --output " + output));
   expect_message(err, {"no column command", "--command-per-current"});
   LONGS_EQUAL(2, status_of("convert " + csv + " r.mat"));
+}
+
+TEST(Command, import_reads_a_candump_log_with_its_dbc_file_and_says_without_one_what_is_needed) {
+  const std::string log =
+      scratch.write("rig.log", "(1.000) can0 100#0A\n(1.002) can0 100#0B\n(1.004) can0 100#0C\n").string();
+  const std::string dbc =
+      scratch.write("rig.dbc", "BO_ 256 FEEDBACK: 1 Drive\n SG_ POSITION : 0|8@1+ (1,0) [0|0] \"mm\" X\n").string();
+  const std::string map = scratch.write("map.toml", "schema = 1\n[channels.piston]\ncolumn = \"POSITION\"\n").string();
+  const std::string output = scratch.path("rig.csv").string();
+  LONGS_EQUAL(0, status_of("import " + log + " --dbc " + dbc + " --map " + map + " --output " + output));
+  expect_message(out, {"rig.csv: 3 rows, period 0.002 s, piston"});
+  LONGS_EQUAL(0, status_of("check " + output));
+  expect_message(out, {"rig.csv: record, 3 rows, period 0.002 s (500 Hz)", "piston[m]"});
+  LONGS_EQUAL(2, status_of("import " + log + " --map " + map + " --output " + output));
+  expect_message(err, {"rig.log: is a candump log", "--dbc rig.dbc"});
+  LONGS_EQUAL(6, status_of("import " + log + " --dbc none.dbc --map " + map + " --output " + output));
+  expect_message(err, {"none.dbc: cannot be opened"});
+  LONGS_EQUAL(0, status_of("import --help"));
+  expect_message(out, {"Example: hotfire import rig.log --dbc rig.dbc --map map.toml"});
 }
 
 TEST(Command, simulate_refuses_bad_data_with_6_and_leaves_no_output) {

@@ -21,7 +21,7 @@ TEST_GROUP(ImportMatlab) {
 
   template <class T>
   std::filesystem::path written(MatlabVersion version, const std::string& matlab_class, const std::vector<T>& values) const {
-    const auto path = scratch.path(matlab_class + ".mat");
+    std::filesystem::path path = scratch.path(matlab_class + ".mat");
     CHECK(write_matlab_class(path, version, "X", matlab_class, values.data(), values.size()));
     return path;
   }
@@ -90,6 +90,8 @@ TEST(ImportMatlab, what_holds_no_numbers_is_refused_with_the_classes_that_do) {
 TEST(ImportMatlab, AMatlabFileGivesVectorsMatrixColumnsAndFieldsOfStructs) {
   std::vector<double> time;
   std::vector<double> matrix;
+  time.reserve(50);
+  matrix.reserve(100);
   for (int i = 0; i < 50; ++i) {
     time.push_back(1e-3 * i);
   }

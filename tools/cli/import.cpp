@@ -14,19 +14,26 @@ void add_import(CLI::App& program) {
   struct Options {
     std::string source;
     std::string map;
+    std::string dbc;
     std::string output;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("import", "Make a record of a CSV file with other names, or of a MATLAB file");
-  command->add_option("SOURCE", options->source, "what there is (.mat, else text with a header)")->required();
+  CLI::App* command =
+      program.add_subcommand("import", "Make a record of a CSV file with other names, a MATLAB file or a candump log");
+  command->add_option("SOURCE", options->source, "what there is (.mat, with --dbc a candump log, else text with a header)")
+      ->required();
   command->add_option("--map", options->map, "which channel is where (.toml)")->required();
+  command->add_option("--dbc", options->dbc, "of a candump log: what its frames carry (.dbc)");
   command->add_option("--output", options->output, "record to write (.csv)")->required();
   command->footer(
       "Example: hotfire import run17.mat --map map.toml --output run17.csv\nmap.toml: schema = 1, [time] column = \"t\", "
-      "unit = \"ms\" (or period = \"2 ms\"),\n  [channels.command] column = \"BETA_CMD\", unit = \"deg\" ... A candump log "
-      "needs no map: hotfire convert.");
+      "unit = \"ms\" (or period = \"2 ms\"),\n  [channels.command] column = \"BETA_CMD\", unit = \"deg\" ...\n"
+      "Example: hotfire import rig.log --dbc rig.dbc --map map.toml --output rig.csv\nmap.toml: schema = 1, [can] rows = "
+      "\"FEEDBACK\" (whose frames make the rows),\n  [channels.command] column = \"BETA_CMD\" (a signal, or "
+      "\"MESSAGE.SIGNAL\") ...\nA log of Hotfire's own CAN map needs no map: hotfire convert.");
   command->callback([options] {
-    const Record record = import_record(options->source, load_import_map(options->map), options->output);
+    const ImportMap map = load_import_map(options->map, import_source(options->source, options->dbc));
+    const Record record = import_record(options->source, map, options->output, options->dbc);
     std::cout << fmt::format("{}: {} rows, period {:.6g} s,", options->output, record.rows, record.period);
     for (const Channel& channel : record.channels) {
       std::cout << ' ' << channel.name;

@@ -60,10 +60,9 @@ struct CanMap {
   const CanMessage* find(std::uint32_t id, bool fd) const;
 };
 
-/// Reads a DBC file. Throws FileError with file and line for what this project does not use (extended ids, multiplexing,
-/// big-endian or floating-point signals, signals over 32 bits) and for what is wrong: a signal beyond its frame or over
-/// another one, a length no frame has, a message twice, a message whose first two signals are not crc8 or crc16 and counter
-/// in their places.
+/// Makes the map of a DBC file (dbc.hpp). Throws FileError with file and line for what this project does not use (extended
+/// ids, multiplexing, big-endian or floating-point signals, signals over 32 bits) and for what is wrong: a signal over
+/// another one, a length no frame has, a message whose first two signals are not crc8 or crc16 and counter in their places.
 CanMap read_can_map(std::string_view text, const std::filesystem::path& path);
 
 /// The map that this build's firmware is made from.

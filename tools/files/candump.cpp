@@ -9,6 +9,7 @@
 
 #include "tools/files/candump_frame.hpp"
 #include "tools/files/error.hpp"
+#include "tools/files/time_grid.hpp"
 
 namespace hotfire {
 
@@ -119,7 +120,8 @@ class LogReader {
       lines_.refuse(fmt::format("{}: {} bytes; allowed: {}", message.name, frame.data.size(), message.length));
     }
     if (!message.is_intact(frame.data)) {
-      lines_.refuse(fmt::format("{}: its check is wrong; the log is damaged, or of another CAN map", message.name));
+      lines_.refuse(fmt::format("{}: its check is wrong; the log is damaged, or of another CAN map: 'hotfire import --dbc'",
+                                message.name));
     }
     for (const CanSignal& signal : message.signals) {
       const std::int64_t raw = signal.read(frame.data);
@@ -194,10 +196,16 @@ class LogReader {
     if (rows_.size() < 2) {
       throw FileError(
           fmt::format("{}: {} readings of actuator {} with a command; allowed: at least 2. The log needs the "
-                      "frames SERVOVALVE_COMMAND and PISTON_1 of the CAN map, or those of the FD layout",
+                      "frames SERVOVALVE_COMMAND and PISTON_1 of the CAN map, or those of the FD layout; 'hotfire import "
+                      "--dbc' reads other frames",
                       path_.string(), rows_.size(), options_.actuator));
     }
-    const auto [start, period] = grid();
+    std::vector<double> times;
+    times.reserve(rows_.size());
+    for (const Row& row : rows_) {
+      times.push_back(row.time);
+    }
+    const auto [start, period] = stamped_grid(times, path_);
     Record record{path_, path_.filename().string(), start, period, rows_.size(), {}};
     const auto add = [&](const std::string& name, const std::string& unit, const auto& value) {
       Channel& channel = record.channels.emplace_back(Channel{name, unit, {}});
@@ -216,28 +224,6 @@ class LogReader {
       }
     }
     return record;
-  }
-
-  std::pair<double, double> grid() const {
-    constexpr double kShortest = 1.0 / 20e3;
-    constexpr double kLongest = 1.0 / 50.0;
-    constexpr double kMicrosecond = 1e-6;
-    const double start = rows_.front().time;
-    const double mean = (rows_.back().time - start) / static_cast<double>(rows_.size() - 1);
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const double expected = start + static_cast<double>(i) * mean;
-      if (!(std::abs(rows_[i].time - expected) <= 0.5 * mean)) {
-        throw FileError(
-            fmt::format("{}: reading {} is stamped {:.6f} s, and {:.6f} s is expected of an even rate; allowed: "
-                        "half a period off",
-                        path_.string(), i + 1, rows_[i].time, expected));
-      }
-    }
-    const double period = std::round(mean / kMicrosecond) * kMicrosecond;
-    if (!(period >= kShortest && period <= kLongest)) {
-      throw FileError(fmt::format("{}: readings every {:.6g} s; allowed: 50 Hz to 20 kHz", path_.string(), mean));
-    }
-    return {start, period};
   }
 
   std::filesystem::path path_;

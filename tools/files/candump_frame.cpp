@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "tools/files/dbc.hpp"
+
 namespace hotfire {
 
 namespace {
@@ -13,6 +15,7 @@ constexpr std::string_view kForm =
     "allowed: lines of 'candump -l' or 'candump -L', (1436509052.249713) can0 123#1122334455667788";
 constexpr std::size_t kBaseDigits = 3;
 constexpr std::size_t kExtendedDigits = 8;
+constexpr std::uint32_t kLargestFrameId = 0x1FFFFFFF;  ///< candump writes error frames as ids above it
 
 [[noreturn]] void refuse(const CsvLines& lines, std::string_view line) {
   constexpr std::size_t kMost = 60;
@@ -69,10 +72,11 @@ CandumpFrame read_candump_line(const CsvLines& lines, std::string_view line) {
   }
   std::string_view data = text.substr(mark + 1);
   frame.fd = data.starts_with('#');
-  frame.is_data = mark == kBaseDigits && !data.starts_with('R');
+  frame.is_data = frame.id <= kLargestFrameId && !data.starts_with('R');
   if (!frame.is_data) {
     return frame;
   }
+  frame.id |= mark == kExtendedDigits ? kExtendedId : 0;
   data.remove_prefix(frame.fd ? 1 : 0);
   if (frame.fd) {
     unsigned flags = 0;
@@ -88,7 +92,9 @@ CandumpFrame read_candump_line(const CsvLines& lines, std::string_view line) {
 }
 
 std::string candump_line(const CandumpFrame& frame) {
-  std::string line = fmt::format("({:.6f}) {} {:03X}#{}", frame.time, frame.interface, frame.id, frame.fd ? "#1" : "");
+  const bool is_extended = (frame.id & kExtendedId) != 0;
+  std::string line = fmt::format("({:.6f}) {} {:0{}X}#{}", frame.time, frame.interface, frame.id & ~kExtendedId,
+                                 is_extended ? kExtendedDigits : kBaseDigits, frame.fd ? "#1" : "");
   for (const std::uint8_t byte : frame.data) {
     line += fmt::format("{:02X}", byte);
   }

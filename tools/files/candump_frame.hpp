@@ -13,8 +13,8 @@ namespace hotfire {
 struct CandumpFrame {
   double time = 0.0;  ///< [s]
   std::string interface;
-  std::uint32_t id = 0;
-  bool is_data = false;  ///< a data frame with an 11-bit id; the others carry nothing that is read
+  std::uint32_t id = 0;  ///< 11 bits, or 29 bits with kExtendedId
+  bool is_data = false;  ///< a data frame; the others (remote, error) carry nothing that is read
   bool fd = false;
   std::vector<std::uint8_t> data;
 };

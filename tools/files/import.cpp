@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <fstream>
+#include <iterator>
 
 #include "tools/files/error.hpp"
 #include "tools/files/whole_file.hpp"
@@ -11,11 +12,11 @@ namespace hotfire {
 
 namespace {
 
-void write_columns(const ImportMap& map, const std::vector<std::vector<double>>& values,
+void write_columns(const std::vector<ImportColumn>& columns, const std::vector<std::vector<double>>& values, double period,
                    const std::filesystem::path& output) {
   WholeFile file(output);
-  std::string text = map.period > 0.0 ? "time[s]" : "";
-  for (const ImportColumn& column : map.columns) {
+  std::string text = period > 0.0 ? "time[s]" : "";
+  for (const ImportColumn& column : columns) {
     text += fmt::format("{}{}[{}]", text.empty() ? "" : ",", column.channel, column.unit);
   }
   text += '\n';
@@ -25,11 +26,11 @@ void write_columns(const ImportMap& map, const std::vector<std::vector<double>>&
       fmt::format_to(std::back_inserter(text), "{}{}", first ? "" : ",", value);
       first = false;
     };
-    if (map.period > 0.0) {
-      append(static_cast<double>(row) * map.period);
+    if (period > 0.0) {
+      append(static_cast<double>(row) * period);
     }
-    for (std::size_t c = 0; c < map.columns.size(); ++c) {
-      append(values[c][row] * map.columns[c].factor);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      append(values[c][row] * columns[c].factor);
     }
     text += '\n';
     file.write_block(text);
@@ -40,9 +41,33 @@ void write_columns(const ImportMap& map, const std::vector<std::vector<double>>&
 
 }  // namespace
 
-Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output) {
-  const bool is_matlab = source.extension() == ".mat";
-  write_columns(map, is_matlab ? read_matlab_columns(source, map) : read_csv_columns(source, map), output);
+ImportSource import_source(const std::filesystem::path& source, const std::filesystem::path& dbc) {
+  if (!dbc.empty()) {
+    return ImportSource::candump_log;
+  }
+  constexpr std::size_t kFrame = 100;  // characters that hold stamp, interface and id
+  std::string start(kFrame, '\0');
+  std::ifstream(source, std::ios::binary).read(start.data(), kFrame);
+  if (start.starts_with('(') && start.find_first_of("0123456789") == 1 && start.find(") ") < start.find('#') &&
+      start.find('#') < start.find('\n')) {
+    throw UsageError(fmt::format(
+        "{}: is a candump log; say what its frames carry, --dbc rig.dbc (a log of Hotfire's own CAN map needs no "
+        "map: hotfire convert {} record.csv)",
+        source.string(), source.string()));
+  }
+  return ImportSource::table;
+}
+
+Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
+                     const std::filesystem::path& dbc) {
+  if (import_source(source, dbc) == ImportSource::candump_log) {
+    const ImportedColumns log = read_candump_columns(source, load_dbc(dbc), map);
+    write_columns(log.columns, log.values, 0.0, output);
+  } else {
+    const bool is_matlab = source.extension() == ".mat";
+    write_columns(map.columns, is_matlab ? read_matlab_columns(source, map) : read_csv_columns(source, map), map.period,
+                  output);
+  }
   try {
     return load_record(output);
   } catch (const FileError& error) {

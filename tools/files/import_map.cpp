@@ -11,10 +11,12 @@ namespace {
 constexpr double kShortestPeriod = 5e-5;
 constexpr double kLongestPeriod = 2e-2;
 
-ImportColumn read_column(const TomlSource& source, const toml::node& node, const std::string& key, std::string channel) {
+ImportColumn read_column(const TomlSource& source, const toml::node& node, const std::string& key, std::string channel,
+                         ImportSource kind) {
   const toml::table& table = source.table(node, key);
   ImportColumn column;
   column.channel = std::move(channel);
+  column.line = table.source().begin.line;
   for (const auto& [name, value] : table) {
     const std::string own = key + "." + std::string(name.str());
     if (name.str() == "column") {
@@ -30,9 +32,11 @@ ImportColumn read_column(const TomlSource& source, const toml::node& node, const
       source.refuse_key(name, own, "unknown key; allowed: column, unit, factor");
     }
   }
-  for (const char* needed : {"column", "unit"}) {
-    if (!table.contains(needed)) {
-      source.refuse_missing(table, key + "." + needed, "missing; write for example column = \"BETA_CMD\", unit = \"deg\"");
+  for (const std::string_view needed : {"column", "unit"}) {
+    const bool is_in_dbc = kind == ImportSource::candump_log && needed == "unit";
+    if (!table.contains(needed) && !is_in_dbc) {
+      source.refuse_missing(table, fmt::format("{}.{}", key, needed),
+                            "missing; write for example column = \"BETA_CMD\", unit = \"deg\"");
     }
   }
   return column;
@@ -59,17 +63,10 @@ void read_csv_settings(const TomlSource& source, const toml::node& node, ImportM
   }
 }
 
-}  // namespace
-
-ImportMap load_import_map(const std::filesystem::path& path) {
-  const TomlSource source(path);
-  refuse_unknown_keys(source, source.root(), "", {"schema", "period", "time", "channels", "csv"});
-  source.require_schema();
-  ImportMap map;
-  map.path = path;
+void read_time(const TomlSource& source, ImportMap& map) {
   const toml::table& root = source.root();
   if (const toml::node* node = root.get("time")) {
-    map.columns.push_back(read_column(source, *node, "time", "time"));
+    map.columns.push_back(read_column(source, *node, "time", "time", ImportSource::table));
   }
   if (const toml::node* node = root.get("period")) {
     if (!map.columns.empty()) {
@@ -82,12 +79,48 @@ ImportMap load_import_map(const std::filesystem::path& path) {
   } else if (map.columns.empty()) {
     source.refuse_missing(root, "time", "missing; write [time] column = \"t\", unit = \"s\", or period = \"2 ms\"");
   }
+}
+
+void read_can_settings(const TomlSource& source, ImportMap& map) {
+  for (const auto& [name, node] : source.root()) {
+    if (name.str() == "time" || name.str() == "period" || name.str() == "csv") {
+      source.refuse_key(name, name.str(), "not of a candump log, whose frames have their times; leave it out");
+    }
+  }
+  if (const toml::node* node = source.root().get("can")) {
+    const toml::table& table = source.table(*node, "can");
+    refuse_unknown_keys(source, table, "can.", {"rows"});
+    if (const toml::node* rows = table.get("rows")) {
+      map.rows = source.text(*rows, "can.rows");
+    }
+  }
+}
+
+}  // namespace
+
+ImportMap load_import_map(const std::filesystem::path& path, ImportSource kind) {
+  const TomlSource source(path);
+  const toml::table& root = source.root();
+  refuse_unknown_keys(source, root, "", {"schema", "period", "time", "channels", "csv", "can"});
+  source.require_schema();
+  ImportMap map;
+  map.path = path;
+  if (kind == ImportSource::candump_log) {
+    read_can_settings(source, map);
+  } else {
+    read_time(source, map);
+    for (const auto& [name, node] : root) {
+      if (name.str() == "can") {
+        source.refuse_key(name, "can", "of a candump log only, which is imported with --dbc; leave it out");
+      }
+    }
+  }
   const toml::node* channels = root.get("channels");
-  if (channels == nullptr) {
+  if (channels == nullptr || source.table(*channels, "channels").empty()) {
     source.refuse_missing(root, "channels", "missing; write [channels.command] column = \"BETA_CMD\", unit = \"deg\"");
   }
   for (const auto& [name, node] : source.table(*channels, "channels")) {
-    map.columns.push_back(read_column(source, node, "channels." + std::string(name.str()), std::string(name.str())));
+    map.columns.push_back(read_column(source, node, "channels." + std::string(name.str()), std::string(name.str()), kind));
   }
   if (const toml::node* node = root.get("csv")) {
     read_csv_settings(source, *node, map);

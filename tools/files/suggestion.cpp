@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
+#include <utility>
 
 namespace hotfire {
 
@@ -26,6 +28,13 @@ std::size_t edit_distance(std::string_view from, std::string_view to) {
   return row.back();
 }
 
+std::string lower(std::string_view text) {
+  std::string small(text);
+  std::transform(small.begin(), small.end(), small.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return small;
+}
+
 }  // namespace
 
 std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& known) {
@@ -37,6 +46,22 @@ std::string_view nearest_word(std::string_view word, const std::vector<std::stri
       smallest = distance;
       nearest = candidate;
     }
+  }
+  return nearest;
+}
+
+std::vector<std::string_view> nearest_words(std::string_view word, const std::vector<std::string_view>& known,
+                                            std::size_t most) {
+  const std::string wanted = lower(word);
+  std::vector<std::pair<std::size_t, std::string_view>> words;
+  words.reserve(known.size());
+  for (const std::string_view candidate : known) {
+    words.emplace_back(edit_distance(wanted, lower(candidate)), candidate);
+  }
+  std::sort(words.begin(), words.end());
+  std::vector<std::string_view> nearest;
+  for (std::size_t i = 0; i < std::min(most, words.size()); ++i) {
+    nearest.push_back(words[i].second);
   }
   return nearest;
 }

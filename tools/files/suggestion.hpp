@@ -10,6 +10,10 @@ namespace hotfire {
 /// two, may differ.
 std::string_view nearest_word(std::string_view word, const std::vector<std::string_view>& known);
 
+/// Up to `most` known words, the nearest to `word` by edit distance first, capitals or not.
+std::vector<std::string_view> nearest_words(std::string_view word, const std::vector<std::string_view>& known,
+                                            std::size_t most);
+
 /// `did you mean "piston_area"? ` if a known word is near, then `allowed: a, b, c`.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& known);
 

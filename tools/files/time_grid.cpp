@@ -132,4 +132,39 @@ TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& dig
   return {times.front(), period};
 }
 
+TimeGrid stamped_grid(const std::vector<double>& times, const std::filesystem::path& path) {
+  constexpr double kMicrosecond = 1e-6;
+  const double start = times.front();
+  const double mean = (times.back() - start) / static_cast<double>(times.size() - 1);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double expected = start + static_cast<double>(i) * mean;
+    if (!(std::abs(times[i] - expected) <= 0.5 * mean)) {
+      throw FileError(
+          fmt::format("{}: reading {} is stamped {:.6f} s, and {:.6f} s is expected of an even rate; allowed: "
+                      "half a period off",
+                      path.string(), i + 1, times[i], expected));
+    }
+  }
+  const double period = std::round(mean / kMicrosecond) * kMicrosecond;
+  if (!(period >= kFastest && period <= kSlowest)) {
+    throw FileError(fmt::format("{}: readings every {:.6g} s; allowed: 50 Hz to 20 kHz", path.string(), mean));
+  }
+  return {start, period};
+}
+
+std::size_t first_reading_after_gap(const std::vector<double>& times) {
+  constexpr double kFollowed = 0.1;
+  const double period = median_interval(times);
+  double expected = times.front();
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    expected += period;
+    const double off = times[i] - expected;
+    if (off > 0.5 * period) {
+      return i;
+    }
+    expected += kFollowed * off;
+  }
+  return 0;
+}
+
 }  // namespace hotfire

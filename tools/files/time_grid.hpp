@@ -35,4 +35,14 @@ struct TimeGrid {
 TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& digits, double unit,
                       const std::filesystem::path& path, std::size_t first_line);
 
+/// The uniform grid of readings that were stamped [s] as they came: it begins with the first stamp, its period is the mean
+/// interval, to the microsecond. Throws FileError for a stamp more than half a period off the grid, or with the mean
+/// interval if the rate is outside 50 Hz to 20 kHz. Lost readings it does not find where they are lost evenly.
+TimeGrid stamped_grid(const std::vector<double>& times, const std::filesystem::path& path);
+
+/// The first reading before which others are missing, 0 if there is none. Stamps come late by up to half a period, so that
+/// the grid is followed from stamp to stamp, by a tenth of what each is off: a late one leaves it where it is, a lost one is
+/// a period off.
+std::size_t first_reading_after_gap(const std::vector<double>& times);
+
 }  // namespace hotfire
