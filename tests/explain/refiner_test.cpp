@@ -85,8 +85,8 @@ Fitted<DirectFamily> guided_mass(const Dataset& data, const explain::Scales& sca
   return model;
 }
 
-/// The mass under `lugre` friction pushed to and fro, read to a ten-thousandth of its travel.
-Dataset pushed_to_and_fro() {
+/// The mass under a law of friction pushed to and fro, read to a ten-thousandth of its travel.
+Dataset pushed_to_and_fro(const std::string& law) {
   Record record;
   record.name = "strokes.csv";
   record.path = record.name;
@@ -101,7 +101,7 @@ Dataset pushed_to_and_fro() {
   model.parameters = DirectParameters{};
   model.noise = {{"position", 1e-5}};
   const Dataset shape = explain::make_dataset(model, {record});
-  const Fitted<DirectFamily> truth = guided_mass(shape, {10.0, 0.1, 0.5}, "lugre", 0.4);
+  const Fitted<DirectFamily> truth = guided_mass(shape, {10.0, 0.1, 0.5}, law, 0.4);
   model.parameters = Evaluator<DirectFamily>::with_values(truth.base, truth.free, truth.u);
   record.channels[1].values = simulate(model, record).find("position")->values;
   const std::vector<double> noise = test::coloured_noise(record.rows, 0.0, 3);
@@ -113,7 +113,9 @@ Dataset pushed_to_and_fro() {
 
 /// The strokes, and what fits a model to them under one kind of steps.
 struct Strokes {
-  Dataset data = pushed_to_and_fro();
+  explicit Strokes(const std::string& law = "lugre") : data(pushed_to_and_fro(law)) {}
+
+  Dataset data;
   Evaluator<DirectFamily> fine{data, Resolution::fine};
   explain::Scales scales{10.0, 0.1, 0.5};
   explain::Watch watch;
@@ -139,6 +141,25 @@ TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther)
 }
 
 // A linear move of what was free before may end anywhere: here where the mass runs away.
+// LuGre holds Dahl at a static ratio of 1, the end of its range: a fit that ends just above it has an interval that reaches
+// it.
+TEST(Refiner, AParameterThatTheDataDoNotTellFromTheEndOfItsRangeIsLeftOutWithItsLaw) {
+  for (const char* made : {"dahl", "lugre"}) {
+    const Strokes strokes(made);
+    auto lugre = strokes.refiner.ranked(guided_mass(strokes.data, strokes.scales, "lugre", 0.1), explain::kRanking);
+    for (std::size_t k = 0; k < lugre.model.free.size(); ++k) {
+      const explain::FreeParameter& parameter = lugre.model.free[k];
+      if (parameter.key.ends_with("static_ratio")) {
+        lugre.model.u[k] = std::max(lugre.model.u[k], parameter.coordinate(1.0002 * parameter.lower));
+      }
+    }
+    explain::Candidate law = candidate_of(strokes.data, "sliding_friction", "lugre");
+    const auto simplest = strokes.refiner.by_simplest_law(lugre, law);
+    STRCMP_EQUAL(made, law.option_name.c_str());
+    CHECK_TRUE(explain::reaches_noise(strokes.data, simplest));
+  }
+}
+
 TEST(Refiner, AScreenedCandidateThatWasMovedTooFarIsFittedFromWhereTheErrorIsLeastOnTheWay) {
   const Strokes strokes;
   const Dataset& data = strokes.data;

@@ -53,6 +53,18 @@ TEST(StudyTally, AnExactIntervalIsThatOfTheTables) {
   DOUBLES_EQUAL(0.1871, half[0], 5e-5);
 }
 
+TEST(StudyTally, TheLawOfAnEffectIsCountedAmongThoseNamedRightThatHaveOne) {
+  Judgement right = single(true, true);
+  right.wanted_law = "dahl";
+  right.found_laws = {"dahl"};
+  Judgement other = right;
+  other.found_laws = {"lugre"};
+  Judgement misnamed = right;
+  misnamed.names_right = false;
+  const std::string text = summary_of({right, right, other, misnamed, single(true, true)});
+  STRCMP_CONTAINS("2 of 3, of those named right", text.c_str());
+}
+
 TEST(StudyTally, OneFalseFindInFortyIsMetAndTwoAreNot) {
   CHECK_TRUE(all_met(repeated(null_record(true), 39) + repeated(null_record(false), 1)));
   CHECK_FALSE(all_met(repeated(null_record(true), 38) + repeated(null_record(false), 2)));

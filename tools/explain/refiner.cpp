@@ -161,10 +161,13 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
   }
   const auto own = effect_parameters<Family>(winner.model.base, candidate, scales_);
   const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
+  // A static ratio of 1, the least there can be, is that of a law without one: an interval that reaches so far leaves it
+  // open.
   const auto is_open = [&](const FreeParameter& parameter) {
     for (std::size_t k = 0; k < estimated.size(); ++k) {
       if (winner.model.free[k].key == parameter.key) {
-        return !estimated[k].interval.has_value();
+        const auto& interval = estimated[k].interval;
+        return !interval || interval->first <= parameter.lower || interval->second >= parameter.upper;
       }
     }
     return false;

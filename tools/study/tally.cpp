@@ -107,6 +107,13 @@ bool all_met(const std::vector<Judgement>& judgements) {
 
 std::string summary_of(const std::vector<Judgement>& judgements) {
   std::string text;
+  const Judgements with_laws = those(
+      judgements, [](const Judgement& j) { return !j.wanted_law.empty() && j.names_right && j.found_laws.size() == 1; });
+  if (!with_laws.empty()) {
+    text += fmt::format("{:<44} {} of {}, of those named right; not asked for\n", "one effect: its law as it was made",
+                        count(with_laws, [](const Judgement& j) { return j.found_laws.front() == j.wanted_law; }),
+                        with_laws.size());
+  }
   for (const Figure& figure : figures_of(judgements)) {
     text += fmt::format("{:<44} {} of {}, asked {}: {}\n", figure.name, figure.reached, figure.of, figure.asked,
                         figure.met ? "met" : "NOT MET");
