@@ -34,14 +34,30 @@ std::pair<Dataset, Prediction> engine_at(double factor) {
   return {data, {{std::vector<double>(5000, 0.0), predicted, std::vector<double>(5000, 0.0)}}};
 }
 
-std::string refusal_of(double factor) {
-  const auto [data, prediction] = engine_at(factor);
+std::string refusal_of(const Dataset& data, const Prediction& prediction) {
   try {
     refuse_impossible_channels(data, prediction);
   } catch (const hotfire::FileError& error) {
     return error.what();
   }
   return {};
+}
+
+std::string refusal_of(double factor) {
+  const auto [data, prediction] = engine_at(factor);
+  return refusal_of(data, prediction);
+}
+
+/// The same with a piston that moves as its prediction times `piston`.
+std::string refusal_of(double piston, double engine) {
+  auto [data, prediction] = engine_at(engine);
+  data.used[0] = true;
+  prediction[0][0] = prediction[0][1];
+  data.experiments[0].measured[0] = prediction[0][0];
+  for (double& value : data.experiments[0].measured[0]) {
+    value *= piston;
+  }
+  return refusal_of(data, prediction);
 }
 
 }  // namespace
@@ -66,3 +82,12 @@ TEST(ChannelCheck, AChannelInAnotherUnitIsRefusedWithTheTwoUnits) {
 }
 
 TEST(ChannelCheck, NoiseIsNotTakenForMotion) { STRCMP_EQUAL("", refusal_of(-0.005).c_str()); }
+
+TEST(ChannelCheck, WhereEveryChannelIsAtFaultAlikeTheCommandIsNamed) {
+  STRCMP_CONTAINS("the command looks inverted", refusal_of(-1.0, -1.0).c_str());
+  STRCMP_CONTAINS("channel engine runs against", refusal_of(1.0, -1.0).c_str());
+  // Channels at 1 / 57.3 of what the command asks for: it stands in degrees.
+  const std::string message = refusal_of(1.0 / 57.3, 1.0 / 57.3);
+  STRCMP_CONTAINS("the command looks mis-scaled (degrees taken for radians?)", message.c_str());
+  STRCMP_CONTAINS("channel piston follows", refusal_of(1.0 / 57.3, 1.0).c_str());
+}

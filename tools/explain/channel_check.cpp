@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "tools/files/error.hpp"
 
@@ -72,25 +74,52 @@ std::string unit_hint(double ratio) {
   return {};
 }
 
-void check(const Experiment& experiment, const std::string& channel, const Moments& m, double noise) {
+/// How one channel of a record moves against its prediction; neither is set where both are too small to tell.
+struct Comparison {
+  std::size_t channel = 0;
+  double correlation = 0.0;
+  double ratio = 1.0;  ///< measured over predicted rms
+
+  bool is_against() const { return correlation < kRunsAgainst; }
+  bool is_out_of_scale() const { return correlation > kFollows && (ratio > kLargestRatio || ratio < 1.0 / kLargestRatio); }
+};
+
+Comparison comparison(std::size_t channel, const Moments& m, double noise) {
   const double measured = std::sqrt(std::max(0.0, m.measured_square / m.rows - std::pow(m.measured / m.rows, 2)));
   const double model = std::sqrt(std::max(0.0, m.model_square / m.rows - std::pow(m.model / m.rows, 2)));
   if (std::max(measured, model) < kLeastMotion * noise || std::min(measured, model) < kLeastTrace * noise) {
-    return;
+    return {channel};
   }
-  const double correlation = (m.product / m.rows - m.measured * m.model / (m.rows * m.rows)) / (measured * model);
-  const double ratio = measured / model;
-  if (correlation < kRunsAgainst) {
-    throw FileError(
-        fmt::format("{}: channel {} runs against the declared model (correlation {:.2f}): it looks inverted. Turn its sign "
-                    "in the record, or the sign that the model declares; nothing is fitted to it",
-                    experiment.name, channel, correlation));
-  }
-  if (correlation > kFollows && (ratio > kLargestRatio || ratio < 1.0 / kLargestRatio)) {
-    throw FileError(
-        fmt::format("{}: channel {} follows the declared model at {:.4g} times its size (correlation {:.3f}): it looks "
-                    "mis-scaled{}. Mend its unit in the record's first line, or its calibration; nothing is fitted to it",
-                    experiment.name, channel, ratio, correlation, unit_hint(ratio)));
+  return {channel, (m.product / m.rows - m.measured * m.model / (m.rows * m.rows)) / (measured * model), measured / model};
+}
+
+/// What of a record is at fault where `found` are its channels: one, or the command if all are alike.
+std::string culprit(const Dataset& data, const std::vector<Comparison>& found, const Comparison& worst,
+                    bool (Comparison::*is_so)() const) {
+  const bool all = found.size() > 1 && std::all_of(found.begin(), found.end(), [&](const Comparison& c) {
+                     return (c.*is_so)() && std::abs(std::log(c.ratio / worst.ratio)) < kUnitMatch;
+                   });
+  return all ? "every channel" : "channel " + data.channels[worst.channel];
+}
+
+void check(const Dataset& data, const std::string& record, const std::vector<Comparison>& found) {
+  for (const Comparison& c : found) {
+    if (c.is_against()) {
+      const std::string what = culprit(data, found, c, &Comparison::is_against);
+      throw FileError(
+          fmt::format("{}: {} runs against the declared model (correlation {:.2f}): {} looks inverted. Turn its sign "
+                      "in the record, or the sign that the model declares; nothing is fitted to it",
+                      record, what, c.correlation, what == "every channel" ? "the command" : "it"));
+    }
+    if (c.is_out_of_scale()) {
+      const std::string what = culprit(data, found, c, &Comparison::is_out_of_scale);
+      const bool is_command = what == "every channel";
+      throw FileError(
+          fmt::format("{}: {} follows the declared model at {:.4g} times its size (correlation {:.3f}): {} looks "
+                      "mis-scaled{}. Mend its unit in the record's first line, or its calibration; nothing is fitted to it",
+                      record, what, c.ratio, c.correlation, is_command ? "the command" : "it",
+                      unit_hint(is_command ? 1.0 / c.ratio : c.ratio)));
+    }
   }
 }
 
@@ -98,11 +127,13 @@ void check(const Experiment& experiment, const std::string& channel, const Momen
 
 void refuse_impossible_channels(const Dataset& data, const Prediction& prediction) {
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    std::vector<Comparison> found;
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
       if (!data.experiments[e].measured[c].empty()) {
-        check(data.experiments[e], data.channels[c], moments(data.experiments[e], prediction[e][c], c), data.noise[c]);
+        found.push_back(comparison(c, moments(data.experiments[e], prediction[e][c], c), data.noise[c]));
       }
     }
+    check(data, data.experiments[e].name, found);
   }
 }
 
