@@ -182,7 +182,7 @@ void warn_of_rows(const Dataset& data, json& warnings) {
 void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
   for (const Kept& kept : found) {
     const std::string& name = kept.trial.candidate.name;
-    if (name == model::SensorScale::name || name == model::SensorDelay::name) {
+    if (is_fault_of_record(kept.trial.candidate)) {
       warnings.push_back(fmt::format(
           "{} is a fault of the record, not of the plant: mend channel {}, explain again, and do not run explained.toml "
           "with it.",

@@ -18,6 +18,15 @@ std::string phrase(const Candidate& candidate) {
                      candidate.site);
 }
 
+/// "a, b and c".
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return text;
+}
+
 /// ", and of what was tried ... promised most": by a joint fit if there was one.
 std::string promising(const std::vector<Trial>& trials) {
   const auto best = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
@@ -44,6 +53,10 @@ const Trial* closest_of(const std::vector<Trial>& trials, F&& is_meant) {
 }
 
 }  // namespace
+
+bool is_fault_of_record(const Candidate& candidate) {
+  return candidate.name == model::SensorScale::name || candidate.name == model::SensorDelay::name;
+}
 
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
@@ -98,14 +111,18 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
         found.searched ? "Undecided, since the search was interrupted" : "Undecided, since no effect was looked for", after,
         promising(found.trials));
   }
-  std::string names;
-  for (std::size_t i = 0; i < found.kept.size(); ++i) {
-    names += (i == 0 ? "" : i + 1 == found.kept.size() ? " and " : ", ") + phrase(found.kept[i].trial.candidate);
+  std::vector<std::string> lacks;
+  std::vector<std::string> faults;
+  for (const Kept& kept : found.kept) {
+    (is_fault_of_record(kept.trial.candidate) ? faults : lacks).push_back(phrase(kept.trial.candidate));
   }
-  return fmt::format(
-      "The declared model lacks {}: with {} the error on held-out data falls from {:.1f} to {:.2f} times the noise{}.",
-      names, found.kept.size() == 1 ? "it" : "them", before, after,
-      verdict == "explained" ? ", close to what the sensors can tell" : "; a part is left unexplained");
+  std::string text = lacks.empty() ? "" : "The declared model lacks " + listed(lacks);
+  if (!faults.empty()) {
+    text += fmt::format("{} at fault: {}", lacks.empty() ? "The records are" : ", and the records are", listed(faults));
+  }
+  return fmt::format("{}: with {} the error on held-out data falls from {:.1f} to {:.2f} times the noise{}.", text,
+                     found.kept.size() == 1 ? "it" : "them", before, after,
+                     verdict == "explained" ? ", close to what the sensors can tell" : "; a part is left unexplained");
 }
 
 template <class Family>
