@@ -93,32 +93,30 @@ Comparison comparison(std::size_t channel, const Moments& m, double noise) {
   return {channel, (m.product / m.rows - m.measured * m.model / (m.rows * m.rows)) / (measured * model), measured / model};
 }
 
-/// What of a record is at fault where `found` are its channels: one, or the command if all are alike.
-std::string culprit(const Dataset& data, const std::vector<Comparison>& found, const Comparison& worst,
-                    bool (Comparison::*is_so)() const) {
-  const bool all = found.size() > 1 && std::all_of(found.begin(), found.end(), [&](const Comparison& c) {
-                     return (c.*is_so)() && std::abs(std::log(c.ratio / worst.ratio)) < kUnitMatch;
-                   });
-  return all ? "every channel" : "channel " + data.channels[worst.channel];
+/// True if every channel of a record is at fault as one of them is: the fault is the command's then.
+bool are_alike(const std::vector<Comparison>& found, const Comparison& one) {
+  return found.size() > 1 && std::all_of(found.begin(), found.end(), [&](const Comparison& c) {
+           return c.is_against() == one.is_against() && c.is_out_of_scale() == one.is_out_of_scale() &&
+                  std::abs(std::log(c.ratio / one.ratio)) < kUnitMatch;
+         });
 }
 
 void check(const Dataset& data, const std::string& record, const std::vector<Comparison>& found) {
   for (const Comparison& c : found) {
+    const bool is_command = are_alike(found, c);
+    const std::string moving = is_command ? "every channel" : "channel " + data.channels[c.channel];
+    const char* culprit = is_command ? "the command" : "it";
     if (c.is_against()) {
-      const std::string what = culprit(data, found, c, &Comparison::is_against);
       throw FileError(
           fmt::format("{}: {} runs against the declared model (correlation {:.2f}): {} looks inverted. Turn its sign "
                       "in the record, or the sign that the model declares; nothing is fitted to it",
-                      record, what, c.correlation, what == "every channel" ? "the command" : "it"));
+                      record, moving, c.correlation, culprit));
     }
     if (c.is_out_of_scale()) {
-      const std::string what = culprit(data, found, c, &Comparison::is_out_of_scale);
-      const bool is_command = what == "every channel";
       throw FileError(
           fmt::format("{}: {} follows the declared model at {:.4g} times its size (correlation {:.3f}): {} looks "
                       "mis-scaled{}. Mend its unit in the record's first line, or its calibration; nothing is fitted to it",
-                      record, what, c.ratio, c.correlation, is_command ? "the command" : "it",
-                      unit_hint(is_command ? 1.0 / c.ratio : c.ratio)));
+                      record, moving, c.ratio, c.correlation, culprit, unit_hint(is_command ? 1.0 / c.ratio : c.ratio)));
     }
   }
 }

@@ -82,9 +82,8 @@ void judge_together(const TaosParameters& declared, unsigned threads, const TwoA
 }
 
 /// How both axes together do on the records that were kept back, as `held_out_records_json`, channels by their axis.
-nlohmann::json held_out_together(const VehicleFile& vehicle, const std::vector<Record>& kept_back, unsigned threads,
-                                 const FoundAxes& found) {
-  const TaosParameters declared = std::get<TaosParameters>(vehicle.parameters);
+nlohmann::json held_out_together(const VehicleFile& vehicle, const TaosParameters& declared,
+                                 const std::vector<Record>& kept_back, unsigned threads, const FoundAxes& found) {
   nlohmann::json records = nlohmann::json::array();
   for (const Record& record : kept_back) {
     TwoAxes axes = axes_of(vehicle, {record}, {});
@@ -156,7 +155,7 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   }
   explanation.report = joined_report(reports);
   if (!options.kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_together(vehicle, options.kept_back, options.threads, found);
+    explanation.report["held_out_records"] = held_out_together(vehicle, declared, options.kept_back, options.threads, found);
   }
   explanation.model.parameters = together(declared, found, &Found::explained);
   return explanation;

@@ -67,11 +67,8 @@ class LogReader {
   }
 
   Record read() {
-    std::string_view line;
-    while (lines_.next(line)) {
-      if (line.find_first_not_of(' ') != std::string_view::npos) {
-        take(read_candump_line(lines_, line));
-      }
+    while (const auto frame = next_candump_frame(lines_)) {
+      take(*frame);
     }
     close_row();  // the last command holds on
     return record();

@@ -52,9 +52,7 @@ bool read_data(std::string_view text, CandumpFrame& frame) {
   return true;
 }
 
-}  // namespace
-
-CandumpFrame read_candump_line(const CsvLines& lines, std::string_view line) {
+CandumpFrame frame_of(const CsvLines& lines, std::string_view line) {
   CandumpFrame frame;
   std::string_view rest = line;
   const std::string_view stamp = next_word(rest);
@@ -89,6 +87,18 @@ CandumpFrame read_candump_line(const CsvLines& lines, std::string_view line) {
     refuse(lines, line);
   }
   return frame;
+}
+
+}  // namespace
+
+std::optional<CandumpFrame> next_candump_frame(CsvLines& lines) {
+  std::string_view line;
+  while (lines.next(line)) {
+    if (line.find_first_not_of(' ') != std::string_view::npos) {
+      return frame_of(lines, line);
+    }
+  }
+  return std::nullopt;
 }
 
 std::string candump_line(const CandumpFrame& frame) {

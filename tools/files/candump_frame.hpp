@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tools/files/csv_lines.hpp"
@@ -19,8 +19,8 @@ struct CandumpFrame {
   std::vector<std::uint8_t> data;
 };
 
-/// Reads the line that `lines` gave last; refuses what candump does not write.
-CandumpFrame read_candump_line(const CsvLines& lines, std::string_view line);
+/// Reads the next line that is not blank; none at the end. Refuses what candump does not write.
+std::optional<CandumpFrame> next_candump_frame(CsvLines& lines);
 
 /// The line of a data frame, with its end.
 std::string candump_line(const CandumpFrame& frame);
