@@ -73,13 +73,48 @@ TEST(Dataset, AnExclusionThatNamesNoRecordOrNoTimeIsRefusedWithItsForm) {
       STRCMP_CONTAINS("RECORD@FROM-TO", error.what());
     }
   }
-  const std::vector<double> values(5000, 0.001);
   try {
-    hotfire::explain::make_dataset(axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)},
-                                   {{"other.csv", 0.0, 1.0}});
+    hotfire::explain::require_known_records({{"other.csv", {0.0, 1.0}}}, {"record.csv"});
     FAIL("a record that is not there was excluded");
   } catch (const hotfire::UsageError& error) {
     STRCMP_CONTAINS("record.csv", error.what());
+  }
+}
+
+TEST(Dataset, WhatLacksOrIsWrongInExcludedRowsIsBridgedAndTheCommandHolds) {
+  std::vector<double> command(5000);
+  std::vector<double> piston(5000);
+  for (std::size_t row = 0; row < command.size(); ++row) {
+    command[row] = 1e-6 * static_cast<double>(row);
+    piston[row] = 2e-6 * static_cast<double>(row);
+  }
+  for (std::size_t row = 1000; row < 1500; ++row) {
+    command[row] = std::nan("");
+    piston[row] = row % 2 == 0 ? std::nan("") : -32768.0;
+  }
+  const auto data =
+      hotfire::explain::make_dataset(axis(), {record({{"command", "rad", command}, {"piston", "m", piston}}, 0.002)},
+                                     {hotfire::explain::exclusion_from("record.csv@2.0-3.0")});
+  const auto& experiment = data.experiments[0];
+  CHECK(experiment.input_is_held);
+  for (std::size_t row = 0; row < command.size(); ++row) {
+    DOUBLES_EQUAL(2e-6 * static_cast<double>(row), experiment.measured[0][row], 1e-12);
+    const std::size_t held = row >= 1000 && row < 1500 ? 999 : row;
+    DOUBLES_EQUAL(1e-6 * static_cast<double>(held), experiment.input[row], 1e-15);
+  }
+}
+
+TEST(Dataset, AValueThatLacksBesideAnExclusionIsRefusedWithItsTime) {
+  std::vector<double> piston(5000, 0.001);
+  piston[1500] = std::nan("");
+  try {
+    hotfire::explain::make_dataset(
+        axis(), {record({{"command", "rad", std::vector<double>(5000, 0.0)}, {"piston", "m", piston}}, 0.002)},
+        {hotfire::explain::exclusion_from("record.csv@2.0-3.0")});
+    FAIL("a row without a value was compared");
+  } catch (const hotfire::UsageError& error) {
+    STRCMP_CONTAINS("piston", error.what());
+    STRCMP_CONTAINS(" 3 s", error.what());
   }
 }
 

@@ -75,6 +75,23 @@ TEST(Import, ARaggedRowAndAWordAreRefusedWithTheirLine) {
   expect_message(refused(kMap, table("t;spare;BETA CMD;XP") + "40;1;n/a;2\n"), {"run.txt:24", "BETA CMD", "n/a"});
 }
 
+TEST(Import, ADeclaredDropOutKeepsWhatTheTableLacks) {
+  std::string source = table("t;spare;BETA CMD;XP");
+  const std::string row = "10 ; 9.5; 2.500000;-5\n";
+  source.replace(source.find(row), row.size(), "10 ; ;  ;NaN\n");
+  const auto import_with = [&](double from, double to) {
+    return import_record(scratch.write("run.txt", source), load_import_map(scratch.write("map.toml", kMap)),
+                         scratch.path("run.csv"), {}, {DropOut{from, to}});
+  };
+  const Record record = import_with(0.010, 0.012);
+  LONGS_EQUAL(20, record.rows);
+  for (std::size_t i = 0; i < record.rows; ++i) {
+    LONGS_EQUAL(i == 5, std::isnan(record.find("piston")->values[i]));
+    LONGS_EQUAL(i == 5, std::isnan(record.find("command")->values[i]));
+  }
+  expect_message(refusal([&] { import_with(0.012, 0.014); }), {"does not make a record", ":7:"});
+}
+
 TEST(Import, WhatMakesNoRecordIsRefusedAndLeavesNoFile) {
   const std::string message = refused(kMap, table("t;spare;BETA CMD;XP") + "38;1;2;3\n");
   expect_message(message, {"run.txt", "does not make a record"});

@@ -173,6 +173,34 @@ TEST(Record, with_a_gap_a_repeated_or_a_backward_time_is_refused_with_line_and_b
   expect_message(refused(at_times({"0.000", "0.002", "0.001", "0.003"})), {"r.csv:4:", "0.001 s after 0.002 s", "backward"});
 }
 
+TEST(Record, may_lack_values_and_rows_in_a_declared_drop_out_and_there_alone) {
+  const std::string text =
+      "time[s],command[rad],piston[m]\n0,0,1\n0.002,nan,2\n0.004,,ERR\n0.016,4,5\n0.018,5,6\n0.020,6,7\n";
+  const auto load = [&](double from, double to) { return load_record(scratch.write("r.csv", text), {DropOut{from, to}}); };
+  const Record record = load(0.002, 0.016);
+  LONGS_EQUAL(11, record.rows);
+  DOUBLES_EQUAL(0.002, record.period, 1e-12);
+  const std::vector<double>& piston = record.find("piston")->values;
+  DOUBLES_EQUAL(2.0, piston[1], 0.0);
+  CHECK(std::isnan(record.find("command")->values[1]));
+  for (std::size_t row = 2; row < 8; ++row) {
+    CHECK(std::isnan(piston[row]));
+  }
+  DOUBLES_EQUAL(5.0, piston[8], 0.0);
+
+  expect_message(test::refusal([&] { load(0.002, 0.004); }), {":4:", "column command"});
+  expect_message(test::refusal([&] { load(0.002, 0.012); }), {":5:", "gap of 5 rows", "--exclude"});
+  expect_message(test::refusal([&] { load_record(scratch.write("r.csv", text)); }), {":3:", "column command", "nan"});
+}
+
+TEST(Record, beyond_a_drop_out_is_refused_with_the_line_that_the_file_has) {
+  const std::string text = "time[s],piston[m]\n0,0\n0.002,0\n0.010,0\n0.012,0\n0.0145,0\n0.0165,0\n";
+  expect_message(test::refusal([&] {
+                   load_record(scratch.write("r.csv", text), {DropOut{0.003, 0.010}});
+                 }),
+                 {":6:", "0.0145 s after 0.012 s"});
+}
+
 TEST(Record, sampled_unevenly_is_refused_at_the_first_interval_that_is_off) {
   expect_message(refused(at_times({"0.0000", "0.0010", "0.0020", "0.0032", "0.0040", "0.0050"})),
                  {"r.csv:5:", "0.0032 s after 0.002 s", "interval 0.0012 s", "period is 0.001 s"});

@@ -151,7 +151,7 @@ TEST(Conditions, DropOutsReadZeroAndAreDeclared) {
     const explain::Exclusion exclusion = explain::exclusion_from(text);
     for (std::size_t i = 0; i < record.rows; ++i) {
       const double time = static_cast<double>(i) * record.period;
-      declared[i] = declared[i] || (time >= exclusion.from && time < exclusion.to);
+      declared[i] = declared[i] || exclusion.stretch.holds(time);
     }
   }
   std::size_t zeros = 0;

@@ -5,11 +5,13 @@
 #include <glog/logging.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -141,19 +143,36 @@ Outcome outcome_of(const AnyModel& model, const std::vector<Record>& records, co
   return {std::move(found.report), std::move(found.series), model_text(found.model), std::move(found.next_experiment)};
 }
 
+std::string file_name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+std::vector<explain::Exclusion> exclusions_of(const ExplainArguments& arguments) {
+  std::vector<explain::Exclusion> exclusions;
+  for (const std::string& text : arguments.excluded) {
+    exclusions.push_back(explain::exclusion_from(text));
+  }
+  std::vector<std::string> names;
+  for (const auto* paths : {&arguments.records, &arguments.held_out}) {
+    std::transform(paths->begin(), paths->end(), std::back_inserter(names), file_name_of);
+  }
+  explain::require_known_records(exclusions, names);
+  return exclusions;
+}
+
+std::vector<Record> loaded(const std::vector<std::string>& paths, const CandumpOptions& candump,
+                           const std::vector<explain::Exclusion>& exclusions) {
+  std::vector<Record> records;
+  for (const std::string& path : paths) {
+    records.push_back(load_record_or_log(path, candump, explain::drop_outs_of(exclusions, file_name_of(path))));
+  }
+  return records;
+}
+
 void run_explain(const ExplainArguments& arguments, const std::string& command_line) {
   const AnyModel model = load_any(arguments.model);
-  std::vector<Record> records;
-  for (const std::string& path : arguments.records) {
-    records.push_back(load_record_or_log(path, arguments.candump));
-  }
   explain::ExplainOptions options;
-  for (const std::string& text : arguments.excluded) {
-    options.exclusions.push_back(explain::exclusion_from(text));
-  }
-  for (const std::string& path : arguments.held_out) {
-    options.kept_back.push_back(load_record_or_log(path, arguments.candump));
-  }
+  options.exclusions = exclusions_of(arguments);
+  const std::vector<Record> records = loaded(arguments.records, arguments.candump, options.exclusions);
+  options.kept_back = loaded(arguments.held_out, arguments.candump, options.exclusions);
   if (!arguments.lab.empty()) {
     const LabProfile lab = load_profile(arguments.lab);
     options.limits = explain::CommandLimits{lab.lowest_command, lab.highest_command, lab.command_rate};
@@ -208,7 +227,9 @@ void add_explain(CLI::App& program, const std::string& typed) {
   command->add_option("--most-effects", arguments->most_effects, "most effects to add; 0: calibrate only")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
-  command->add_option("--exclude", arguments->excluded, "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out")
+  command
+      ->add_option("--exclude", arguments->excluded,
+                   "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out; values and rows may lack there")
       ->allow_extra_args(false);
   command
       ->add_option("--hold-out", arguments->held_out, "a further record that no fit and no choice sees: judged at the end")

@@ -5,8 +5,10 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tools/cli/commands.hpp"
+#include "tools/files/error.hpp"
 
 namespace hotfire {
 
@@ -16,6 +18,7 @@ void add_import(CLI::App& program) {
     std::string map;
     std::string dbc;
     std::string output;
+    std::vector<std::string> excluded;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -25,6 +28,10 @@ void add_import(CLI::App& program) {
   command->add_option("--map", options->map, "which channel is where (.toml)")->required();
   command->add_option("--dbc", options->dbc, "of a candump log: what its frames carry (.dbc)");
   command->add_option("--output", options->output, "record to write (.csv)")->required();
+  command
+      ->add_option("--exclude", options->excluded,
+                   "FROM-TO [s]: a drop-out, where values and rows may lack; then name it to explain")
+      ->allow_extra_args(false);
   command->footer(
       "Example: hotfire import run17.mat --map map.toml --output run17.csv\nmap.toml: schema = 1, [time] column = \"t\", "
       "unit = \"ms\" (or period = \"2 ms\"),\n  [channels.command] column = \"BETA_CMD\", unit = \"deg\" ...\n"
@@ -33,7 +40,15 @@ void add_import(CLI::App& program) {
       "\"MESSAGE.SIGNAL\") ...\nA log of Hotfire's own CAN map needs no map: hotfire convert.");
   command->callback([options] {
     const ImportMap map = load_import_map(options->map, import_source(options->source, options->dbc));
-    const Record record = import_record(options->source, map, options->output, options->dbc);
+    std::vector<DropOut> drop_outs;
+    for (const std::string& text : options->excluded) {
+      const auto drop_out = drop_out_from(text);
+      if (!drop_out) {
+        throw UsageError(fmt::format("--exclude {}: write FROM-TO with times in seconds, such as 3.0-3.5", text));
+      }
+      drop_outs.push_back(*drop_out);
+    }
+    const Record record = import_record(options->source, map, options->output, options->dbc, drop_outs);
     std::cout << fmt::format("{}: {} rows, period {:.6g} s,", options->output, record.rows, record.period);
     for (const Channel& channel : record.channels) {
       std::cout << ' ' << channel.name;

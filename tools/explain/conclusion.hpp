@@ -2,6 +2,7 @@
 
 #include "tools/explain/profile.hpp"
 #include "tools/explain/search.hpp"
+#include "tools/explain/verdict.hpp"
 #include "tools/report/report_page.hpp"
 
 namespace hotfire::explain {
@@ -34,6 +35,19 @@ ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, 
     series.records.push_back(std::move(record));
   }
   return series;
+}
+
+/// The explained model as a rig runs it: what is a fault of the records and not of the plant is left out.
+template <class Family>
+PlainParameters<Family> plant_of(const SearchResult<Family>& found) {
+  const Fitted<Family>& fitted = found.explained.model;
+  PlainParameters<Family> plant = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);
+  for (const Kept& kept : found.kept) {
+    if (is_fault_of_record(kept.trial.candidate)) {
+      plant.effects.active[kept.trial.candidate.effect] = false;
+    }
+  }
+  return plant;
 }
 
 /// The explained model fitted once more, to the rows that were held out as well: what the rig runs has seen all that there

@@ -50,28 +50,6 @@ std::vector<Block> without(const std::vector<Block>& blocks, const std::vector<B
   return rest;
 }
 
-/// The rows of a record that its user excludes.
-std::vector<Block> excluded_rows(const Record& record, const std::vector<Exclusion>& exclusions) {
-  std::vector<Block> rows;
-  for (const Exclusion& exclusion : exclusions) {
-    if (exclusion.record != record.name) {
-      continue;
-    }
-    const auto row_at = [&](double time) {
-      return static_cast<std::size_t>(
-          std::clamp(std::ceil((time - record.start) / record.period - 1e-6), 0.0, static_cast<double>(record.rows)));
-    };
-    rows.push_back({row_at(exclusion.from), row_at(exclusion.to)});
-    if (rows.back().first == rows.back().last) {
-      throw UsageError(fmt::format("--exclude {}@{:g}-{:g}: no row of the record lies there; it goes from {:g} to {:g} s",
-                                   exclusion.record, exclusion.from, exclusion.to, record.start,
-                                   record.start + static_cast<double>(record.rows - 1) * record.period));
-    }
-  }
-  std::sort(rows.begin(), rows.end(), [](const Block& a, const Block& b) { return a.first < b.first; });
-  return rows;
-}
-
 /// Shares the rows of an experiment out between fit and judgement.
 void share_out(Experiment& experiment) {
   std::vector<Block> taken{{0, experiment.first_scored}};
@@ -84,20 +62,15 @@ void share_out(Experiment& experiment) {
   }
 }
 
-std::vector<std::string> names_of(const std::vector<Record>& records) {
-  std::vector<std::string> names;
-  names.reserve(records.size());
-  for (const Record& record : records) {
-    names.push_back(record.name);
-  }
-  return names;
-}
-
-void require_known_records(const std::vector<Exclusion>& exclusions, const std::vector<Record>& records) {
-  for (const Exclusion& exclusion : exclusions) {
-    if (std::none_of(records.begin(), records.end(), [&](const Record& r) { return r.name == exclusion.record; })) {
-      throw UsageError(fmt::format("--exclude {}: no record of that name; there are: {}", exclusion.record,
-                                   fmt::join(names_of(records), ", ")));
+/// What a record may lack its user excludes: a value that still lacks is beside it.
+void require_values(const Channel& channel, const Experiment& experiment) {
+  for (const Block& kept : without({{0, channel.values.size()}}, experiment.excluded)) {
+    for (std::size_t row = kept.first; row < kept.last; ++row) {
+      if (std::isnan(channel.values[row])) {
+        throw UsageError(
+            fmt::format("{}: channel {} has no value at {:.6g} s, beside what --exclude names; exclude that too",
+                        experiment.name, channel.name, experiment.time_of(row)));
+      }
     }
   }
 }
@@ -122,30 +95,7 @@ std::vector<Block> Experiment::scored() const {
   return blocks;
 }
 
-Exclusion exclusion_from(const std::string& text) {
-  const auto at = text.rfind('@');
-  const auto dash = at == std::string::npos ? at : text.find('-', at + 2);
-  Exclusion exclusion;
-  try {
-    exclusion.record = text.substr(0, at);
-    std::size_t used = 0;
-    const std::string from = text.substr(at + 1, dash - at - 1);
-    const std::string to = text.substr(dash + 1);
-    exclusion.from = std::stod(from, &used);
-    bool whole = used == from.size();
-    exclusion.to = std::stod(to, &used);
-    whole = whole && used == to.size();
-    if (at != std::string::npos && dash != std::string::npos && whole && exclusion.to > exclusion.from) {
-      return exclusion;
-    }
-  } catch (const std::logic_error&) {
-    // Not a number: said below, with the form that is wanted.
-  }
-  throw UsageError(fmt::format("--exclude {}: write RECORD@FROM-TO with times in seconds, such as steps.csv@3.0-3.5", text));
-}
-
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records, const std::vector<Exclusion>& exclusions) {
-  require_known_records(exclusions, records);
   Dataset data;
   std::string input;
   std::visit(
@@ -166,11 +116,17 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
     experiment.name = record.name;
     experiment.start = record.start;
     experiment.period = record.period;
-    experiment.input = record.find(input)->values;
+    experiment.excluded = excluded_rows(record, exclusions);
+    experiment.input_is_held = is_missing_somewhere(*record.find(input));
+    experiment.input = held_where_missing(*record.find(input), record);
     bool any = false;
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
       const Channel* channel = record.find(data.channels[c]);
-      experiment.measured.push_back(channel != nullptr ? channel->values : std::vector<double>{});
+      if (channel != nullptr) {
+        require_values(*channel, experiment);
+      }
+      experiment.measured.push_back(channel != nullptr ? bridged(channel->values, experiment.excluded)
+                                                       : std::vector<double>{});
       any = any || channel != nullptr;
       data.used[c] = data.used[c] || channel != nullptr;
     }
@@ -191,7 +147,7 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
     std::vector<double> estimates;
     for (const Experiment& experiment : data.experiments) {
       if (!experiment.measured[c].empty()) {
-        estimates.push_back(noise_from_differences(experiment.measured[c]));
+        estimates.push_back(noise_from_differences(kept_rows(experiment.measured[c], experiment.excluded)));
       }
     }
     data.noise.push_back(estimates.empty() ? 1.0 : *std::min_element(estimates.begin(), estimates.end()));
@@ -207,9 +163,8 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                                                      experiment.measured, experiment.period, data.noise);
     }
   }
-  for (std::size_t e = 0; e < records.size(); ++e) {
-    data.experiments[e].excluded = excluded_rows(records[e], exclusions);
-    share_out(data.experiments[e]);
+  for (Experiment& experiment : data.experiments) {
+    share_out(experiment);
   }
   return data;
 }

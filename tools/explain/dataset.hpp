@@ -4,18 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "tools/explain/block.hpp"
+#include "tools/explain/exclusions.hpp"
 #include "tools/explain/other_axis.hpp"
 #include "tools/explain/start_state.hpp"
 #include "tools/files/model_file.hpp"
 #include "tools/files/record.hpp"
 
 namespace hotfire::explain {
-
-/// A stretch of rows [first, last).
-struct Block {
-  std::size_t first;
-  std::size_t last;
-};
 
 /// One record as the finder sees it.
 struct Experiment {
@@ -27,6 +23,7 @@ struct Experiment {
   std::vector<Block> fitted;                  ///< rows that a fit sees
   std::vector<Block> held_out;                ///< rows that no fit sees
   std::vector<Block> excluded;                ///< rows that the user excludes
+  bool input_is_held = false;                 ///< the input is missing in some of those: it holds there
   StartState start_state;                     ///< of a force-driven mass
   std::size_t first_scored = 0;               ///< rows before it are simulated, not compared: the start is not at rest
   OtherAxis other;                            ///< of a hydraulic axis that is one of two
@@ -36,16 +33,6 @@ struct Experiment {
   /// Rows that are compared with the model, fitted or held out, in their order.
   std::vector<Block> scored() const;
 };
-
-/// A stretch of a record that its user knows to be wrong, such as a drop-out: simulated, not compared.
-struct Exclusion {
-  std::string record;  ///< "steps.csv"
-  double from = 0.0;   ///< [s], in the record's own time
-  double to = 0.0;
-};
-
-/// "steps.csv@3.0-3.5". Throws UsageError if the text is not of this form.
-Exclusion exclusion_from(const std::string& text);
 
 /// All records of one run of the finder.
 struct Dataset {
@@ -61,9 +48,10 @@ struct Dataset {
 };
 
 /// Puts records into the model's channels, estimates noise where it is not declared, and holds out every fourth block of
-/// about four seconds (at least eight blocks a record), so that each kind of motion is in both parts.
-/// Throws FileError if a record lacks the input or has none of the model's channels, UsageError if an exclusion names no
-/// record or leaves nothing of one.
+/// about four seconds (at least eight blocks a record), so that each kind of motion is in both parts. Over excluded rows
+/// channels are `bridged`; exclusions of other records have no meaning here.
+/// Throws FileError if a record lacks the input or has none of the model's channels, UsageError if an exclusion leaves
+/// nothing of a record.
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
 

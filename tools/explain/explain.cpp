@@ -48,13 +48,12 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
   }
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
   if (!options.kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_records_json(model, options.kept_back, found, options.threads);
+    explanation.report["held_out_records"] = held_out_records_json(model, options, found);
   }
   if (found.rival) {
     add_next_experiment(data, *found.rival, found.explained.model, options, explanation);
   }
-  const Fitted<Family>& fitted = found.explained.model;
-  explanation.model.parameters = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);
+  explanation.model.parameters = plant_of(found);
   return explanation;
 }
 

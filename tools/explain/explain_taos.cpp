@@ -82,15 +82,15 @@ void judge_together(const TaosParameters& declared, unsigned threads, const TwoA
 }
 
 /// How both axes together do on the records that were kept back, as `held_out_records_json`, channels by their axis.
-nlohmann::json held_out_together(const VehicleFile& vehicle, const TaosParameters& declared,
-                                 const std::vector<Record>& kept_back, unsigned threads, const FoundAxes& found) {
+nlohmann::json held_out_together(const VehicleFile& vehicle, const TaosParameters& declared, const ExplainOptions& options,
+                                 const FoundAxes& found) {
   nlohmann::json records = nlohmann::json::array();
-  for (const Record& record : kept_back) {
-    TwoAxes axes = axes_of(vehicle, {record}, {});
+  for (const Record& record : options.kept_back) {
+    TwoAxes axes = axes_of(vehicle, {record}, options.exclusions);
     std::array<std::vector<std::pair<const char*, Prediction>>, 2> stages;
     for (const auto& [name, stage] : {std::pair("before", &Found::declared), std::pair("calibrated", &Found::calibrated),
                                       std::pair("after", &Found::explained)}) {
-      const auto run = run_coupled(together(declared, found, stage), axes, threads);
+      const auto run = run_coupled(together(declared, found, stage), axes, options.threads);
       if (!run) {
         throw FileError(fmt::format("{}: a model runs away on this record, which was held out", record.path.string()));
       }
@@ -155,9 +155,15 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   }
   explanation.report = joined_report(reports);
   if (!options.kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_together(vehicle, declared, options.kept_back, options.threads, found);
+    explanation.report["held_out_records"] = held_out_together(vehicle, declared, options, found);
   }
-  explanation.model.parameters = together(declared, found, &Found::explained);
+  TaosParameters plant = together(declared, found, &Found::explained);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (found[i]) {
+      plant.axes[i].effects.active = plant_of(*found[i]).effects.active;
+    }
+  }
+  explanation.model.parameters = plant;
   return explanation;
 }
 

@@ -51,11 +51,12 @@ nlohmann::json held_out_record_json(const Record& record, const Dataset& data,
 }
 
 template <class Family>
-nlohmann::json held_out_records_json(const ModelFile& model, const std::vector<Record>& kept_back,
-                                     const SearchResult<Family>& found, unsigned threads) {
+nlohmann::json held_out_records_json(const ModelFile& model, const ExplainOptions& options,
+                                     const SearchResult<Family>& found) {
   nlohmann::json records = nlohmann::json::array();
-  for (const Record& record : kept_back) {
-    Dataset data = make_dataset(model, {record});
+  const unsigned threads = options.threads;
+  for (const Record& record : options.kept_back) {
+    Dataset data = make_dataset(model, {record}, options.exclusions);
     fit_every_row(data);
     records.push_back(held_out_record_json(record, data,
                                            {{"before", prediction_of(found.declared.model, data, threads)},
@@ -65,9 +66,7 @@ nlohmann::json held_out_records_json(const ModelFile& model, const std::vector<R
   return records;
 }
 
-template nlohmann::json held_out_records_json(const ModelFile&, const std::vector<Record>&,
-                                              const SearchResult<SimplexFamily>&, unsigned);
-template nlohmann::json held_out_records_json(const ModelFile&, const std::vector<Record>&,
-                                              const SearchResult<DirectFamily>&, unsigned);
+template nlohmann::json held_out_records_json(const ModelFile&, const ExplainOptions&, const SearchResult<SimplexFamily>&);
+template nlohmann::json held_out_records_json(const ModelFile&, const ExplainOptions&, const SearchResult<DirectFamily>&);
 
 }  // namespace hotfire::explain

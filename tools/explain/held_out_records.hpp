@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "tools/explain/explain.hpp"
 #include "tools/explain/search.hpp"
 
 namespace hotfire::explain {
@@ -10,13 +11,14 @@ namespace hotfire::explain {
 /// "rms", "max", "bias" in the channel's unit and "fit_percent".
 nlohmann::json errors_of(const ChannelFit& fit);
 
-/// How the declared, the calibrated and the explained model do on records that were kept back whole: no fit and no choice
-/// has seen a row of them. The explained model is the one of explained.toml. A force-driven mass starts as the first rows
+/// How the declared, the calibrated and the explained model do on `options.kept_back`: no fit and no choice
+/// has seen a row of them. The explained model is the one of explained.toml, with what was
+/// found to be a fault of the records. A force-driven mass starts as the first rows
 /// say, a sinusoid of unknown law at the phase of the record's own clock. `held_out_records` of docs/report.md. Throws
 /// FileError as `make_dataset`.
 template <class Family>
-nlohmann::json held_out_records_json(const ModelFile& model, const std::vector<Record>& kept_back,
-                                     const SearchResult<Family>& found, unsigned threads);
+nlohmann::json held_out_records_json(const ModelFile& model, const ExplainOptions& options,
+                                     const SearchResult<Family>& found);
 
 /// The same of one record and what three models predict of it, by name of the stage: "before", "calibrated", "after". `data`
 /// holds this record alone.

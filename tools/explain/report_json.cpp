@@ -175,6 +175,12 @@ void warn_of_rows(const Dataset& data, json& warnings) {
       warnings.push_back(fmt::format("{}: {:.4g} to {:.4g} s are excluded as the user asked: simulated, not compared.",
                                      experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
     }
+    if (experiment.input_is_held) {
+      warnings.push_back(fmt::format(
+          "{}: the command is missing in excluded rows and holds there: if it moved, exclude as much more as the "
+          "axis needs to forget it, about a second.",
+          experiment.name));
+    }
   }
 }
 
@@ -184,8 +190,7 @@ void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
     const std::string& name = kept.trial.candidate.name;
     if (is_fault_of_record(kept.trial.candidate)) {
       warnings.push_back(fmt::format(
-          "{} is a fault of the record, not of the plant: mend channel {}, explain again, and do not run explained.toml "
-          "with it.",
+          "{} is a fault of the record, not of the plant: explained.toml is without it; mend channel {} and explain again.",
           name, kept.trial.candidate.option_name));
     }
   }

@@ -120,7 +120,7 @@ TwoAxes axes_of(const VehicleFile& vehicle, const std::vector<Record>& records, 
     axis.model = {vehicle.path, vehicle.name, parameters, declared.noise, declared.tolerance, declared.left_out};
     for (const Record& record : records) {
       axis.records.push_back(record_of_axis(record, axis.name));
-      axis.inputs.push_back(axis.records.back().find("command")->values);
+      axis.inputs.push_back(held_where_missing(*axis.records.back().find("command"), record));
       axis.measured = axis.measured || has_measurement(axis.records.back());
     }
     require_same_axes(axis);

@@ -252,8 +252,9 @@ Record load_candump(const std::filesystem::path& path, const CandumpOptions& opt
   return LogReader(path, options, map).read();
 }
 
-Record load_record_or_log(const std::filesystem::path& path, const CandumpOptions& options) {
-  return path.extension() == ".log" ? load_candump(path, options) : load_record(path);
+Record load_record_or_log(const std::filesystem::path& path, const CandumpOptions& options,
+                          const std::vector<DropOut>& drop_outs) {
+  return path.extension() == ".log" ? load_candump(path, options) : load_record(path, drop_outs);
 }
 
 }  // namespace hotfire

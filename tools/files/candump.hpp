@@ -34,7 +34,8 @@ Record load_candump(const std::filesystem::path& path, const CandumpOptions& opt
 void write_candump(const Record& record, const std::filesystem::path& path, const CandumpOptions& options = {},
                    const CanMap& map = own_can_map());
 
-/// A record by its file's name: .log is a candump log, all else is read as CSV.
-Record load_record_or_log(const std::filesystem::path& path, const CandumpOptions& options = {});
+/// A record by its file's name: .log is a candump log, all else is read as CSV, which may lack values in `drop_outs`.
+Record load_record_or_log(const std::filesystem::path& path, const CandumpOptions& options = {},
+                          const std::vector<DropOut>& drop_outs = {});
 
 }  // namespace hotfire

@@ -59,7 +59,7 @@ ImportSource import_source(const std::filesystem::path& source, const std::files
 }
 
 Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
-                     const std::filesystem::path& dbc) {
+                     const std::filesystem::path& dbc, const std::vector<DropOut>& drop_outs) {
   if (import_source(source, dbc) == ImportSource::candump_log) {
     const ImportedColumns log = read_candump_columns(source, load_dbc(dbc), map);
     write_columns(log.columns, log.values, 0.0, output);
@@ -69,7 +69,7 @@ Record import_record(const std::filesystem::path& source, const ImportMap& map, 
                   output);
   }
   try {
-    return load_record(output);
+    return load_record(output, drop_outs);
   } catch (const FileError& error) {
     std::filesystem::remove(output);
     throw FileError(fmt::format("{}: does not make a record (line 2 is its first row): {}", source.string(), error.what()));

@@ -39,8 +39,8 @@ struct ImportMap {
 /// Reads and checks a map. Throws FileError with file, line, key, value and what is allowed.
 ImportMap load_import_map(const std::filesystem::path& path, ImportSource source = ImportSource::table);
 
-/// The columns of the map, in its order, from a CSV file with a header. Throws FileError with file, line and column: no such
-/// column (with those that there are), ragged row, text that is not a number.
+/// The columns of the map, in its order, from a CSV file with a header; an empty cell is NaN. Throws FileError with file,
+/// line and column: no such column (with those that there are), ragged row, text that is not a number.
 std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& path, const ImportMap& map);
 
 /// The same from a MATLAB file (version 4 to 7.2; 7.3 where the library has HDF5). Throws FileError: not such a file, no
@@ -68,8 +68,9 @@ ImportedColumns read_candump_columns(const std::filesystem::path& path, const Db
 
 /// Reads `source` (with a DBC file a candump log, else .mat, else CSV) through the map and writes a record, which is then
 /// read as `load_record` reads any other: nothing is repaired. Throws FileError, and leaves no file behind, where that
-/// refuses it.
+/// refuses it. Within `drop_outs` [s] cells of a CSV file may be empty, values NaN and rows lack: they stay so in the
+/// record.
 Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
-                     const std::filesystem::path& dbc = {});
+                     const std::filesystem::path& dbc = {}, const std::vector<DropOut>& drop_outs = {});
 
 }  // namespace hotfire

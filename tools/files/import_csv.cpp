@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include "tools/files/csv_lines.hpp"
 #include "tools/files/error.hpp"
@@ -30,6 +31,9 @@ std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
 }
 
 double number_of(const CsvLines& lines, std::string_view cell, const std::string& column) {
+  if (cell.empty()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   double value = 0.0;
   const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);

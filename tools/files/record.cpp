@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "tools/files/csv_lines.hpp"
 #include "tools/files/error.hpp"
@@ -25,17 +27,25 @@ struct Rows {
   PrintedDigits time_digits = {};
 };
 
+/// A cell of the row being read that holds no number.
+struct BadCell {
+  std::size_t column;
+  std::string_view text;
+};
+
 bool is_blank(char letter) { return letter == ' ' || letter == '\t'; }
 
 [[noreturn]] void refuse_cell(const CsvLines& lines, const Column& column, std::string_view cell) {
   constexpr std::size_t kMost = 40;
   const std::string_view shown = cell.substr(0, std::min(cell.find(','), kMost));
   lines.refuse(
-      fmt::format("column {}: \"{}\" is not a finite number; allowed: decimal numbers like -1.5e-3", column.name, shown));
+      fmt::format("column {}: \"{}\" is not a finite number; allowed: decimal numbers like -1.5e-3 (explain and import take "
+                  "what --exclude names without them)",
+                  column.name, shown));
 }
 
-/// Reads the cell that `cursor` stands at and moves to its end. `cell` becomes the number's text.
-double read_cell(const CsvLines& lines, const Column& column, const char*& cursor, const char* end, std::string_view& cell) {
+/// Reads the cell that `cursor` stands at and moves to its end. `cell` becomes its text. NaN if that is no finite number.
+double read_cell(const Column& column, const char*& cursor, const char* end, std::string_view& cell) {
   while (cursor != end && is_blank(*cursor)) {
     ++cursor;
   }
@@ -49,7 +59,9 @@ double read_cell(const CsvLines& lines, const Column& column, const char*& curso
     ++cursor;
   }
   if (error != std::errc{} || !std::isfinite(value) || (cursor != end && *cursor != ',')) {
-    refuse_cell(lines, column, std::string_view(start, static_cast<std::size_t>(end - start)));
+    cell = std::string_view(start, static_cast<std::size_t>(end - start));
+    cursor = std::find(start, end, ',');
+    return std::numeric_limits<double>::quiet_NaN();
   }
   cell = std::string_view(start, static_cast<std::size_t>(stop - start));
   return column.convert(value);
@@ -60,10 +72,15 @@ double read_cell(const CsvLines& lines, const Column& column, const char*& curso
                            1 + std::count(line.begin(), line.end(), ','), columns));
 }
 
-void read_row(const CsvLines& lines, std::string_view line, Rows& rows) {
+bool is_in_any(const std::vector<DropOut>& drop_outs, double time) {
+  return std::any_of(drop_outs.begin(), drop_outs.end(), [time](const DropOut& out) { return out.holds(time); });
+}
+
+void read_row(const CsvLines& lines, std::string_view line, const std::vector<DropOut>& drop_outs, Rows& rows) {
   const char* cursor = line.data();
   const char* end = line.data() + line.size();
   std::string_view cell;
+  std::optional<BadCell> bad;
   for (std::size_t i = 0; i < rows.columns.size(); ++i) {
     if (i > 0) {
       if (cursor == end) {
@@ -71,10 +88,16 @@ void read_row(const CsvLines& lines, std::string_view line, Rows& rows) {
       }
       ++cursor;
     }
-    rows.values[i].push_back(read_cell(lines, rows.columns[i], cursor, end, cell));
+    rows.values[i].push_back(read_cell(rows.columns[i], cursor, end, cell));
+    if (std::isnan(rows.values[i].back()) && (!bad || i == rows.time_column)) {
+      bad = BadCell{i, cell};
+    }
     if (i == rows.time_column) {
       rows.time_digits.see(cell);
     }
+  }
+  if (bad && !is_in_any(drop_outs, rows.values[rows.time_column].back())) {
+    refuse_cell(lines, rows.columns[bad->column], bad->text);
   }
   if (cursor != end) {
     refuse_ragged(lines, line, rows.columns.size());
@@ -104,7 +127,7 @@ void require_end(CsvLines& lines) {
   }
 }
 
-Rows read_rows(CsvLines& lines) {
+Rows read_rows(CsvLines& lines, const std::vector<DropOut>& drop_outs) {
   Rows rows{read_header(lines, header_line(lines))};
   rows.first_line = lines.number() + 1;
   rows.values.resize(rows.columns.size());
@@ -119,7 +142,7 @@ Rows read_rows(CsvLines& lines) {
     if (rows.values.front().size() == kMostRows) {
       lines.refuse(fmt::format("more than {} rows; cut the record into parts", kMostRows));
     }
-    read_row(lines, line, rows);
+    read_row(lines, line, drop_outs, rows);
   }
   if (rows.values.front().size() < 2) {
     lines.refuse(fmt::format("{} rows; allowed: at least 2", rows.values.front().size()));
@@ -135,15 +158,16 @@ const Channel* Record::find(const std::string& channel) const {
   return found == channels.end() ? nullptr : &*found;
 }
 
-Record load_record(const std::filesystem::path& path) {
+Record load_record(const std::filesystem::path& path, const std::vector<DropOut>& drop_outs) {
   if (is_recording(path)) {
     return load_recording(path);
   }
   CsvLines lines(path);
-  Rows rows = read_rows(lines);
+  Rows rows = read_rows(lines, drop_outs);
+  RowLines row_lines(rows.first_line);
+  put_lost_rows(drop_outs, rows.time_column, rows.values, row_lines);
   const std::vector<double>& times = rows.values[rows.time_column];
-  const TimeGrid grid =
-      uniform_grid(times, rows.time_digits, rows.columns[rows.time_column].convert(1.0), path, rows.first_line);
+  const TimeGrid grid = uniform_grid(times, rows.time_digits, rows.columns[rows.time_column].convert(1.0), path, row_lines);
 
   Record record{path, path.filename().string(), grid.start, grid.period, times.size(), {}};
   for (std::size_t i = 0; i < rows.columns.size(); ++i) {

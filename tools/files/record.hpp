@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/files/drop_out.hpp"
+
 namespace hotfire {
 
 /// One channel of a record, in SI (or the record's own unit for a `direct` model).
@@ -34,7 +36,10 @@ struct Record {
 /// line, column, value and what is allowed: empty file, unknown channel or unit, ragged row, NaN or text, gap in time,
 /// repeated or backward time, sampling outside 50 Hz - 20 kHz, more than 10^7 rows, a binary file (refused after its first
 /// bytes, whatever its size).
-Record load_record(const std::filesystem::path& path);
+///
+/// Within `drop_outs` a row may have cells without a number, and rows may lack (CSV only): their values are NaN, their times
+/// are kept.
+Record load_record(const std::filesystem::path& path, const std::vector<DropOut>& drop_outs = {});
 
 /// Throws FileError unless the record has the channel; the message lists the channels it has and what the model needs.
 void require_channel(const Record& record, const std::string& channel, const std::string& reason);

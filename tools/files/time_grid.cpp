@@ -21,7 +21,7 @@ struct Grid {
   const PrintedDigits& digits;
   double unit;
   const std::filesystem::path& path;
-  std::size_t first_line;
+  const RowLines& lines;
 
   double resolution(std::size_t row) const { return digits.resolution(std::abs(times[row]) / unit) * unit; }
 
@@ -30,7 +30,7 @@ struct Grid {
   }
 
   [[noreturn]] void refuse(std::size_t row, const std::string& problem) const {
-    throw FileError(fmt::format("{}:{}: column time: {} s after {} s: {}", path.string(), first_line + row, times[row],
+    throw FileError(fmt::format("{}:{}: column time: {} s after {} s: {}", path.string(), lines.of(row), times[row],
                                 times[row - 1], problem));
   }
 };
@@ -52,18 +52,11 @@ void require_rising(const Grid& grid) {
                           grid.resolution(row)));
 }
 
-double median_interval(const std::vector<double>& times) {
-  std::vector<double> intervals(times.size() - 1);
-  std::transform(times.begin() + 1, times.end(), times.begin(), intervals.begin(), std::minus<>{});
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
-}
-
 /// First row whose interval is off `period` by more than is allowed, 0 if there is none.
 std::size_t first_uneven_row(const Grid& grid, double period) {
   for (std::size_t row = 1; row < grid.times.size(); ++row) {
-    if (std::abs(grid.times[row] - grid.times[row - 1] - period) > grid.tolerance(row, period)) {
+    if (std::abs(grid.times[row] - grid.times[row - 1] - period) > grid.tolerance(row, period) &&
+        !grid.lines.ends_lost_interval(row)) {
       return row;
     }
   }
@@ -79,7 +72,7 @@ std::size_t first_uneven_row(const Grid& grid, double period) {
   if (interval > 1.5 * usual) {
     grid.refuse(blamed,
                 fmt::format("a gap of {:.0f} rows, the period is {:.6g} s; allowed: uniform sampling (fill the gap or cut "
-                            "the record there)",
+                            "the record there; explain and import bridge a gap that --exclude names)",
                             std::round(interval / usual) - 1.0, usual));
   }
   grid.refuse(blamed,
@@ -88,6 +81,14 @@ std::size_t first_uneven_row(const Grid& grid, double period) {
 }
 
 }  // namespace
+
+double median_interval(const std::vector<double>& times) {
+  std::vector<double> intervals(times.size() - 1);
+  std::transform(times.begin() + 1, times.end(), times.begin(), intervals.begin(), std::minus<>{});
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
 
 void PrintedDigits::see(std::string_view cell) {
   const std::size_t exponent_at = cell.find_first_of("eE");
@@ -118,8 +119,8 @@ double PrintedDigits::resolution(double magnitude) const {
 }
 
 TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& digits, double unit,
-                      const std::filesystem::path& path, std::size_t first_line) {
-  const Grid grid{times, digits, unit, path, first_line};
+                      const std::filesystem::path& path, const RowLines& lines) {
+  const Grid grid{times, digits, unit, path, lines};
   require_rising(grid);
   const double period = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   if (const std::size_t row = first_uneven_row(grid, period); row != 0) {
@@ -127,7 +128,7 @@ TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& dig
   }
   if (period > kSlowest * (1.0 + kRounding) || period < kFastest * (1.0 - kRounding)) {
     throw FileError(fmt::format("{}:{}: column time: sampled at {:.6g} Hz (period {:.6g} s); allowed: 50 Hz to 20 kHz",
-                                path.string(), first_line, 1.0 / period, period));
+                                path.string(), lines.of(0), 1.0 / period, period));
   }
   return {times.front(), period};
 }

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/files/drop_out.hpp"
+
 namespace hotfire {
 
 /// Watches how a time column is printed, to tell rounding from uneven sampling. A printer keeps either the digits after the
@@ -31,14 +33,17 @@ struct TimeGrid {
 /// Every interval must lie within 1 % of the period, or within what the rounding of two printed times does to it (`unit` is
 /// the printed unit in seconds), half a period at most. Throws FileError with line and both times, telling repeated and
 /// backward times, gaps and uneven sampling apart, or with the rate if it is outside 50 Hz to 20 kHz.
-/// `first_line` is the line of the first row.
+/// `lines` says where the rows are in the file.
 TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& digits, double unit,
-                      const std::filesystem::path& path, std::size_t first_line);
+                      const std::filesystem::path& path, const RowLines& lines);
 
 /// The uniform grid of readings that were stamped [s] as they came: it begins with the first stamp, its period is the mean
 /// interval, to the microsecond. Throws FileError for a stamp more than half a period off the grid, or with the mean
 /// interval if the rate is outside 50 Hz to 20 kHz. Lost readings it does not find where they are lost evenly.
 TimeGrid stamped_grid(const std::vector<double>& times, const std::filesystem::path& path);
+
+/// Median interval of at least two times.
+double median_interval(const std::vector<double>& times);
 
 /// The first reading before which others are missing, 0 if there is none. Stamps come late by up to half a period, so that
 /// the grid is followed from stamp to stamp, by a tenth of what each is off: a late one leaves it where it is, a lost one is

@@ -134,16 +134,6 @@ std::string effect_toml(const StudiedEffect& effect, const Plan& alone) {
   return text + "\n";
 }
 
-/// A fault of the engine's channel in the model's terms.
-std::string fault_toml(const Condition& condition) {
-  if (condition.fault().empty()) {
-    return "";
-  }
-  return fmt::format("[effects.{}]\nchannel = \"engine\"\n{}\n\n", condition.fault(),
-                     condition.engine_late != 0 ? fmt::format("delay = {}", condition.engine_late * condition.period)
-                                                : fmt::format("error = {}", condition.engine_error));
-}
-
 /// Adds an effect to the case's plan, with the first of the drawn magnitudes that shows as it should.
 void add_effect(const StudiedEffect& effect, const CaseOrder& order, const ReferenceAxis& plain, const Profile& unseen,
                 const ReferenceRows& plain_rows, StudyCase& made) {
@@ -202,7 +192,6 @@ StudyCase make_case(const CaseOrder& order) {
   Given given = recorded(order, made.plan.axis, conditioned_profiles(condition, order.name, order.seed));
   made.given = std::move(given.records);
   made.exclusions = std::move(given.exclusions);
-  made.plan.true_effects += fault_toml(condition);
   made.declared = model_toml({}, order, made.plan.declared_effects);
   if (made.plan.in_model_terms) {
     made.truth = model_toml(made.plan.axis, order, made.plan.declared_effects + made.plan.true_effects);

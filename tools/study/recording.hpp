@@ -13,7 +13,7 @@ namespace hotfire::study {
 /// An axis under a profile: rows read at the times of the commands, the first in equilibrium.
 ReferenceRows run(const ReferenceAxis& axis, const Profile& profile);
 
-/// The kept record, without noise; a fault of the rig's channel is in it as well.
+/// The kept record, without noise and without what is a fault of a rig's channel: what explained.toml is to predict.
 Record unseen_record(const CaseOrder& order, const Profile& profile, const ReferenceRows& rows);
 
 /// What the finder is given, and the stretches of it that the user declares to be wrong ("steps.csv@3.0-3.5").
