@@ -140,7 +140,6 @@ TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther)
   CHECK_TRUE(refiner.of_richer_laws(1, richer.front().model, richer.front().candidate).empty());
 }
 
-// A linear move of what was free before may end anywhere: here where the mass runs away.
 // LuGre holds Dahl at a static ratio of 1, the end of its range: a fit that ends just above it has an interval that reaches
 // it.
 TEST(Refiner, AParameterThatTheDataDoNotTellFromTheEndOfItsRangeIsLeftOutWithItsLaw) {
@@ -160,6 +159,27 @@ TEST(Refiner, AParameterThatTheDataDoNotTellFromTheEndOfItsRangeIsLeftOutWithIts
   }
 }
 
+TEST(Refiner, AnEffectInThePlaceOfAnotherIsFittedWithAllElseThatWasFound) {
+  const Strokes strokes;
+  const Dataset& data = strokes.data;
+  const explain::Candidate dahl = candidate_of(data, "sliding_friction", "dahl");
+  const explain::Candidate lugre = candidate_of(data, "sliding_friction", "lugre");
+  const explain::Candidate quadratic = candidate_of(data, "quadratic_stiffness");
+  Fitted<DirectFamily> model = guided_mass(data, strokes.scales, "dahl", 0.2);
+  explain::activate<DirectFamily>(model.base, quadratic);
+  for (const auto& parameter : explain::effect_parameters<DirectFamily>(model.base, quadratic, strokes.scales)) {
+    model.free.push_back(parameter);
+    model.u.push_back(0.0);
+  }
+  const auto with = strokes.refiner.in_place_of(model, dahl, lugre, guided_mass(data, strokes.scales, "lugre", 0.2));
+  CHECK_TRUE(explain::reaches_noise(data, with));
+  CHECK_TRUE(with.model.base.effects.active[quadratic.effect]);
+  LONGS_EQUAL(guided_mass(data, strokes.scales, "lugre", 0.0).free.size() + model.free.size() -
+                  guided_mass(data, strokes.scales, "dahl", 0.0).free.size(),
+              with.model.free.size());
+}
+
+// A linear move of what was free before may end anywhere: here where the mass runs away.
 TEST(Refiner, AScreenedCandidateThatWasMovedTooFarIsFittedFromWhereTheErrorIsLeastOnTheWay) {
   const Strokes strokes;
   const Dataset& data = strokes.data;

@@ -210,6 +210,22 @@ Assessed<Family> Refiner<Family>::without(const Fitted<Family>& model, const Can
 }
 
 template <class Family>
+Assessed<Family> Refiner<Family>::in_place_of(const Fitted<Family>& model, const Candidate& candidate,
+                                              const Candidate& other, const Fitted<Family>& tied) const {
+  Fitted<Family> start = without_effect(model, candidate);
+  activate<Family>(start.base, other);
+  const std::string prefix = "effects." + other.name + ".";
+  for (std::size_t k = 0; k < tied.free.size(); ++k) {
+    if (tied.free[k].key.starts_with(prefix)) {
+      start.free.push_back(tied.free[k]);
+      start.u.push_back(tied.u[k]);
+    }
+  }
+  const Assessed<Family> near = ranked(start, kRanking);
+  return near.good() ? settled(near.model) : near;
+}
+
+template <class Family>
 Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted) const {
   const double left = excess_over_noise(data_, fitted.prediction);
   if (left < kNothingLeft || left >= kHighestRipple || watch_.interrupted()) {

@@ -60,6 +60,11 @@ class Refiner {
   /// Without an effect, the others fitted again from where they are; over the ripples too, if that ends near the noise.
   Assessed<Family> without(const Fitted<Family>& model, const Candidate& candidate) const;
 
+  /// With another effect, or law, in the place of one: `other` as it is in `tied`, all else where it is, fitted together as
+  /// the report says it.
+  Assessed<Family> in_place_of(const Fitted<Family>& model, const Candidate& candidate, const Candidate& other,
+                               const Fitted<Family>& tied) const;
+
  private:
   std::optional<Evaluator<Family>> rough_about(const Fitted<Family>& model) const;
   bool is_done(const Assessed<Family>& winner) const;

@@ -80,6 +80,9 @@ class Search {
     }
     if (!result_.kept.empty() && !options_.watch.interrupted()) {
       settle();
+      for (const Rival<Family>& rival : earlier_rivals_) {
+        compare_with_earlier_rival(rival);
+      }
     }
     if (options_.most_effects > 0 && is_worth_a_table() && !options_.watch.interrupted()) {
       look_for_unlisted();
@@ -108,6 +111,9 @@ class Search {
     result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());
     if (!found.kept) {
       return false;
+    }
+    if (result_.rival) {
+      earlier_rivals_.push_back(std::move(*result_.rival));
     }
     result_.kept.push_back(std::move(*found.kept));
     result_.explained = std::move(found.model);
@@ -195,6 +201,7 @@ class Search {
     }
     result_.kept = {std::move(kept)};
     result_.rival.reset();
+    earlier_rivals_.clear();
     result_.explained = unlisted_->model;
     is_settled_ = true;
   }
@@ -220,6 +227,43 @@ class Search {
         give_law(candidate, std::move(richer), round, "is better, with a later effect added, than");
       }
     }
+  }
+
+  /// Whether what explained the records as well as an effect that was kept before still does with the later ones: it may be
+  /// told from it now, either way.
+  void compare_with_earlier_rival(const Rival<Family>& rival) {
+    const auto kept =
+        std::ranges::find_if(result_.kept, [&](const Kept& k) { return k.trial.candidate.effect == rival.kept.effect; });
+    const bool is_in = std::ranges::any_of(result_.kept, [&](const Kept& k) {
+      return rival.other.effect == rival.kept.effect ? label(k.trial.candidate) == label(rival.other)
+                                                     : k.trial.candidate.effect == rival.other.effect;
+    });
+    if (kept == result_.kept.end() || is_in || options_.watch.interrupted()) {
+      return;
+    }
+    Candidate& candidate = kept->trial.candidate;
+    options_.watch.progress(fmt::format("is {} still as good as {}", label(rival.other), label(candidate)));
+    Assessed<Family> with = refiner_.in_place_of(result_.explained.model, candidate, rival.other, rival.model);
+    if (!with.good()) {
+      return;
+    }
+    const int round = result_.trials.back().round;
+    Trial trial{round, rival.other, true, 0.0, 1.0, 0.0, "dropped", ""};
+    compare(trial, with, result_.explained, with.goodness.fitted);
+    if (is_supported(trial)) {
+      give_law(candidate, {rival.other, std::move(with)}, round, "explains more, with a later effect added, than");
+      return;
+    }
+    if (trial.delta_criterion < kTied) {
+      trial.decision = "tied";
+      trial.reason = "explains as much, with the later effects too, as " + label(candidate);
+      if (!result_.rival) {
+        result_.rival = Rival<Family>{candidate, rival.other, std::move(with.model)};
+      }
+    } else {
+      trial.reason = "explained as much before a later effect was added as " + label(candidate);
+    }
+    result_.trials.push_back(std::move(trial));
   }
 
   /// Gives an effect that was kept another law, and says why.
@@ -282,6 +326,7 @@ class Search {
   Scales scales_;
   Refiner<Family> refiner_;
   SearchResult<Family> result_;
+  std::vector<Rival<Family>> earlier_rivals_;       ///< of effects that were kept before the last
   bool is_settled_ = true;                          ///< what was found was fitted with fine steps
   std::optional<UnlistedSearch<Family>> unlisted_;  ///< beside the calibrated model, once it was looked for
   std::size_t unlisted_trials_ = 0;                 ///< where its trials are among all
