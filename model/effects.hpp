@@ -2,6 +2,7 @@
 
 #include "model/effects/backlash.hpp"
 #include "model/effects/command_delay.hpp"
+#include "model/effects/command_scale.hpp"
 #include "model/effects/cross_axis.hpp"
 #include "model/effects/cubic_stiffness.hpp"
 #include "model/effects/duct_hardening.hpp"
@@ -36,11 +37,12 @@ namespace hotfire::model {
 /// Every effect a hydraulic axis knows. At serial sites the order is the order of application: along the signal path for
 /// command and valve; at the load spring geometry first, then play, then the spring itself.
 using SimplexEffects =
-    EffectList<RateLimit, CommandDelay, UnlistedSignal<Site::command>, UnlistedSignal<Site::valve_command>, ValveHysteresis,
-               UnlistedOpening, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure, PistonFriction,
-               UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness, StructuralMode,
-               GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis, UnlistedMotion<Site::engine_torque>,
-               SensorNonlinearity, UnlistedReading, UnlistedDrift, SensorLag, SensorDelay, SensorScale>;
+    EffectList<CommandScale, RateLimit, CommandDelay, UnlistedSignal<Site::command>, UnlistedSignal<Site::valve_command>,
+               ValveHysteresis, UnlistedOpening, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
+               PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
+               StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis,
+               UnlistedMotion<Site::engine_torque>, SensorNonlinearity, UnlistedReading, UnlistedDrift, SensorLag,
+               SensorDelay, SensorScale>;
 
 /// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
 /// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most

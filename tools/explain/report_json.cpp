@@ -191,7 +191,7 @@ void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
     if (is_fault_of_record(kept.trial.candidate)) {
       warnings.push_back(fmt::format(
           "{} is a fault of the record, not of the plant: explained.toml is without it; mend channel {} and explain again.",
-          name, kept.trial.candidate.option_name));
+          name, kept.trial.candidate.option_name.empty() ? "command" : kept.trial.candidate.option_name));
     }
   }
 }

@@ -55,7 +55,8 @@ const Trial* closest_of(const std::vector<Trial>& trials, F&& is_meant) {
 }  // namespace
 
 bool is_fault_of_record(const Candidate& candidate) {
-  return candidate.name == model::SensorScale::name || candidate.name == model::SensorDelay::name;
+  return candidate.name == model::SensorScale::name || candidate.name == model::SensorDelay::name ||
+         candidate.name == model::CommandScale::name;
 }
 
 template <class Family>
