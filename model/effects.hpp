@@ -22,6 +22,7 @@
 #include "model/effects/soft_stiffness.hpp"
 #include "model/effects/structural_mode.hpp"
 #include "model/effects/torque_offset.hpp"
+#include "model/effects/unlisted_cross_torque.hpp"
 #include "model/effects/unlisted_deflection.hpp"
 #include "model/effects/unlisted_motion.hpp"
 #include "model/effects/unlisted_oil.hpp"
@@ -41,8 +42,8 @@ using SimplexEffects =
                ValveHysteresis, UnlistedOpening, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
                PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
                StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis,
-               UnlistedMotion<Site::engine_torque>, SensorNonlinearity, UnlistedReading, UnlistedDrift, SensorLag,
-               SensorDelay, SensorScale>;
+               UnlistedMotion<Site::engine_torque>, UnlistedCrossTorque, SensorNonlinearity, UnlistedReading, UnlistedDrift,
+               SensorLag, SensorDelay, SensorScale>;
 
 /// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
 /// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most

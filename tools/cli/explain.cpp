@@ -22,6 +22,7 @@
 #include "tools/cli/commands.hpp"
 #include "tools/files/error.hpp"
 #include "tools/files/profile_file.hpp"
+#include "tools/files/sha256.hpp"
 #include "tools/files/whole_file.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
@@ -167,12 +168,28 @@ std::vector<Record> loaded(const std::vector<std::string>& paths, const CandumpO
   return records;
 }
 
+/// What a report was made of, so that a reviewer can tell that it was this: taken before the search, as the files were read.
+std::vector<std::string> digests_of(const std::vector<std::string>& paths) {
+  std::vector<std::string> digests(paths.size());
+  std::transform(paths.begin(), paths.end(), digests.begin(), sha256_of);
+  return digests;
+}
+
+void put_digests(const std::vector<std::string>& digests, nlohmann::json& records) {
+  for (std::size_t i = 0; i < digests.size(); ++i) {
+    records.at(i)["sha256"] = digests[i];
+  }
+}
+
 void run_explain(const ExplainArguments& arguments, const std::string& command_line) {
   const AnyModel model = load_any(arguments.model);
   explain::ExplainOptions options;
   options.exclusions = exclusions_of(arguments);
   const std::vector<Record> records = loaded(arguments.records, arguments.candump, options.exclusions);
   options.kept_back = loaded(arguments.held_out, arguments.candump, options.exclusions);
+  const std::string model_digest = sha256_of(arguments.model);
+  const std::vector<std::string> record_digests = digests_of(arguments.records);
+  const std::vector<std::string> held_out_digests = digests_of(arguments.held_out);
   if (!arguments.lab.empty()) {
     const LabProfile lab = load_profile(arguments.lab);
     options.limits = explain::CommandLimits{lab.lowest_command, lab.highest_command, lab.command_rate};
@@ -193,6 +210,11 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   options.watch.interrupted = [] { return interrupted != 0; };
   Outcome outcome = outcome_of(model, records, options);
   outcome.report["hotfire"] = HOTFIRE_VERSION;
+  outcome.report["model_sha256"] = model_digest;
+  put_digests(record_digests, outcome.report["records"]);
+  if (!held_out_digests.empty()) {
+    put_digests(held_out_digests, outcome.report["held_out_records"]);
+  }
   outcome.report["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
   outcome.report["command_line"] = command_line;
   outcome.report["seconds"] = progress.seconds();

@@ -34,13 +34,16 @@ struct Extent {
 
 /// What the plant runs through, by the name that the tables give it.
 struct Extents {
-  Extent input, opening, flow, pressure, position, rate, angle, angle_rate, deflection, time;
+  Extent input, opening, flow, pressure, position, rate, angle, angle_rate, other_angle, other_rate, deflection, time;
 
   Extent of(model::Site site, std::string_view x_name) const {
     using model::Site;
     const bool is_rate = x_name == "rate";
     if (x_name.starts_with("distance")) {
       return of(site, "position").distances();
+    }
+    if (x_name.starts_with("other")) {
+      return x_name == "other_rate" ? other_rate : other_angle;
     }
     if (x_name.starts_with("time")) {
       return time;
@@ -109,6 +112,10 @@ Extents extents_of(const Dataset& data, const PlainParameters<Family>& parameter
         take_state(extents, plant, state);
         extents.input.take(experiment.input[row]);
         extents.time.take(experiment.time_of(row));
+        if (experiment.other.is_there()) {
+          extents.other_angle.take(experiment.other.angle[row]);
+          extents.other_rate.take(experiment.other.rate[row]);
+        }
       }
     });
   }
@@ -236,6 +243,9 @@ std::vector<Candidate> unlisted_candidates(const Dataset& data) {
   model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
     if constexpr (is_unlisted_effect<E>()) {
       for (std::size_t option = 0; option < E::options.size(); ++option) {
+        if (model::needs_other_axis<E>(static_cast<int>(option)) && !data.has_other_axis()) {
+          continue;
+        }
         Candidate candidate{index, static_cast<int>(option), std::string(E::name), std::string(E::options[option]),
                             std::string(model::site_name(E::site))};
         if constexpr (E::site == model::Site::sensor) {

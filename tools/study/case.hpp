@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/files/record.hpp"
@@ -11,6 +12,9 @@
 #include "tools/study/effects.hpp"
 
 namespace hotfire::study {
+
+/// An effect of an engine with two axes that is in no list: a hose that pulls across them once it is taut.
+inline constexpr std::string_view kCrossHose = "cross_hose";
 
 /// What a case is to be.
 struct CaseOrder {

@@ -11,8 +11,11 @@ namespace {
 nlohmann::json wanted_words(const CaseOrder& order) {
   nlohmann::json words = nlohmann::json::array();
   for (const std::string& name : order.effects) {
-    words.push_back(
-        order.two_axes || is_listed(studied_effect(name)) ? name : "unlisted@" + std::string(studied_effect(name).site));
+    if (order.two_axes) {
+      words.push_back(name.starts_with(kCrossHose) ? "unlisted@engine_torque" + name.substr(name.rfind('.')) : name);
+    } else {
+      words.push_back(is_listed(studied_effect(name)) ? name : "unlisted@" + std::string(studied_effect(name).site));
+    }
   }
   if (const auto fault = condition_of(order.condition).fault(); !fault.empty()) {
     words.push_back(fault);

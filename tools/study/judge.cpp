@@ -151,8 +151,8 @@ void explain_case(const Model& declared, const std::vector<Record>& records, con
       const std::string name = effect.at("name");
       const std::string axis =
           effect.contains("axis") ? fmt::format(".{}", effect.at("axis").template get<std::string>()) : "";
-      judgement.found_sites.push_back(effect.at("site"));
-      judgement.found.push_back((name == "unlisted" ? name + "@" + judgement.found_sites.back() : name) + axis);
+      judgement.found_sites.push_back(effect.at("site").template get<std::string>() + axis);
+      judgement.found.push_back(name == "unlisted" ? name + "@" + judgement.found_sites.back() : name + axis);
       judgement.found_laws.push_back(effect.value("law", ""));
     }
     judgement.after = scored_errors(explanation.model, unseen, noise_of(declared));

@@ -68,11 +68,12 @@ std::vector<CaseOrder> two_axis_orders(const Selection& selection) {
   std::vector<CaseOrder> orders;
   for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {
     const std::string other = fmt::format("{}.{}", kOthers[(seed - 1) % kOthers.size()], seed % 2 == 0 ? "pitch" : "yaw");
+    const std::string hose = fmt::format("{}.{}", kCrossHose, seed % 2 == 0 ? "yaw" : "pitch");
     Selection one = selection;
     one.first_seed = seed;
     one.seeds = 1;
     one.only.clear();
-    for (CaseOrder order : orders_of({{"cross_axis.pitch"}, {"cross_axis.yaw"}, {other}, {}}, one)) {
+    for (CaseOrder order : orders_of({{"cross_axis.pitch"}, {"cross_axis.yaw"}, {hose}, {other}, {}}, one)) {
       const std::string name = order.effects.empty() ? "null" : name_of(order.effects);
       if (!selection.only.empty() && std::find(selection.only.begin(), selection.only.end(), name) == selection.only.end()) {
         continue;
@@ -84,7 +85,8 @@ std::vector<CaseOrder> two_axis_orders(const Selection& selection) {
   }
   if (orders.empty()) {
     throw UsageError(
-        "--only: this study has no such case; it has cross_axis.pitch, cross_axis.yaw, null and, by seed, another effect");
+        "--only: this study has no such case; it has cross_axis.pitch, cross_axis.yaw, null and, by seed, cross_hose and "
+        "another effect on an axis");
   }
   return orders;
 }

@@ -22,8 +22,8 @@ std::vector<CaseOrder> effect_orders(const Selection& selection);
 std::vector<CaseOrder> pair_orders(const Selection& selection);
 std::vector<CaseOrder> unlisted_orders(const Selection& selection);
 
-/// Engines with two axes, four cases a seed: `cross_axis` on pitch, on yaw, one other effect on one axis, and nothing
-/// missing. They are named "two-axes-cross_axis.pitch-1".
+/// Engines with two axes, five cases a seed: `cross_axis` on pitch, on yaw, a hose across the axes that is in no list, one
+/// other effect on one axis, and nothing missing. They are named "two-axes-cross_axis.pitch-1".
 std::vector<CaseOrder> two_axis_orders(const Selection& selection);
 
 /// Hard data, two cases for each of `hard_conditions()`: one effect, another one with every seed, and nothing missing.

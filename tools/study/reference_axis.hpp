@@ -134,6 +134,8 @@ struct ReferenceAxis {
     double friction_drift = 0.0;      ///< ... and level (1 + friction_drift t) [1/s], from the first row on
     double periodic_torque = 0.0;     ///< amplitude of a sine on the engine [N m], from the first row on
     double periodic_frequency = 0.0;  ///< [Hz]
+    double hose = 0.0;                ///< torque per angle of the other axis beyond where a hose is taut [N m/rad]
+    double hose_slack = 0.0;          ///< that angle [rad]; below it the hose hangs
   };
   Unlisted unlisted;
 };
@@ -154,8 +156,8 @@ ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<d
                                   double settling, double tolerance = 1e-10, long* evaluations = nullptr,
                                   const Controller& controller = {});
 
-/// The two axes of one engine together, coupled by `cross_stiffness` and `cross_damping`; otherwise the same. Both have as
-/// many commands.
+/// The two axes of one engine together, coupled by `cross_stiffness`, `cross_damping` and the hose; otherwise the same. Both
+/// have as many commands.
 std::array<ReferenceRows, 2> integrate_reference_pair(const std::array<ReferenceAxis, 2>& axes,
                                                       const std::array<std::vector<double>, 2>& commands, double sample,
                                                       double settling, double tolerance = 1e-10,

@@ -210,11 +210,12 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   const Friction bristle = gimbal_friction(a, elapsed, w, beta, y[kBristle]);
   const double forcing =
       a.unlisted.periodic_torque * std::sin(2.0 * std::numbers::pi * a.unlisted.periodic_frequency * elapsed);
+  const double hose = a.unlisted.hose * std::max(0.0, problem.other_angle - a.unlisted.hose_slack);
   d[kAngle] = w;
-  d[kAngleRate] =
-      (lever.arm * force - a.damping * w - a.duct_stiffness * beta - a.duct_cubic * beta * beta * beta - a.torque_offset -
-       a.cross_stiffness * problem.other_angle - a.cross_damping * problem.other_rate - coulomb - bristle.force - forcing) /
-      a.inertia;
+  d[kAngleRate] = (lever.arm * force - a.damping * w - a.duct_stiffness * beta - a.duct_cubic * beta * beta * beta -
+                   a.torque_offset - a.cross_stiffness * problem.other_angle - a.cross_damping * problem.other_rate - hose -
+                   coulomb - bristle.force - forcing) /
+                  a.inertia;
 
   const double torque_motor_rate = -a.position_gain * v - a.pressure_gain * (d[kPressure] - d[kWashout]);
   d[kPlay] = (std::abs(asked) < 1.0 ? torque_motor_rate : 0.0) - kPlayGivesWay * beyond(y[kPlay], a.play);

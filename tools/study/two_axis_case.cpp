@@ -43,6 +43,14 @@ void plan_cross_axis(Plan& plan, Random& random, std::uint64_t seed) {
   }
 }
 
+/// A hose that hangs until the other axis has turned far enough one way, and pulls from there.
+void plan_cross_hose(Plan& plan, Random& random, std::uint64_t) {
+  plan.axis.unlisted.hose = random.sign() * random.log_uniform(2e5, 2e6);
+  plan.axis.unlisted.hose_slack = random.uniform(-0.005, 0.015);
+  plan.values["hose"] = plan.axis.unlisted.hose;
+  plan.values["hose_slack"] = plan.axis.unlisted.hose_slack;
+}
+
 std::map<std::string, double> difference(const AxisRows& a, const AxisRows& b, double noise_factor) {
   std::map<std::string, double> sizes;
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
@@ -60,7 +68,9 @@ void add_effect(const std::string& name, const CaseOrder& order, const TwoProfil
   const auto dot = name.rfind('.');
   const std::string effect = name.substr(0, dot);
   const std::size_t which = name.substr(dot + 1) == kAxes[0] ? 0 : 1;
-  const auto plan_effect = effect == "cross_axis" ? plan_cross_axis : studied_effect(effect).plan;
+  const auto plan_effect = effect == "cross_axis" ? plan_cross_axis
+                           : effect == kCrossHose ? plan_cross_hose
+                                                  : studied_effect(effect).plan;
   for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
     Random random(name + "/" + order.name, order.seed, 100 + draw);
     std::array<Plan, 2> tried = plans;

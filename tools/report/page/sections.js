@@ -17,6 +17,8 @@ const LAWS = { coulomb: "Coulomb", dahl: "Dahl", lugre: "LuGre" };
 
 const PROFILED = "Interval from the profile likelihood, not symmetric";
 
+/** Digits of a SHA-256 that are shown: two files that agree in 64 bits are one. */
+const SHOWN_DIGITS = 16;
 const section = (title, ...content) => element("section", {}, element("h2", {}, title), content);
 const paragraph = (text, kind) => (isFilled(text) ? element("p", { class: kind ?? null }, text) : null);
 const code = (text) => element("code", {}, text);
@@ -198,5 +200,8 @@ function data(report) {
     { title: "length [s]", number: true, cell: (row) => (row.period > 0 ? number(row.rows * row.period, 4) : "") },
     { title: "held out [s]", text: true, cell: (row) => blocksOf(row).map((block) => String(block).slice(row.name.length + 1)
       .replace(/(\d)-(?=[\d.])/, "$1 … ")).join(", ") },
-  ], records), unplaced.length ? paragraph(`Held out: ${unplaced.join(", ")}.`) : null);
+    { title: "SHA-256", cell: (row) => (row.sha256 ? code(row.sha256.slice(0, SHOWN_DIGITS)) : "") },
+  ], records), report.model_sha256 ? paragraph(`The first ${SHOWN_DIGITS} digits; those of the declared model: ` +
+    `${report.model_sha256.slice(0, SHOWN_DIGITS)}. report.json has all.`, "note") : null,
+  unplaced.length ? paragraph(`Held out: ${unplaced.join(", ")}.`) : null);
 }

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace hotfire {
+
+/// SHA-256 of a file's bytes in lower-case hexadecimal, as `sha256sum` prints it. Throws FileError if the file cannot be
+/// read.
+std::string sha256_of(const std::filesystem::path& path);
+
+}  // namespace hotfire
