@@ -216,8 +216,9 @@ class Axis {
     const Compression<S> oil_compression{net_flow + flow_relief_ * advance.built_up, flow_relief_, mean(kPressure), h_};
     state.built_up = sum_over<Site::pressure>(effects, state.effects, oil_compression, keep);
     state.inputs(kFlow) += state.built_up;
-    state.inputs(kPistonForce) = sum_over<Site::piston>(
-        effects, state.effects, Motion<S>{mean(kPiston), piston_rate, piston_rate, piston_compliance_, h_, time}, keep);
+    Motion<S> motion{mean(kPiston), piston_rate, piston_rate, piston_compliance_, h_, time};
+    motion.load = actuator.piston_area * mean(kPressure);
+    state.inputs(kPistonForce) = sum_over<Site::piston>(effects, state.effects, motion, keep);
 
     const S attach_motion = sum_over<Site::structure>(effects, state.effects, AttachPoint<S>{state.spring_force, h_}, keep);
     const S linear_deflection = mean(kPiston) - actuator.moment_arm * mean(kAngle);
@@ -237,7 +238,8 @@ class Axis {
   void evaluate_engine(State& state, const Advance& advance, const Spring<S>& spring, const Around& around,
                        Keep keep) const noexcept {
     const S angle_rate = advance.rate(kAngle, h_);
-    const Motion<S> motion{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, mid_step(state)};
+    Motion<S> motion{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, mid_step(state)};
+    motion.load = state.spring_force;
     const S own = sum_over<Site::engine_torque>(parameters_.effects, state.effects, motion_around(around, motion), keep);
     state.inputs(kEngineTorque) =
         torque_around(around, own) - (spring.arm - parameters_.actuator.moment_arm) * state.spring_force;

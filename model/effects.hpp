@@ -27,7 +27,9 @@
 #include "model/effects/unlisted_motion.hpp"
 #include "model/effects/unlisted_oil.hpp"
 #include "model/effects/unlisted_reading.hpp"
+#include "model/effects/unlisted_ripple.hpp"
 #include "model/effects/unlisted_signal.hpp"
+#include "model/effects/unlisted_wiper_play.hpp"
 #include "model/effects/valve_asymmetry.hpp"
 #include "model/effects/valve_deadband.hpp"
 #include "model/effects/valve_hysteresis.hpp"
@@ -42,8 +44,8 @@ using SimplexEffects =
                ValveHysteresis, UnlistedOpening, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
                PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
                StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis,
-               UnlistedMotion<Site::engine_torque>, UnlistedCrossTorque, SensorNonlinearity, UnlistedReading, UnlistedDrift,
-               SensorLag, SensorDelay, SensorScale>;
+               UnlistedMotion<Site::engine_torque>, UnlistedCrossTorque, SensorNonlinearity, UnlistedWiperPlay,
+               UnlistedReading, UnlistedDrift, UnlistedRipple, SensorLag, SensorDelay, SensorScale>;
 
 /// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
 /// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most

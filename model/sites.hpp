@@ -87,6 +87,7 @@ struct Motion {
   S time{0.0};         ///< of the record, mean over the step [s]
   S other_angle{0.0};  ///< of the engine about its other axis, mean over the step [rad]; known at `engine_torque` only
   S other_rate{0.0};   ///< its rate [rad/s]; both zero for an axis alone
+  S load{0.0};         ///< A p_L at `piston`, the load spring's force at `engine_torque`, mean over the step [N]
 };
 
 /// What an effect sees at the site `load_spring`, and returns with its change. The spring's force is

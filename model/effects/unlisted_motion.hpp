@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "model/effects/unlisted.hpp"
 #include "model/friction.hpp"
 
@@ -7,23 +9,31 @@ namespace hotfire::model {
 
 /// A force or torque against the motion at `piston`, `engine_torque` or `mass_force`: a table over the position, over the
 /// rate, or over time; dry friction or viscous damping whose level is a table over the position, over its distance from
-/// zero, or over time; or a sinusoid of time.
+/// zero, or over time; dry friction whose level is a table over the size of the load, where there is one; or a sinusoid of
+/// time.
 template <Site at>
 struct UnlistedMotion {
   using Names = UnlistedNames<at>;
   static constexpr std::string_view name = Names::name;
   static constexpr Site site = at;
   static constexpr bool is_unlisted = true;
-  static constexpr std::array<std::string_view, 10> options{"position",
-                                                            "rate",
-                                                            "friction_along_position",
-                                                            "damping_along_position",
-                                                            "time",
-                                                            "periodic",
-                                                            "friction_along_distance",
-                                                            "damping_along_distance",
-                                                            "friction_along_time",
-                                                            "damping_along_time"};
+  static constexpr bool has_load = at != Site::mass_force;
+  static constexpr auto options = [] {
+    constexpr std::array<std::string_view, 11> all{"position",
+                                                   "rate",
+                                                   "friction_along_position",
+                                                   "damping_along_position",
+                                                   "time",
+                                                   "periodic",
+                                                   "friction_along_distance",
+                                                   "damping_along_distance",
+                                                   "friction_along_time",
+                                                   "damping_along_time",
+                                                   "friction_along_load"};
+    std::array<std::string_view, has_load ? all.size() : all.size() - 1> own{};
+    std::copy_n(all.begin(), own.size(), own.begin());
+    return own;
+  }();
   static constexpr std::string_view option_key = "depends_on";
 
   template <class S>
@@ -37,14 +47,14 @@ struct UnlistedMotion {
     static constexpr auto fields() {
       return std::array{
           Field<Params>{"stiffness", Names::stiffness_unit, 1e-6, 1e15, Names::typical_stiffness,
-                        "stiffness of the friction before it slides", &Params::stiffness, 0b101000100},
+                        "stiffness of the friction before it slides", &Params::stiffness, 0b10101000100},
           Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100000},
           Field<Params>{"amplitude", Names::unit, 0.0, 1e12, Names::typical, "amplitude of the sinusoid", &Params::amplitude,
                         0b100000}};
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
-      return std::array{
+      const std::array without_load{
           T{"position", Names::position_unit, "force_at_position", Names::unit, -1e12, 1e12,
             "force against positive motion at a position", &Params::table, 0b00001, Names::typical},
           T{"rate", Names::rate_unit, "force_at_rate", Names::unit, -1e12, 1e12, "force against positive motion at a rate",
@@ -64,6 +74,23 @@ struct UnlistedMotion {
             Names::typical},
           T{"time_of_damping", "s", "damping_at_time", Names::damping_unit, -1e12, 1e12, "damping at a time of the record",
             &Params::table, 0b1000000000, Names::typical_damping}};
+      if constexpr (has_load) {
+        std::array<T, without_load.size() + 1> all{};
+        std::copy(without_load.begin(), without_load.end(), all.begin());
+        all.back() = T{"load_of_friction",
+                       "N",
+                       "friction_at_load",
+                       Names::unit,
+                       -1e12,
+                       1e12,
+                       "level of dry friction under a size of the load; none where negative",
+                       &Params::table,
+                       0b10000000000,
+                       Names::typical};
+        return all;
+      } else {
+        return without_load;
+      }
     }
   };
 
@@ -93,8 +120,10 @@ struct UnlistedMotion {
         return damping(params, input, S(input.position * sign_of(input.position)));
       case 8:
         return friction(params, state, input, input.time);
-      default:
+      case 9:
         return damping(params, input, input.time);
+      default:
+        return friction(params, state, input, S(input.load * sign_of(input.load)));
     }
   }
 

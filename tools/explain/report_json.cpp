@@ -139,7 +139,7 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
                          {"y_unit", table->y_unit},
                          {"series", {{{"name", "as found"}, {"x", table->x}, {"y", table->y}}}}};
     } else if (unlisted) {
-      effect["looks_like"] = law_in_words(candidate.option_name);
+      effect["looks_like"] = law_in_words(candidate);
     } else {
       effect["curve"] = curve_of<Family>(parameters, candidate.effect, reach);
     }

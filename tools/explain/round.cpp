@@ -15,6 +15,9 @@ namespace {
 /// A model that leaves less than this many times the noise may be the last; one that leaves more is fitted again beside the
 /// next effect.
 constexpr double kNearNoise = 3.0;
+/// Far above the noise an effect that leaves more than this share of the held-out error is not named: it takes up a little
+/// of what it does not have. Even the largest of four that are missing, all alike, leaves 0.87.
+constexpr double kHardlyLess = 0.95;
 
 /// True if a trial ranks before another: by the BIC, but one that held-out data do not support never before one that they
 /// do.
@@ -59,7 +62,8 @@ RoundResult<Family> Round<Family>::run() {
     result.settled = is_near_noise(*best_);
     result.model = winner();
   }
-  const bool kept = best_ && result.model.good() && is_supported(trials_[*best_]);
+  const bool kept =
+      best_ && result.model.good() && is_supported(trials_[*best_]) && is_worth_a_name(trials_[*best_], result.model);
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     const bool is_tied = kept && trials_[i].refined && trials_[i].delta_criterion - trials_[*best_].delta_criterion < kTied;
     trials_[i].decision = kept && i == *best_ ? "kept" : is_tied ? "tied" : "dropped";
@@ -84,6 +88,11 @@ bool Round<Family>::clears_up(const Assessed<Family>& with) const {
   const double before = excess_over_noise(data_, current_.prediction);
   const double after = excess_over_noise(data_, with.prediction);
   return before > kLargerThanNoise || after * after < kClearsUp * before * before;
+}
+
+template <class Family>
+bool Round<Family>::is_worth_a_name(const Trial& trial, const Assessed<Family>& with) const {
+  return trial.held_out_ratio < kHardlyLess || excess_over_noise(data_, with.prediction) < kNearNoise;
 }
 
 /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or

@@ -34,6 +34,7 @@ class Round {
 
  private:
   bool clears_up(const Assessed<Family>& with) const;
+  bool is_worth_a_name(const Trial& trial, const Assessed<Family>& with) const;
   bool is_decided_against(std::size_t wanted) const;
   bool is_near_noise(std::size_t finalist) const;
   void fit_finalists();

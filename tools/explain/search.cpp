@@ -21,8 +21,10 @@ namespace {
 /// freedom than any of them.
 constexpr double kUnlistedAdvantage = 0.7;
 /// Listed effects that leave more than this share of the calibrated model's held-out error may well stand in for one that is
-/// in no list: a term of unknown law is looked for before another effect is, and ends the search if it lacks nothing.
+/// in no list: a term of unknown law is looked for before another effect is, and ends the search if it lacks nothing. Names
+/// that explain so little in the end give way to a term that is only a little better.
 constexpr double kLittleExplained = 0.5;
+constexpr double kAdvantageOverLittle = 0.9;
 /// Rows no closer than this tell candidates apart [s]: the fastest that an axis does in its sensors is tens of hertz.
 constexpr double kRankingPeriod = 2e-3;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
@@ -164,7 +166,13 @@ class Search {
   bool is_worth_a_table() const {
     return !reaches_noise(data_, result_.explained) &&
            excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise &&
-           least_held_out_ratio(result_.explained, result_.calibrated) < kUnlistedAdvantage * left_by_listed();
+           least_held_out_ratio(result_.explained, result_.calibrated) < wanted_of_unlisted();
+  }
+
+  /// The share of the calibrated model's held-out error that a term of unknown law has to stay below.
+  double wanted_of_unlisted() const {
+    const double listed = left_by_listed();
+    return (listed > kLittleExplained ? kAdvantageOverLittle : kUnlistedAdvantage) * listed;
   }
 
   /// Held-out error that the listed effects leave of the calibrated model's.
@@ -185,7 +193,7 @@ class Search {
   /// effects that imitate it would be wrong names.
   void take_unlisted_if_better() {
     const double listed = left_by_listed();
-    if (!unlisted_->leaves_less_than(kUnlistedAdvantage * listed)) {
+    if (!unlisted_->leaves_less_than(wanted_of_unlisted())) {
       return;
     }
     Trial& best = result_.trials[unlisted_trials_ + *unlisted_->best];

@@ -34,13 +34,17 @@ struct Extent {
 
 /// What the plant runs through, by the name that the tables give it.
 struct Extents {
-  Extent input, opening, flow, pressure, position, rate, angle, angle_rate, other_angle, other_rate, deflection, time;
+  Extent input, opening, flow, pressure, position, rate, angle, angle_rate, other_angle, other_rate, deflection, drive, load,
+      time;
 
   Extent of(model::Site site, std::string_view x_name) const {
     using model::Site;
     const bool is_rate = x_name == "rate";
     if (x_name.starts_with("distance")) {
       return of(site, "position").distances();
+    }
+    if (x_name == "load_of_friction") {
+      return (site == Site::piston ? drive : load).distances();
     }
     if (x_name.starts_with("other")) {
       return x_name == "other_rate" ? other_rate : other_angle;
@@ -81,6 +85,8 @@ void take_state(Extents& extents, const model::Simplex<double>& plant, const mod
   extents.rate.take(state.y(Plant::kPistonRate));
   extents.angle.take(state.y(Plant::kAngle));
   extents.angle_rate.take(state.y(Plant::kAngleRate));
+  extents.drive.take(plant.parameters().actuator.piston_area * state.y(Plant::kPressure));
+  extents.load.take(state.spring_force);
   extents.deflection.take(state.y(Plant::kPiston) - plant.parameters().actuator.moment_arm * state.y(Plant::kAngle));
 }
 
@@ -234,7 +240,9 @@ bool is_unlisted(const Candidate& candidate) {
   return result;
 }
 
-bool is_periodic(const Candidate& candidate) { return candidate.option_name == "periodic"; }
+bool is_periodic(const Candidate& candidate) {
+  return candidate.option_name == "periodic" || candidate.name == model::UnlistedRipple::name;
+}
 
 template <class Family>
 std::vector<Candidate> unlisted_candidates(const Dataset& data) {
@@ -271,15 +279,17 @@ void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& can
       if (index != candidate.effect) {
         return;
       }
-      for (const auto& field : Values::tables()) {
-        if ((field.options >> candidate.option & 1U) != 0) {
-          auto& table = values.*field.member;
-          if constexpr (std::is_same_v<E, model::UnlistedReading>) {
-            lay_points_by_reading<Family>(table, data, current, static_cast<std::size_t>(candidate.option));
-          } else {
-            const auto parameters_now = Evaluator<Family>::with_values(current.base, current.free, current.u);
-            const Extents extents = extents_of<Family>(data, parameters_now);
-            lay_points(table, extents.of(E::site, field.x_name), field.x_name == "rate");
+      if constexpr (requires { Values::tables(); }) {
+        for (const auto& field : Values::tables()) {
+          if ((field.options >> candidate.option & 1U) != 0) {
+            auto& table = values.*field.member;
+            if constexpr (std::is_same_v<E, model::UnlistedReading>) {
+              lay_points_by_reading<Family>(table, data, current, static_cast<std::size_t>(candidate.option));
+            } else {
+              const auto parameters_now = Evaluator<Family>::with_values(current.base, current.free, current.u);
+              const Extents extents = extents_of<Family>(data, parameters_now);
+              lay_points(table, extents.of(E::site, field.x_name), field.x_name == "rate");
+            }
           }
         }
       }
@@ -293,16 +303,18 @@ std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, c
   model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
     if constexpr (is_unlisted_effect<E>()) {
       using Values = std::remove_cvref_t<decltype(values)>;
-      for (const auto& field : Values::tables()) {
-        const auto& table = values.*field.member;
-        if (index == candidate.effect && (field.options >> candidate.option & 1U) != 0 && table.points > 0) {
-          result = FittedTable{std::string(field.x_name),
-                               std::string(field.x_unit),
-                               std::string(field.y_name),
-                               std::string(field.y_unit),
-                               std::string(field.meaning),
-                               {table.x.begin(), table.x.begin() + table.points},
-                               {table.y.begin(), table.y.begin() + table.points}};
+      if constexpr (requires { Values::tables(); }) {
+        for (const auto& field : Values::tables()) {
+          const auto& table = values.*field.member;
+          if (index == candidate.effect && (field.options >> candidate.option & 1U) != 0 && table.points > 0) {
+            result = FittedTable{std::string(field.x_name),
+                                 std::string(field.x_unit),
+                                 std::string(field.y_name),
+                                 std::string(field.y_unit),
+                                 std::string(field.meaning),
+                                 {table.x.begin(), table.x.begin() + table.points},
+                                 {table.y.begin(), table.y.begin() + table.points}};
+          }
         }
       }
     }

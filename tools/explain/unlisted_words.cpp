@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/explain/unlisted.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -70,14 +72,35 @@ std::string in_words(const FittedTable& table) {
   return text;
 }
 
-std::string law_in_words(std::string_view depends_on) {
-  if (depends_on == "periodic") {
+std::string law_in_words(const Candidate& candidate) {
+  if (is_periodic(candidate)) {
     return "a sinusoid of one frequency and one amplitude over the whole of every record, whatever the axis does";
   }
-  if (depends_on == "creep") {
+  if (candidate.option_name == "creep") {
     return "a share of the deflection that follows the load late, at one time constant, and goes back as late";
   }
+  if (candidate.name == model::UnlistedWiperPlay::name) {
+    return "a reading that stays where it is until the motion has gone on by a play: a wiper that sticks, a slack linkage";
+  }
   return "";
+}
+
+std::string dependence_in_words(const Candidate& candidate) {
+  if (is_periodic(candidate)) {
+    return "of one frequency";
+  }
+  if (candidate.name == model::UnlistedWiperPlay::name) {
+    return "that is a play";
+  }
+  if (candidate.name == model::UnlistedReading::name) {
+    return "over what it reads";
+  }
+  if (candidate.name == model::UnlistedDrift::name) {
+    return "over the time of the record";
+  }
+  std::string quantity = candidate.option_name;
+  std::replace(quantity.begin(), quantity.end(), '_', ' ');
+  return "that is told by " + quantity;
 }
 
 }  // namespace hotfire::explain

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "tools/explain/candidates.hpp"
 
 namespace hotfire::explain {
 
@@ -20,7 +21,10 @@ struct FittedTable {
 /// What a table looks like in words: its size, whether it is odd, even or constant, rises or falls, jumps about zero.
 std::string in_words(const FittedTable& table);
 
-/// The same of a term of unknown law without a table, by what it depends on: "periodic", "creep". Empty for any other.
-std::string law_in_words(std::string_view depends_on);
+/// The same of a term of unknown law without a table. Empty for one that has a table.
+std::string law_in_words(const Candidate& candidate);
+
+/// What a term of unknown law depends on, as a clause: "that is told by load pressure", "of one frequency".
+std::string dependence_in_words(const Candidate& candidate);
 
 }  // namespace hotfire::explain

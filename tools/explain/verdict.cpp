@@ -93,12 +93,10 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
   }
   if (verdict == "unlisted-effect" && !found.kept.empty()) {
     const Candidate& candidate = found.kept.front().trial.candidate;
-    std::string dependence = candidate.option_name;
-    std::replace(dependence.begin(), dependence.end(), '_', ' ');
     return fmt::format(
-        "The records hold an effect that is in no list: a term at {} that is told by {} takes the error on held-out data "
+        "The records hold an effect that is in no list: a term at {} {} takes the error on held-out data "
         "from {:.1f} to {:.2f} times the noise; the explained model holds it.",
-        candidate.site, dependence, before, after);
+        candidate.site, dependence_in_words(candidate), before, after);
   }
   if (verdict == "unlisted-effect") {
     return fmt::format(

@@ -165,6 +165,13 @@ void plan_cushion(Plan& plan, Random& random, std::uint64_t) {
   plan.axis.unlisted.cushion_from = plan.values["from"] = random.uniform(0.01, 0.04);
 }
 
+void plan_seal_squeeze(Plan& plan, Random& random, std::uint64_t) {
+  const double level = plan.values["coulomb_force"] = random.uniform(1e3, 3e3);
+  plan.axis.seal = {level, random.log_uniform(3e8, 1e9), 1.0, 1.0, 1e7};
+  // Two to five times the level more under the pressure that the ducts ask for at 4 deg.
+  plan.axis.unlisted.seal_squeeze = plan.values["squeeze"] = random.uniform(2.0, 5.0) / 2.3e6;
+}
+
 void plan_creep(Plan& plan, Random& random, std::uint64_t) {
   plan.axis.unlisted.creep_stiffness = plan.values["stiffness"] = random.uniform(1.5e7, 3.5e7);
   plan.axis.unlisted.creep_time = plan.values["time_constant"] = random.log_uniform(0.3, 2.0);
@@ -221,6 +228,7 @@ constexpr std::array kUnlisted{
     StudiedEffect{"flow_gain_curvature", "valve|flow", plan_flow_gain_curvature},
     // More flow into a stiffer oil and less into a softer one are the same pressure rate.
     StudiedEffect{"aerated_oil", "pressure|flow", plan_aerated_oil}, StudiedEffect{"cushion", "piston", plan_cushion},
+    StudiedEffect{"seal_squeeze", "piston", plan_seal_squeeze, "piston_friction"},
     StudiedEffect{"creeping_spring", "load_spring|structure", plan_creep},
     StudiedEffect{"track_wear", "sensor.piston|sensor", plan_track_wear},
     // A shifted null of the torque motor is a shifted command, K_e R beta_c, and a shifted spool.

@@ -132,6 +132,7 @@ struct ReferenceAxis {
     double creep_time = 1.0;          ///< [s]
     double friction_growth = 0.0;     ///< the bristle's level is level (1 + friction_growth beta^2) [1/rad^2]
     double friction_drift = 0.0;      ///< ... and level (1 + friction_drift t) [1/s], from the first row on
+    double seal_squeeze = 0.0;        ///< the seal's level is level (1 + seal_squeeze |p_L|) [1/Pa]
     double periodic_torque = 0.0;     ///< amplitude of a sine on the engine [N m], from the first row on
     double periodic_frequency = 0.0;  ///< [Hz]
     double hose = 0.0;                ///< torque per angle of the other axis beyond where a hose is taut [N m/rad]

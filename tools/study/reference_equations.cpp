@@ -43,11 +43,11 @@ Friction gimbal_friction(const ReferenceAxis& axis, double elapsed, double veloc
   return lugre(axis.bristle, growth * (1.0 + axis.unlisted.friction_drift * elapsed), velocity, z);
 }
 
-Friction elastic_slip(const ReferenceAxis::Slip& law, double velocity, double stretch) {
+Friction elastic_slip(const ReferenceAxis::Slip& law, double growth, double velocity, double stretch) {
   if (law.stiffness == 0.0) {
     return {};
   }
-  const double level = stribeck(law.level, law.static_ratio, law.stribeck, velocity);
+  const double level = growth * stribeck(law.level, law.static_ratio, law.stribeck, velocity);
   return {law.stiffness * stretch, velocity - law.gives_way * beyond(stretch, level / law.stiffness)};
 }
 
@@ -200,7 +200,7 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   const double beta = y[kAngle];
   const Lever lever = lever_of(a, beta);
   const double force = spring_force(a, y[kPiston] - lever.stroke - a.mode_shape * y[kMode] - y[kCreep]);
-  const Friction seal = elastic_slip(a.seal, v, y[kSeal]);
+  const Friction seal = elastic_slip(a.seal, 1.0 + a.unlisted.seal_squeeze * std::abs(y[kPressure]), v, y[kSeal]);
   const Friction seal_bristle = lugre(a.seal_bristle, 1.0, v, y[kSealBristle]);
   const double damping = a.piston_damping + a.unlisted.cushion * std::abs(beyond(y[kPiston], a.unlisted.cushion_from));
   d[kPiston] = v;

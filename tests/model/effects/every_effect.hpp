@@ -74,7 +74,8 @@ template <class E>
 bool depends_on_time(int option) {
   if constexpr (is_unlisted<E>()) {
     const std::string_view law = E::options[static_cast<std::size_t>(option)];
-    return law.ends_with("time") || law == "periodic" || std::is_same_v<E, model::UnlistedDrift>;
+    return law.ends_with("time") || law == "periodic" || std::is_same_v<E, model::UnlistedDrift> ||
+           std::is_same_v<E, model::UnlistedRipple>;
   }
   return false;
 }
@@ -83,20 +84,23 @@ bool depends_on_time(int option) {
 /// one, all positive and rising if it is positive.
 template <class E, class S>
 void lay_table(ParamsOf<E, S>& params, int option, double size) {
-  for (const auto& field : ParamsOf<E, S>::tables()) {
-    if ((field.options >> static_cast<unsigned>(option) & 1U) == 0) {
-      continue;
-    }
-    const double reach = field.x_name == "load_pressure" ? 4e6
-                         : field.x_name == "rate"        ? 5.0
-                         : field.x_name == "deflection"  ? 5e-4
-                         : field.x_name == "recent_flow" ? 5e-4
-                                                         : 0.1;
-    auto& table = params.*field.member;
-    table.points = 5;
-    for (std::size_t i = 0; i < 5; ++i) {
-      table.x[i] = S(reach * (0.5 * static_cast<double>(i) - 1.0));
-      table.y[i] = S(size * field.y_typical * (0.2 + static_cast<double>(i)));
+  if constexpr (requires { ParamsOf<E, S>::tables(); }) {
+    for (const auto& field : ParamsOf<E, S>::tables()) {
+      if ((field.options >> static_cast<unsigned>(option) & 1U) == 0) {
+        continue;
+      }
+      const double reach = field.x_name == "load_pressure"       ? 4e6
+                           : field.x_name == "rate"              ? 5.0
+                           : field.x_name.starts_with("load_of") ? 2e4
+                           : field.x_name == "deflection"        ? 5e-4
+                           : field.x_name == "recent_flow"       ? 5e-4
+                                                                 : 0.1;
+      auto& table = params.*field.member;
+      table.points = 5;
+      for (std::size_t i = 0; i < 5; ++i) {
+        table.x[i] = S(reach * (0.5 * static_cast<double>(i) - 1.0));
+        table.y[i] = S(size * field.y_typical * (0.2 + static_cast<double>(i)));
+      }
     }
   }
 }
@@ -204,6 +208,7 @@ inline void randomise(Random& random, model::Motion<double>& input) {
   input.compliance = random.logarithmic(1e-12, 1.0);
   input.other_angle = random.either_sign(1e-9, 10.0);
   input.other_rate = random.either_sign(1e-12, 1e2);
+  input.load = random.either_sign(1e-6, 1e7);
 }
 /// The load spring of the reference values (physics.md section 1) at a deflection [m] and an angle [rad].
 inline model::Spring<double> reference_spring(double deflection, double angle, double h) {
