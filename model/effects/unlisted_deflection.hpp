@@ -6,13 +6,15 @@
 namespace hotfire::model {
 
 /// Deflection added to the load spring's, as a table over its own deflection or the engine angle; a spring that creeps: a
-/// share of the deflection relaxes with a time constant (a standard linear solid); or one whose stiffness drifts, K_T
-/// (1 + stiffness(t)).
+/// share of the deflection relaxes with a time constant (a standard linear solid); one that damps: a further spring that
+/// relaxes with a time constant beside it (a Maxwell element), which slow motion does not meet and which is a damper to what
+/// is slower than that; or one whose stiffness drifts, K_T (1 + stiffness(t)).
 struct UnlistedDeflection {
   static constexpr std::string_view name = "unlisted_deflection";
   static constexpr Site site = Site::load_spring;
   static constexpr bool is_unlisted = true;
-  static constexpr std::array<std::string_view, 4> options{"deflection", "angle", "creep", "stiffness_along_time"};
+  static constexpr std::array<std::string_view, 5> options{"deflection", "angle", "creep", "stiffness_along_time",
+                                                           "deflection_rate"};
   static constexpr std::string_view option_key = "depends_on";
 
   template <class S>
@@ -21,12 +23,18 @@ struct UnlistedDeflection {
     int option = 0;
     S creep_share{0.0};
     S creep_time{1.0};
+    S damping_share{0.0};
+    S damping_time{0.01};
     UnlistedTable<S> table{};
     static constexpr auto fields() {
       return std::array{
           Field<Params>{"creep_share", "1", 0.0, 0.95, 0.1, "share of the deflection that relaxes", &Params::creep_share,
                         0b100},
-          Field<Params>{"creep_time", "s", 1e-3, 1e3, 0.5, "time constant of the relaxation", &Params::creep_time, 0b100}};
+          Field<Params>{"creep_time", "s", 1e-3, 1e3, 0.5, "time constant of the relaxation", &Params::creep_time, 0b100},
+          Field<Params>{"damping_share", "1", 0.0, 10.0, 0.3, "stiffness of the spring that relaxes over that of the other",
+                        &Params::damping_share, 0b10000},
+          Field<Params>{"damping_time", "s", 1e-4, 1.0, 0.01, "time constant of its relaxation", &Params::damping_time,
+                        0b10000}};
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
@@ -41,7 +49,7 @@ struct UnlistedDeflection {
 
   template <class S>
   struct State {
-    S relaxed{0.0};  ///< deflection that the creeping part follows [m]
+    S relaxed{0.0};  ///< deflection that the part that relaxes follows [m]
   };
 
   template <class S>
@@ -53,16 +61,25 @@ struct UnlistedDeflection {
   static Spring<S> step(const Params<S>& params, State<S>& state, const Spring<S>& input) noexcept {
     Spring<S> output = input;
     if (params.option == 2) {
-      const S start = state.relaxed;
-      const S decay = fading_exponential<S>(input.h / params.creep_time);
-      state.relaxed = input.deflection + (start - input.deflection) * decay;
-      output.deflection = input.deflection - params.creep_share * 0.5 * (start + state.relaxed);
+      output.deflection = input.deflection - params.creep_share * relaxed(state, input, params.creep_time);
+    } else if (params.option == 4) {
+      output.deflection =
+          input.deflection + params.damping_share * (input.deflection - relaxed(state, input, params.damping_time));
     } else if (params.option == 3) {
       output.deflection = input.deflection * (1.0 + unlisted::value_at<S>(params.table, input.time));
     } else {
       output.deflection += unlisted::value_at<S>(params.table, params.option == 0 ? input.deflection : input.angle);
     }
     return output;
+  }
+
+ private:
+  /// What follows the deflection with a time constant, mean over the step.
+  template <class S>
+  static S relaxed(State<S>& state, const Spring<S>& input, const S& time) noexcept {
+    const S start = state.relaxed;
+    state.relaxed = input.deflection + (start - input.deflection) * fading_exponential<S>(input.h / time);
+    return 0.5 * (start + state.relaxed);
   }
 };
 

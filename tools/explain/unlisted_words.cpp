@@ -79,6 +79,10 @@ std::string law_in_words(const Candidate& candidate) {
   if (candidate.option_name == "creep") {
     return "a share of the deflection that follows the load late, at one time constant, and goes back as late";
   }
+  if (candidate.option_name == "deflection_rate") {
+    return "a damper beside the load spring: a further spring that relaxes with one time constant, which slow motion does "
+           "not meet";
+  }
   if (candidate.name == model::UnlistedWiperPlay::name) {
     return "a reading that stays where it is until the motion has gone on by a play: a wiper that sticks, a slack linkage";
   }

@@ -230,6 +230,10 @@ constexpr std::array kUnlisted{
     StudiedEffect{"aerated_oil", "pressure|flow", plan_aerated_oil}, StudiedEffect{"cushion", "piston", plan_cushion},
     StudiedEffect{"seal_squeeze", "piston", plan_seal_squeeze, "piston_friction"},
     StudiedEffect{"creeping_spring", "load_spring|structure", plan_creep},
+    StudiedEffect{"spring_damping", "load_spring|structure",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.spring_damping = p.values["damping"] = r.log_uniform(5e4, 5e5);
+                  }},
     StudiedEffect{"track_wear", "sensor.piston|sensor", plan_track_wear},
     // A shifted null of the torque motor is a shifted command, K_e R beta_c, and a shifted spool.
     StudiedEffect{"null_drift", "valve_command|command|valve",

@@ -130,6 +130,7 @@ struct ReferenceAxis {
     double cushion_from = 0.0;        ///< [m]
     double creep_stiffness = 0.0;     ///< of the part of the load spring that creeps [N/m]
     double creep_time = 1.0;          ///< [s]
+    double spring_damping = 0.0;      ///< of the load spring, in parallel with it [N s/m]
     double friction_growth = 0.0;     ///< the bristle's level is level (1 + friction_growth beta^2) [1/rad^2]
     double friction_drift = 0.0;      ///< ... and level (1 + friction_drift t) [1/s], from the first row on
     double seal_squeeze = 0.0;        ///< the seal's level is level (1 + seal_squeeze |p_L|) [1/Pa]

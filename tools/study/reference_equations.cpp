@@ -199,7 +199,8 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   const double w = y[kAngleRate];
   const double beta = y[kAngle];
   const Lever lever = lever_of(a, beta);
-  const double force = spring_force(a, y[kPiston] - lever.stroke - a.mode_shape * y[kMode] - y[kCreep]);
+  const double force = spring_force(a, y[kPiston] - lever.stroke - a.mode_shape * y[kMode] - y[kCreep]) +
+                       a.unlisted.spring_damping * (v - lever.arm * w);
   const Friction seal = elastic_slip(a.seal, 1.0 + a.unlisted.seal_squeeze * std::abs(y[kPressure]), v, y[kSeal]);
   const Friction seal_bristle = lugre(a.seal_bristle, 1.0, v, y[kSealBristle]);
   const double damping = a.piston_damping + a.unlisted.cushion * std::abs(beyond(y[kPiston], a.unlisted.cushion_from));
