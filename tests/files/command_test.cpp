@@ -280,4 +280,16 @@ TEST(Command, simulate_refuses_bad_data_with_6_and_leaves_no_output) {
   CHECK(!std::filesystem::exists(output));
 }
 
+TEST(Command, explain_refuses_a_rigs_limits_where_it_looks_for_no_experiment_and_an_exclusion_of_no_record) {
+  const std::string taos = scratch.write("taos.toml", "schema = 1\nname = \"two\"\ntopology = \"taos\"\n").string();
+  const std::string record =
+      scratch.write("r.csv", "time[s],command.pitch[rad],piston.pitch[m]\n0,0,0\n0.002,0,0\n0.004,0,0\n").string();
+  const std::string common = "explain --out " + scratch.path("found").string() + " " + record + " ";
+  LONGS_EQUAL(2, status_of(common + "--model " + taos + " --lab profile.toml"));
+  expect_message(err, {"--lab", "simplex"});
+  LONGS_EQUAL(2, status_of(common + "--model " + model() + " --exclude other.csv@0-1"));
+  expect_message(err, {"--exclude other.csv", "r.csv"});
+  CHECK(!std::filesystem::exists(scratch.path("found")));
+}
+
 }  // namespace hotfire

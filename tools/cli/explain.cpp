@@ -168,6 +168,16 @@ std::vector<Record> loaded(const std::vector<std::string>& paths, const CandumpO
   return records;
 }
 
+/// The next experiment is looked for on one hydraulic axis alone.
+void require_one_axis(const AnyModel& model) {
+  const auto* one = std::get_if<ModelFile>(&model);
+  if (one == nullptr || !std::holds_alternative<SimplexParameters>(one->parameters)) {
+    throw UsageError(
+        "--lab: the next experiment is simulated for a \"simplex\" model only; leave --lab out, or explain one axis as "
+        "\"simplex\"");
+  }
+}
+
 /// What a report was made of, so that a reviewer can tell that it was this: taken before the search, as the files were read.
 std::vector<std::string> digests_of(const std::vector<std::string>& paths) {
   std::vector<std::string> digests(paths.size());
@@ -191,6 +201,7 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   const std::vector<std::string> record_digests = digests_of(arguments.records);
   const std::vector<std::string> held_out_digests = digests_of(arguments.held_out);
   if (!arguments.lab.empty()) {
+    require_one_axis(model);
     const LabProfile lab = load_profile(arguments.lab);
     options.limits = explain::CommandLimits{lab.lowest_command, lab.highest_command, lab.command_rate};
   }

@@ -230,4 +230,23 @@ TEST(EveryEffect, StaysWhereSettlingPutsIt) {
   });
 }
 
+TEST(EveryEffect, OfAWiperThatSticksTheReadingFollowsAtTheHalfWidthOfItsPlay) {
+  using E = model::UnlistedWiperPlay;
+  const auto params = typical<E, double>(option_named<E>("piston"));
+  StateOf<E, double> state{};
+  E::settle(params, state, model::Signal<double>{0.01, kStep});
+  double reading = 0.0;
+  const auto go = [&](double from, double to) {
+    for (int k = 0; k <= 100; ++k) {
+      reading = E::step(params, state, model::Signal<double>{from + (to - from) * k / 100.0, kStep});
+    }
+  };
+  go(0.01, 0.01 + 0.9 * params.half_width);
+  DOUBLES_EQUAL(0.01, reading, 1e-15);
+  go(0.01 + 0.9 * params.half_width, 0.02);
+  DOUBLES_EQUAL(0.02 - params.half_width, reading, 1e-15);
+  go(0.02, 0.0);
+  DOUBLES_EQUAL(params.half_width, reading, 1e-15);
+}
+
 }  // namespace hotfire::test
