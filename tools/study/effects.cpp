@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "tools/files/error.hpp"
+#include "tools/study/profiles.hpp"
 
 namespace hotfire::study {
 namespace {
