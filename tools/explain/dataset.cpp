@@ -86,6 +86,32 @@ struct ChannelsOf<DirectParameters> {
   using Plant = model::Direct<double>;
 };
 
+/// A record in the channels of the model, of which it marks those that the record has as used.
+Experiment experiment_of(const Record& record, const std::string& input, const std::vector<Exclusion>& exclusions,
+                         Dataset& data) {
+  require_channel(record, input, "the model is driven by it");
+  Experiment experiment;
+  experiment.name = record.name;
+  experiment.start = record.start;
+  experiment.period = record.period;
+  experiment.excluded = excluded_rows(record, exclusions);
+  experiment.input_is_held = is_missing_somewhere(*record.find(input));
+  experiment.input = held_where_missing(*record.find(input), record);
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const Channel* channel = record.find(data.channels[c]);
+    experiment.measured.emplace_back();
+    if (channel != nullptr) {
+      require_values(*channel, experiment);
+      experiment.measured.back() = bridged(channel->values, experiment.excluded);
+      data.used[c] = true;
+    }
+  }
+  if (std::ranges::all_of(experiment.measured, &std::vector<double>::empty)) {
+    require_channel(record, data.channels.front(), "without a measured channel there is nothing to explain");
+  }
+  return experiment;
+}
+
 }  // namespace
 
 std::vector<Block> Experiment::scored() const {
@@ -109,32 +135,9 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
       model.parameters);
   data.used.assign(data.channels.size(), false);
 
-  std::size_t shift = 0;
   for (const Record& record : records) {
-    require_channel(record, input, "the model is driven by it");
-    Experiment experiment;
-    experiment.name = record.name;
-    experiment.start = record.start;
-    experiment.period = record.period;
-    experiment.excluded = excluded_rows(record, exclusions);
-    experiment.input_is_held = is_missing_somewhere(*record.find(input));
-    experiment.input = held_where_missing(*record.find(input), record);
-    bool any = false;
-    for (std::size_t c = 0; c < data.channels.size(); ++c) {
-      const Channel* channel = record.find(data.channels[c]);
-      if (channel != nullptr) {
-        require_values(*channel, experiment);
-      }
-      experiment.measured.push_back(channel != nullptr ? bridged(channel->values, experiment.excluded)
-                                                       : std::vector<double>{});
-      any = any || channel != nullptr;
-      data.used[c] = data.used[c] || channel != nullptr;
-    }
-    if (!any) {
-      require_channel(record, data.channels.front(), "without a measured channel there is nothing to explain");
-    }
-    experiment.held_out = hold_out(record.rows, record.period, shift++);
-    data.experiments.push_back(std::move(experiment));
+    data.experiments.push_back(experiment_of(record, input, exclusions, data));
+    data.experiments.back().held_out = hold_out(record.rows, record.period, data.experiments.size() - 1);
   }
 
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
