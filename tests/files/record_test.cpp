@@ -193,6 +193,20 @@ TEST(Record, may_lack_values_and_rows_in_a_declared_drop_out_and_there_alone) {
   expect_message(test::refusal([&] { load_record(scratch.write("r.csv", text)); }), {":3:", "column command", "nan"});
 }
 
+// Stamped to the millisecond 300 Hz is 3, 3 and 4 ms. Two stretches that touch are one.
+TEST(Record, has_as_many_lost_rows_as_its_rate_asks_for_however_its_times_are_rounded) {
+  std::string text = "time[s],piston[m]\n";
+  for (int row = 0; row < 3000; ++row) {
+    const double time = row / 300.0;
+    if (time < 5.0 || time >= 6.0) {
+      text += std::to_string(std::round(time * 1e3) / 1e3).substr(0, 5) + ",0\n";
+    }
+  }
+  const Record record = load_record(scratch.write("r.csv", text), {DropOut{4.99, 5.5}, DropOut{5.5, 6.01}});
+  LONGS_EQUAL(3000, record.rows);
+  DOUBLES_EQUAL(1.0 / 300.0, record.period, 1e-6);
+}
+
 TEST(Record, beyond_a_drop_out_is_refused_with_the_line_that_the_file_has) {
   const std::string text = "time[s],piston[m]\n0,0\n0.002,0\n0.010,0\n0.012,0\n0.0145,0\n0.0165,0\n";
   expect_message(test::refusal([&] {

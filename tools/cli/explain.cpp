@@ -92,7 +92,7 @@ std::string summary(const nlohmann::json& report, const std::filesystem::path& o
                       "calibrated", "explained");
   text += error_rows(report["channels"]);
   for (const auto& record : report.value("held_out_records", nlohmann::json::array())) {
-    text += fmt::format("\n{}, held out whole\n", record["path"].get<std::string>());
+    text += fmt::format("\n{}, held out\n", record["path"].get<std::string>());
     text += error_rows(record["channels"]);
   }
   for (const auto& effect : report["effects"]) {
@@ -148,6 +148,7 @@ std::string file_name_of(const std::string& path) { return std::filesystem::path
 
 std::vector<explain::Exclusion> exclusions_of(const ExplainArguments& arguments) {
   std::vector<explain::Exclusion> exclusions;
+  exclusions.reserve(arguments.excluded.size());
   for (const std::string& text : arguments.excluded) {
     exclusions.push_back(explain::exclusion_from(text));
   }
@@ -162,6 +163,7 @@ std::vector<explain::Exclusion> exclusions_of(const ExplainArguments& arguments)
 std::vector<Record> loaded(const std::vector<std::string>& paths, const CandumpOptions& candump,
                            const std::vector<explain::Exclusion>& exclusions) {
   std::vector<Record> records;
+  records.reserve(paths.size());
   for (const std::string& path : paths) {
     records.push_back(load_record_or_log(path, candump, explain::drop_outs_of(exclusions, file_name_of(path))));
   }

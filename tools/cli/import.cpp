@@ -41,6 +41,7 @@ void add_import(CLI::App& program) {
   command->callback([options] {
     const ImportMap map = load_import_map(options->map, import_source(options->source, options->dbc));
     std::vector<DropOut> drop_outs;
+    drop_outs.reserve(options->excluded.size());
     for (const std::string& text : options->excluded) {
       const auto drop_out = drop_out_from(text);
       if (!drop_out) {

@@ -135,6 +135,7 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
       model.parameters);
   data.used.assign(data.channels.size(), false);
 
+  data.experiments.reserve(records.size());
   for (const Record& record : records) {
     data.experiments.push_back(experiment_of(record, input, exclusions, data));
     data.experiments.back().held_out = hold_out(record.rows, record.period, data.experiments.size() - 1);

@@ -41,14 +41,18 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
+  const std::vector<Dataset> kept_back = held_out_data(model, options);
   SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
   if (!found.interrupted) {
     options.watch.progress("fitting what was found to all rows");
     fit_to_all_rows(data, options.threads, found);
   }
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
-  if (!options.kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_records_json(model, options, found);
+  if (!kept_back.empty()) {
+    explanation.report["held_out_records"] = held_out_records_json(options, kept_back, found);
+    for (const Dataset& record : kept_back) {
+      warn_of_rows(record, explanation.report["warnings"]);
+    }
   }
   if (found.rival) {
     add_next_experiment(data, *found.rival, found.explained.model, options, explanation);

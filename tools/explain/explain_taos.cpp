@@ -82,11 +82,11 @@ void judge_together(const TaosParameters& declared, unsigned threads, const TwoA
 }
 
 /// How both axes together do on the records that were kept back, as `held_out_records_json`, channels by their axis.
-nlohmann::json held_out_together(const VehicleFile& vehicle, const TaosParameters& declared, const ExplainOptions& options,
-                                 const FoundAxes& found) {
+nlohmann::json held_out_together(const TaosParameters& declared, const ExplainOptions& options,
+                                 std::vector<TwoAxes>& kept_back, const FoundAxes& found) {
   nlohmann::json records = nlohmann::json::array();
-  for (const Record& record : options.kept_back) {
-    TwoAxes axes = axes_of(vehicle, {record}, options.exclusions);
+  for (TwoAxes& axes : kept_back) {
+    const Record& record = options.kept_back[static_cast<std::size_t>(&axes - kept_back.data())];
     std::array<std::vector<std::pair<const char*, Prediction>>, 2> stages;
     for (const auto& [name, stage] : {std::pair("before", &Found::declared), std::pair("calibrated", &Found::calibrated),
                                       std::pair("after", &Found::explained)}) {
@@ -114,6 +114,11 @@ nlohmann::json held_out_together(const VehicleFile& vehicle, const TaosParameter
 
 TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& records, const ExplainOptions& options) {
   TwoAxes axes = axes_of(vehicle, records, options.exclusions);
+  std::vector<TwoAxes> kept_back;
+  kept_back.reserve(options.kept_back.size());
+  for (const Record& record : options.kept_back) {
+    kept_back.push_back(axes_of(vehicle, {record}, options.exclusions));
+  }
   const TaosParameters declared = std::get<TaosParameters>(vehicle.parameters);
   const auto before = run_coupled(declared, axes, options.threads);
   if (!before) {
@@ -155,7 +160,10 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   }
   explanation.report = joined_report(reports);
   if (!options.kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_together(vehicle, declared, options, found);
+    explanation.report["held_out_records"] = held_out_together(declared, options, kept_back, found);
+    for (const TwoAxes& record : kept_back) {
+      warn_of_rows(record[record[0].measured ? 0 : 1].data, explanation.report["warnings"]);
+    }
   }
   TaosParameters plant = together(declared, found, &Found::explained);
   for (std::size_t i = 0; i < axes.size(); ++i) {

@@ -50,23 +50,35 @@ nlohmann::json held_out_record_json(const Record& record, const Dataset& data,
   return {{"path", record.path.string()}, {"rows", record.rows}, {"period", record.period}, {"channels", channels}};
 }
 
+std::vector<Dataset> held_out_data(const ModelFile& model, const ExplainOptions& options) {
+  std::vector<Dataset> data;
+  data.reserve(options.kept_back.size());
+  for (const Record& record : options.kept_back) {
+    data.push_back(make_dataset(model, {record}, options.exclusions));
+    fit_every_row(data.back());
+  }
+  return data;
+}
+
 template <class Family>
-nlohmann::json held_out_records_json(const ModelFile& model, const ExplainOptions& options,
+nlohmann::json held_out_records_json(const ExplainOptions& options, const std::vector<Dataset>& data,
                                      const SearchResult<Family>& found) {
   nlohmann::json records = nlohmann::json::array();
-  const unsigned threads = options.threads;
-  for (const Record& record : options.kept_back) {
-    Dataset data = make_dataset(model, {record}, options.exclusions);
-    fit_every_row(data);
-    records.push_back(held_out_record_json(record, data,
-                                           {{"before", prediction_of(found.declared.model, data, threads)},
-                                            {"calibrated", prediction_of(found.calibrated.model, data, threads)},
-                                            {"after", prediction_of(found.explained.model, data, threads)}}));
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const auto predicted = [&](const Assessed<Family>& stage) {
+      return prediction_of(stage.model, data[i], options.threads);
+    };
+    records.push_back(held_out_record_json(options.kept_back[i], data[i],
+                                           {{"before", predicted(found.declared)},
+                                            {"calibrated", predicted(found.calibrated)},
+                                            {"after", predicted(found.explained)}}));
   }
   return records;
 }
 
-template nlohmann::json held_out_records_json(const ModelFile&, const ExplainOptions&, const SearchResult<SimplexFamily>&);
-template nlohmann::json held_out_records_json(const ModelFile&, const ExplainOptions&, const SearchResult<DirectFamily>&);
+template nlohmann::json held_out_records_json(const ExplainOptions&, const std::vector<Dataset>&,
+                                              const SearchResult<SimplexFamily>&);
+template nlohmann::json held_out_records_json(const ExplainOptions&, const std::vector<Dataset>&,
+                                              const SearchResult<DirectFamily>&);
 
 }  // namespace hotfire::explain

@@ -11,13 +11,16 @@ namespace hotfire::explain {
 /// "rms", "max", "bias" in the channel's unit and "fit_percent".
 nlohmann::json errors_of(const ChannelFit& fit);
 
-/// How the declared, the calibrated and the explained model do on `options.kept_back`: no fit and no choice
-/// has seen a row of them. The explained model is the one of explained.toml, with what was
-/// found to be a fault of the records. A force-driven mass starts as the first rows
-/// say, a sinusoid of unknown law at the phase of the record's own clock. `held_out_records` of docs/report.md. Throws
-/// FileError as `make_dataset`.
+/// The records of `options.kept_back`, a data set each, of which every row that is not excluded is judged. Throws as
+/// `make_dataset`: before a search, so that none is in vain.
+std::vector<Dataset> held_out_data(const ModelFile& model, const ExplainOptions& options);
+
+/// How the declared, the calibrated and the explained model do on `options.kept_back`, which is in `data`: no fit and no
+/// choice has seen a row of it. The explained model is the one of explained.toml, with what was found to be a fault of the
+/// records. A force-driven mass starts as the first rows say, a sinusoid of unknown law at the phase of the record's own
+/// clock. `held_out_records` of docs/report.md. Throws FileError where a model runs away.
 template <class Family>
-nlohmann::json held_out_records_json(const ModelFile& model, const ExplainOptions& options,
+nlohmann::json held_out_records_json(const ExplainOptions& options, const std::vector<Dataset>& data,
                                      const SearchResult<Family>& found);
 
 /// The same of one record and what three models predict of it, by name of the stage: "before", "calibrated", "after". `data`

@@ -162,28 +162,6 @@ json calibration_json(const SearchResult<Family>& found, const std::vector<Estim
   return calibration;
 }
 
-/// Rows that are simulated and not compared.
-void warn_of_rows(const Dataset& data, json& warnings) {
-  for (const Experiment& experiment : data.experiments) {
-    if (experiment.first_scored > 0) {
-      warnings.push_back(fmt::format("{} does not start at rest: its first {:.2f} s are simulated but not compared.",
-                                     experiment.name, static_cast<double>(experiment.first_scored) * experiment.period));
-    }
-  }
-  for (const Experiment& experiment : data.experiments) {
-    for (const Block& block : experiment.excluded) {
-      warnings.push_back(fmt::format("{}: {:.4g} to {:.4g} s are excluded as the user asked: simulated, not compared.",
-                                     experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
-    }
-    if (experiment.input_is_held) {
-      warnings.push_back(fmt::format(
-          "{}: the command is missing in excluded rows and holds there: if it moved, exclude as much more as the "
-          "axis needs to forget it, about a second.",
-          experiment.name));
-    }
-  }
-}
-
 /// Effects that are no fault of the plant.
 void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
   for (const Kept& kept : found) {
@@ -243,6 +221,27 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
 }
 
 }  // namespace
+
+void warn_of_rows(const Dataset& data, json& warnings) {
+  for (const Experiment& experiment : data.experiments) {
+    if (experiment.first_scored > 0) {
+      warnings.push_back(fmt::format("{} does not start at rest: its first {:.2f} s are simulated but not compared.",
+                                     experiment.name, static_cast<double>(experiment.first_scored) * experiment.period));
+    }
+  }
+  for (const Experiment& experiment : data.experiments) {
+    for (const Block& block : experiment.excluded) {
+      warnings.push_back(fmt::format("{}: {:.4g} to {:.4g} s are excluded as the user asked: simulated, not compared.",
+                                     experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
+    }
+    if (experiment.input_is_held) {
+      warnings.push_back(
+          fmt::format("{}: the input is missing in excluded rows and holds there: if it moved, exclude as much more as the "
+                      "axis needs to forget it, about a second.",
+                      experiment.name));
+    }
+  }
+}
 
 template <class Family>
 json report_json(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,

@@ -13,6 +13,9 @@ template <class Family>
 nlohmann::json report_json(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
                            const SearchResult<Family>& found);
 
+/// Warnings of the rows that are simulated and not compared.
+void warn_of_rows(const Dataset& data, nlohmann::json& warnings);
+
 extern template nlohmann::json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&,
                                            const SearchResult<SimplexFamily>&);
 extern template nlohmann::json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&,

@@ -17,6 +17,9 @@ namespace hotfire::explain {
 
 namespace {
 
+/// How many frequencies of a channel's spectrum are tried.
+constexpr std::size_t kFrequencies = 3;
+
 /// Names that go on to the full fit, starts of an effect with several parameters, and the lengths of the fits.
 constexpr std::size_t kSemifinalists = 6;
 /// Behind the first names, one goes on only with this share of the leader's gain, and a law only with this share of its
@@ -67,7 +70,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   evaluator.predict(current.base, current.free, current.u, threads, prediction_);
   current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction_));
   goodness_ = goodness(evaluator.data(), prediction_);
-  frequencies_ = strongest_frequencies(evaluator.data(), prediction_, first_used(), 3);
+  frequencies_ = strongest_frequencies(evaluator.data(), prediction_, first_used(), kFrequencies);
 
   weight_ = weights_of(evaluator, current_.temper);
   prior_.setZero(static_cast<Eigen::Index>(current.free.size()));
@@ -102,13 +105,25 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
 }
 
 template <class Family>
+std::vector<std::vector<double>> Screening<Family>::sharpened_for(const std::vector<Candidate>& candidates) const {
+  const Dataset& data = evaluator_.data();
+  std::vector<std::vector<double>> sharpened(data.channels.size());
+  for (const Candidate& candidate : candidates) {
+    const std::size_t channel = channel_of_sinusoid(candidate);
+    if (is_periodic(candidate) && sharpened[channel].empty()) {
+      sharpened[channel] = sharpened_frequencies(
+          data, prediction_, channel,
+          channel == first_used() ? frequencies_ : strongest_frequencies(data, prediction_, channel, kFrequencies));
+    }
+  }
+  return sharpened;
+}
+
+template <class Family>
 std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate>& candidates, const std::string& stage,
                                                      const Watch& watch) const {
   std::vector<Screened<Family>> screened(candidates.size());
-  const std::vector<double> sharpened =
-      std::any_of(candidates.begin(), candidates.end(), is_periodic)
-          ? sharpened_frequencies(evaluator_.data(), prediction_, first_used(), frequencies_)
-          : frequencies_;
+  const std::vector<std::vector<double>> sharpened = sharpened_for(candidates);
   std::atomic<std::size_t> done{0};
   parallel_for(candidates.size(), threads_, [&](std::size_t i) {
     if (!watch.interrupted()) {
@@ -205,7 +220,8 @@ std::vector<typename Screening<Family>::Start> Screening<Family>::scan(
 }
 
 template <class Family>
-Screened<Family> Screening<Family>::start(const Candidate& candidate, const std::vector<double>& sharpened) const {
+Screened<Family> Screening<Family>::start(const Candidate& candidate,
+                                          const std::vector<std::vector<double>>& sharpened) const {
   const Stopwatch stopwatch;
   Screened<Family> best;
   best.candidate = candidate;
@@ -227,7 +243,8 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate, const std:
       own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
   const std::size_t valleys = one_valley ? 1 : kStarts;
   const std::vector<Start> starts =
-      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(), sharpened)
+      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(),
+                                                                    sharpened[channel_of_sinusoid(candidate)])
                                           : start_points(own, frequencies_));
   // A table starts as nothing, and a frequency has to be met. Of any other law one of the starts is better than nothing, or
   // it is not what is missing.

@@ -63,8 +63,14 @@ class Screening {
   std::size_t first_used() const { return evaluator_.data().used.front() ? 0 : 1; }
   Fitted<Family> with_candidate(const Candidate& candidate) const;
   std::vector<Start> scan(Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const;
-  /// `sharpened`: where a sinusoid starts.
-  Screened<Family> start(const Candidate& candidate, const std::vector<double>& sharpened) const;
+  /// The channel that shows a sinusoid: a sensor's own shows in that sensor alone.
+  std::size_t channel_of_sinusoid(const Candidate& candidate) const {
+    return candidate.name == model::UnlistedRipple::name ? static_cast<std::size_t>(candidate.option) : first_used();
+  }
+  /// Where the sinusoids of the candidates start, by channel.
+  std::vector<std::vector<double>> sharpened_for(const std::vector<Candidate>& candidates) const;
+  /// `sharpened`: where a sinusoid starts, by channel.
+  Screened<Family> start(const Candidate& candidate, const std::vector<std::vector<double>>& sharpened) const;
   void start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
                            const Watch& watch) const;
   /// Fits on from where a candidate stands, as a stage does.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "tools/explain/channel_check.hpp"
 #include "tools/explain/finalists.hpp"
@@ -172,7 +173,8 @@ class Search {
   /// The share of the calibrated model's held-out error that a term of unknown law has to stay below.
   double wanted_of_unlisted() const {
     const double listed = left_by_listed();
-    return (listed > kLittleExplained ? kAdvantageOverLittle : kUnlistedAdvantage) * listed;
+    const bool names_little = !result_.kept.empty() && listed > kLittleExplained;
+    return (names_little ? kAdvantageOverLittle : kUnlistedAdvantage) * listed;
   }
 
   /// Held-out error that the listed effects leave of the calibrated model's.
@@ -260,6 +262,16 @@ class Search {
     compare(trial, with, result_.explained, with.goodness.fitted);
     if (is_supported(trial)) {
       give_law(candidate, {rival.other, std::move(with)}, round, "explains more, with a later effect added, than");
+      for (Trial& alternative : kept->alternatives) {
+        if (label(alternative.candidate) == label(rival.other)) {
+          alternative.decision = std::exchange(kept->trial.decision, "dropped");
+          kept->trial.candidate = rival.kept;
+          std::swap(kept->trial, alternative);
+          break;
+        }
+      }
+      // What tied with the last effect was fitted beside the one that is out now.
+      result_.rival.reset();
       return;
     }
     if (trial.delta_criterion < kTied) {

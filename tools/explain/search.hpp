@@ -18,7 +18,7 @@ struct SearchResult {
   Assessed<Family> explained;
   std::vector<Kept> kept;
   std::vector<Trial> trials;
-  std::optional<Rival<Family>> rival;  ///< of the effect kept last
+  std::optional<Rival<Family>> rival;  ///< of an effect that is kept, the last if that has one
   Intervals profiles;                  ///< of the explained model's parameters whose error is no parabola
   bool searched = true;                ///< effects were looked for
   bool interrupted = false;

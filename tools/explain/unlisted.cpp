@@ -288,7 +288,7 @@ void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& can
             } else {
               const auto parameters_now = Evaluator<Family>::with_values(current.base, current.free, current.u);
               const Extents extents = extents_of<Family>(data, parameters_now);
-              lay_points(table, extents.of(E::site, field.x_name), field.x_name == "rate");
+              lay_points(table, extents.of(E::site, field.x_name), field.x_name.ends_with("rate"));
             }
           }
         }

@@ -11,6 +11,35 @@ namespace hotfire {
 
 namespace {
 
+/// Mean of the intervals that are no gap: of rounded times the median may be a tenth off.
+double period_between_gaps(const std::vector<double>& times) {
+  const double usual = median_interval(times);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t row = 1; row < times.size(); ++row) {
+    const double interval = times[row] - times[row - 1];
+    if (interval < 1.5 * usual) {
+      sum += interval;
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+/// The stretches in their order, those that touch or overlap as one.
+std::vector<DropOut> merged(std::vector<DropOut> drop_outs) {
+  std::sort(drop_outs.begin(), drop_outs.end(), [](const DropOut& a, const DropOut& b) { return a.from < b.from; });
+  std::vector<DropOut> merged;
+  for (const DropOut& out : drop_outs) {
+    if (!merged.empty() && out.from <= merged.back().to) {
+      merged.back().to = std::max(merged.back().to, out.to);
+    } else {
+      merged.push_back(out);
+    }
+  }
+  return merged;
+}
+
 /// Rows that are missing before a row, all within one drop-out; 0 if there is no gap, or not all of it is declared.
 std::size_t lost_before(const std::vector<DropOut>& drop_outs, const std::vector<double>& times, std::size_t row,
                         double period) {
@@ -64,10 +93,11 @@ void put_lost_rows(const std::vector<DropOut>& drop_outs, std::size_t time_colum
   if (drop_outs.empty() || times.size() < 2) {
     return;
   }
-  const double period = median_interval(times);
+  const double period = period_between_gaps(times);
+  const std::vector<DropOut> stretches = merged(drop_outs);
   std::vector<std::vector<double>> whole(columns.size());
   for (std::size_t row = 0; row < times.size(); ++row) {
-    const std::size_t lost = row > 0 ? lost_before(drop_outs, times, row, period) : 0;
+    const std::size_t lost = row > 0 ? lost_before(stretches, times, row, period) : 0;
     for (std::size_t k = 1; k <= lost; ++k) {
       const double share = static_cast<double>(k) / static_cast<double>(lost + 1);
       for (std::size_t c = 0; c < columns.size(); ++c) {

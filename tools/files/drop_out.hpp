@@ -44,8 +44,8 @@ class RowLines {
   std::vector<Lost> lost_;
 };
 
-/// Puts rows of NaN where a gap of the time column lies within a drop-out, as many as the median interval asks for, and says
-/// in `lines` that they have no line. Other gaps stay.
+/// Puts rows of NaN where a gap of the time column lies within a drop-out, as many as the mean of the other intervals asks
+/// for, and says in `lines` that they have no line. Other gaps stay.
 void put_lost_rows(const std::vector<DropOut>& drop_outs, std::size_t time_column, std::vector<std::vector<double>>& columns,
                    RowLines& lines);
 

@@ -61,6 +61,11 @@ ImportSource import_source(const std::filesystem::path& source, const std::files
 Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
                      const std::filesystem::path& dbc, const std::vector<DropOut>& drop_outs) {
   if (import_source(source, dbc) == ImportSource::candump_log) {
+    if (!drop_outs.empty()) {
+      throw UsageError(
+          "--exclude: a log is read frame by frame and has no cells to lack; leave it out, and cut the log where frames are "
+          "lost");
+    }
     const ImportedColumns log = read_candump_columns(source, load_dbc(dbc), map);
     write_columns(log.columns, log.values, 0.0, output);
   } else {
