@@ -30,26 +30,6 @@ std::vector<Block> hold_out(std::size_t rows, double period, std::size_t shift) 
   return held;
 }
 
-/// The rows of `blocks` that are in none of `taken`; both ascending.
-std::vector<Block> without(const std::vector<Block>& blocks, const std::vector<Block>& taken) {
-  std::vector<Block> rest;
-  for (Block block : blocks) {
-    for (const Block& hole : taken) {
-      if (hole.last <= block.first || hole.first >= block.last) {
-        continue;
-      }
-      if (hole.first > block.first) {
-        rest.push_back({block.first, hole.first});
-      }
-      block.first = std::min(block.last, hole.last);
-    }
-    if (block.last > block.first) {
-      rest.push_back(block);
-    }
-  }
-  return rest;
-}
-
 /// Shares the rows of an experiment out between fit and judgement.
 void share_out(Experiment& experiment) {
   std::vector<Block> taken{{0, experiment.first_scored}};

@@ -60,19 +60,36 @@ std::vector<Block> excluded_rows(const Record& record, const std::vector<Exclusi
   return rows;
 }
 
+std::vector<Block> without(const std::vector<Block>& blocks, const std::vector<Block>& taken) {
+  std::vector<Block> rest;
+  for (Block block : blocks) {
+    for (const Block& hole : taken) {
+      if (hole.last <= block.first || hole.first >= block.last) {
+        continue;
+      }
+      if (hole.first > block.first) {
+        rest.push_back({block.first, hole.first});
+      }
+      block.first = std::min(block.last, hole.last);
+    }
+    if (block.last > block.first) {
+      rest.push_back(block);
+    }
+  }
+  return rest;
+}
+
 std::vector<double> bridged(std::vector<double> values, const std::vector<Block>& excluded) {
   const std::size_t rows = values.size();
-  for (std::size_t i = 0; i < excluded.size(); ++i) {
-    const std::size_t first = excluded[i].first;
-    std::size_t last = excluded[i].last;
-    while (i + 1 < excluded.size() && excluded[i + 1].first <= last) {
-      last = std::max(last, excluded[++i].last);
-    }
-    const bool from_start = first == 0;
-    const bool to_end = last >= rows;
+  const std::vector<Block> kept = without({{0, rows}}, excluded);
+  for (std::size_t i = 0; i <= kept.size(); ++i) {
+    const bool from_start = i == 0;
+    const bool to_end = i == kept.size();
+    const std::size_t first = from_start ? 0 : kept[i - 1].last;
+    const std::size_t last = to_end ? rows : kept[i].first;
     const double before = from_start ? (to_end ? 0.0 : values[last]) : values[first - 1];
     const double after = to_end ? before : values[last];
-    for (std::size_t row = first; row < std::min(last, rows); ++row) {
+    for (std::size_t row = first; row < last; ++row) {
       const double share = static_cast<double>(row + 1 - first) / static_cast<double>(last + 1 - first);
       values[row] = before + share * (after - before);
     }
@@ -83,18 +100,10 @@ std::vector<double> bridged(std::vector<double> values, const std::vector<Block>
 std::vector<double> kept_rows(const std::vector<double>& values, const std::vector<Block>& excluded) {
   std::vector<double> kept;
   kept.reserve(values.size());
-  std::size_t next = 0;
-  const auto take_to = [&](std::size_t last) {
-    if (next < last) {
-      kept.insert(kept.end(), values.begin() + static_cast<std::ptrdiff_t>(next),
-                  values.begin() + static_cast<std::ptrdiff_t>(last));
-    }
-  };
-  for (const Block& block : excluded) {
-    take_to(block.first);
-    next = std::max(next, block.last);
+  for (const Block& block : without({{0, values.size()}}, excluded)) {
+    kept.insert(kept.end(), values.begin() + static_cast<std::ptrdiff_t>(block.first),
+                values.begin() + static_cast<std::ptrdiff_t>(block.last));
   }
-  take_to(values.size());
   return kept;
 }
 

@@ -27,6 +27,9 @@ std::vector<DropOut> drop_outs_of(const std::vector<Exclusion>& exclusions, cons
 /// The rows of a record that are excluded, ascending. Throws UsageError if there are none in a stretch.
 std::vector<Block> excluded_rows(const Record& record, const std::vector<Exclusion>& exclusions);
 
+/// The rows of `blocks` that are in none of `taken`; both ascending.
+std::vector<Block> without(const std::vector<Block>& blocks, const std::vector<Block>& taken);
+
 /// A measured channel with a straight line over each excluded stretch: what it read there is not known.
 std::vector<double> bridged(std::vector<double> values, const std::vector<Block>& excluded);
 

@@ -81,18 +81,31 @@ void judge_together(const TaosParameters& declared, unsigned threads, const TwoA
   }
 }
 
+/// The records that were kept back, split into the axes, of which every row that is not excluded is judged.
+std::vector<TwoAxes> held_out_axes(const VehicleFile& vehicle, const ExplainOptions& options) {
+  std::vector<TwoAxes> kept_back;
+  kept_back.reserve(options.kept_back.size());
+  for (const Record& record : options.kept_back) {
+    kept_back.push_back(axes_of(vehicle, {record}, options.exclusions));
+    for (AxisOfTwo& axis : kept_back.back()) {
+      fit_every_row(axis.data);
+    }
+  }
+  return kept_back;
+}
+
 /// How both axes together do on the records that were kept back, as `held_out_records_json`, channels by their axis.
-nlohmann::json held_out_together(const TaosParameters& declared, const ExplainOptions& options,
-                                 std::vector<TwoAxes>& kept_back, const FoundAxes& found) {
+nlohmann::json held_out_together(const TaosParameters& declared, unsigned threads, const std::vector<TwoAxes>& kept_back,
+                                 const FoundAxes& found) {
   nlohmann::json records = nlohmann::json::array();
-  for (TwoAxes& axes : kept_back) {
-    const Record& record = options.kept_back[static_cast<std::size_t>(&axes - kept_back.data())];
+  for (const TwoAxes& axes : kept_back) {
     std::array<std::vector<std::pair<const char*, Prediction>>, 2> stages;
     for (const auto& [name, stage] : {std::pair("before", &Found::declared), std::pair("calibrated", &Found::calibrated),
                                       std::pair("after", &Found::explained)}) {
-      const auto run = run_coupled(together(declared, found, stage), axes, options.threads);
+      const auto run = run_coupled(together(declared, found, stage), axes, threads);
       if (!run) {
-        throw FileError(fmt::format("{}: a model runs away on this record, which was held out", record.path.string()));
+        throw FileError(fmt::format("{}: a model runs away on this record, which was held out",
+                                    axes.front().records.front().path.string()));
       }
       for (std::size_t i = 0; i < axes.size(); ++i) {
         stages[i].emplace_back(name, run->prediction[i]);
@@ -101,7 +114,6 @@ nlohmann::json held_out_together(const TaosParameters& declared, const ExplainOp
     std::vector<AxisReport> reports;
     for (std::size_t i = 0; i < axes.size(); ++i) {
       if (axes[i].measured) {
-        fit_every_row(axes[i].data);
         reports.push_back({axes[i].name, held_out_record_json(axes[i].records.front(), axes[i].data, stages[i])});
       }
     }
@@ -114,11 +126,7 @@ nlohmann::json held_out_together(const TaosParameters& declared, const ExplainOp
 
 TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& records, const ExplainOptions& options) {
   TwoAxes axes = axes_of(vehicle, records, options.exclusions);
-  std::vector<TwoAxes> kept_back;
-  kept_back.reserve(options.kept_back.size());
-  for (const Record& record : options.kept_back) {
-    kept_back.push_back(axes_of(vehicle, {record}, options.exclusions));
-  }
+  const std::vector<TwoAxes> kept_back = held_out_axes(vehicle, options);
   const TaosParameters declared = std::get<TaosParameters>(vehicle.parameters);
   const auto before = run_coupled(declared, axes, options.threads);
   if (!before) {
@@ -160,7 +168,7 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   }
   explanation.report = joined_report(reports);
   if (!options.kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_together(declared, options, kept_back, found);
+    explanation.report["held_out_records"] = held_out_together(declared, options.threads, kept_back, found);
     for (const TwoAxes& record : kept_back) {
       warn_of_rows(record[record[0].measured ? 0 : 1].data, explanation.report["warnings"]);
     }

@@ -264,9 +264,10 @@ class Search {
       give_law(candidate, {rival.other, std::move(with)}, round, "explains more, with a later effect added, than");
       for (Trial& alternative : kept->alternatives) {
         if (label(alternative.candidate) == label(rival.other)) {
-          alternative.decision = std::exchange(kept->trial.decision, "dropped");
-          kept->trial.candidate = rival.kept;
           std::swap(kept->trial, alternative);
+          kept->trial.decision = "kept";
+          alternative.decision = "dropped";
+          alternative.candidate = rival.kept;
           break;
         }
       }
