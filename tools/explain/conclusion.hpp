@@ -2,6 +2,7 @@
 
 #include "tools/explain/profile.hpp"
 #include "tools/explain/search.hpp"
+#include "tools/explain/table_points.hpp"
 #include "tools/explain/verdict.hpp"
 #include "tools/report/report_page.hpp"
 
@@ -51,12 +52,18 @@ PlainParameters<Family> plant_of(const SearchResult<Family>& found) {
 }
 
 /// The explained model fitted once more, to the rows that were held out as well: what the rig runs has seen all that there
-/// is, with the intervals that its profile gives. The errors of `found` stay those of the fit that had not seen them.
+/// is, its tables reaching over them, with the intervals that its profile gives. The errors of `found` stay those of the fit
+/// that had not seen them.
 template <class Family>
 void fit_to_all_rows(Dataset data, unsigned threads, SearchResult<Family>& found) {
   fit_every_row(data);
   const Evaluator<Family> whole(data, Resolution::fine);
-  const Assessed<Family> again = refined(whole, whole, threads, found.explained.model, kAllRows);
+  Fitted<Family> start = found.explained.model;
+  for (const Kept& kept : found.kept) {
+    start = reaching_over(data, start, kept.trial.candidate);
+  }
+  const bool reaches_further = start.free.size() > found.explained.model.free.size();
+  const Assessed<Family> again = refined(whole, whole, threads, std::move(start), reaches_further ? kFinal : kAllRows);
   if (again.good()) {
     found.explained.model = again.model;
     found.profiles = profile_intervals(whole, again.model, threads);

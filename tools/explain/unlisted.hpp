@@ -9,14 +9,11 @@
 
 namespace hotfire::explain {
 
-/// Every dependence of every unlisted term of the family that the records can show, with its table's points laid over the
-/// range that `current` runs through on them: evenly over a position, a pressure or time; closer about zero over a rate,
-/// where friction bends; over a sensor's own reading where what `current` leaves there bends, since a sensor shows its error
-/// itself. All ordinates are zero.
+/// Every dependence of every unlisted term of the family that the records can show.
 template <class Family>
 std::vector<Candidate> unlisted_candidates(const Dataset& data);
 
-/// Activates an unlisted candidate in parameters that hold the effects of `current`.
+/// Activates an unlisted candidate in parameters that hold the effects of `current`, with its table as `lay_table` lays it.
 template <class Family>
 void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& candidate, const Dataset& data,
                        const Fitted<Family>& current);
