@@ -336,6 +336,7 @@ class Axis {
     state.y(kWashout) = state.y(kPressure);
     evaluate(state, at_rest(state), around, Keep::no);
     state.y(kOpening) = valve.position_gain * (state.inputs(kCommand) - state.y(kPiston)) + state.inputs(kValveCommand);
+    settle<Site::valve>(parameters_.effects, state.effects, Signal<S>{state.y(kOpening), h_});
     settle<Site::flow>(parameters_.effects, state.effects,
                        hydraulics(state, state.y(kOpening), state.y(kPressure), Keep::no));
     evaluate(state, at_rest(state), around, Keep::no);

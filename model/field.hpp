@@ -11,7 +11,7 @@ namespace hotfire::model {
 ///
 /// `unit` is a UDUNITS-2 string ("1" for none, "" for a unit that follows the record's own). Bounds are inclusive.
 /// `typical` is where a search starts: inside the region where the parameter acts, because a neutral value has no
-/// gradient. `options` has one bit for each option (law, channel) of the owner that uses the field.
+/// gradient; 0: no search moves it. `options` has one bit for each option (law, channel) of the owner that uses the field.
 template <class Owner>
 struct Field {
   std::string_view name;
@@ -38,6 +38,12 @@ struct TableField {
   unsigned options = ~0U;
   double y_typical = 0.0;  ///< size of what a fit looks for; 0 where no fit moves the points
 };
+
+/// True if a search moves the field under an option: one without a typical value it does not.
+template <class Owner>
+constexpr bool is_searched(const Field<Owner>& field, int option) {
+  return field.typical != 0.0 && (field.options >> option & 1U) != 0;
+}
 
 /// A bounded field whose range does not include negative values is searched in logarithms, others linearly.
 template <class Owner>

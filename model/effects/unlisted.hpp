@@ -62,11 +62,18 @@ S force_at_rate(const UnlistedTable<S>& table, const Motion<S>& input) noexcept 
   return force;
 }
 
-/// A sinusoid of the record's time; its phase is the clock's.
-template <class S>
-S periodic(const S& amplitude, const S& frequency, const S& time) noexcept {
+/// A sinusoid of the record's time.
+template <class Params>
+typename Params::Scalar periodic(const Params& params, const typename Params::Scalar& amplitude,
+                                 const typename Params::Scalar& time) noexcept {
   using std::sin;
-  return amplitude * sin(2.0 * std::numbers::pi * frequency * time);
+  return amplitude * sin(2.0 * std::numbers::pi * params.frequency * time + params.phase);
+}
+
+/// The phase of such a sinusoid at time zero: found from the records' own, when they agree.
+template <class Params>
+constexpr Field<Params> phase_field(unsigned options) {
+  return {"phase", "rad", -10.0, 10.0, 0.0, "phase of the sinusoid at time zero of a record", &Params::phase, options};
 }
 
 }  // namespace unlisted

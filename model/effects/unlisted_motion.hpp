@@ -43,6 +43,7 @@ struct UnlistedMotion {
     S stiffness{Names::typical_stiffness};
     S frequency{1.0};
     S amplitude{0.0};
+    S phase{0.0};
     UnlistedTable<S> table{};
     static constexpr auto fields() {
       return std::array{
@@ -50,7 +51,8 @@ struct UnlistedMotion {
                         "stiffness of the friction before it slides", &Params::stiffness, 0b10101000100},
           Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100000},
           Field<Params>{"amplitude", Names::unit, 0.0, 1e12, Names::typical, "amplitude of the sinusoid", &Params::amplitude,
-                        0b100000}};
+                        0b100000},
+          unlisted::phase_field<Params>(0b100000)};
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
@@ -113,7 +115,7 @@ struct UnlistedMotion {
       case 4:
         return unlisted::value_at<S>(params.table, input.time);
       case 5:
-        return unlisted::periodic<S>(params.amplitude, params.frequency, input.time);
+        return unlisted::periodic(params, params.amplitude, input.time);
       case 6:
         return friction(params, state, input, S(input.position * sign_of(input.position)));
       case 7:

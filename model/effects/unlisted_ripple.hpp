@@ -19,11 +19,13 @@ struct UnlistedRipple {
     S frequency{1.0};
     S amplitude{0.0};
     S angle{0.0};
+    S phase{0.0};
     static constexpr auto fields() {
       return std::array{
           Field<Params>{"frequency", "Hz", 1e-3, 1e3, 50.0, "frequency of the sinusoid", &Params::frequency, 0b11},
           Field<Params>{"amplitude", "m", 0.0, 1.0, 1e-4, "amplitude of the sinusoid", &Params::amplitude, 0b01},
-          Field<Params>{"angle", "rad", 0.0, 1.0, 1e-4, "amplitude of the sinusoid", &Params::angle, 0b10}};
+          Field<Params>{"angle", "rad", 0.0, 1.0, 1e-4, "amplitude of the sinusoid", &Params::angle, 0b10},
+          unlisted::phase_field<Params>(0b11)};
     }
   };
 
@@ -32,8 +34,7 @@ struct UnlistedRipple {
 
   template <class S>
   static S step(const Params<S>& params, State<S>&, const Signal<S>& input) noexcept {
-    return input.value +
-           unlisted::periodic<S>(params.option == 0 ? params.amplitude : params.angle, params.frequency, input.time);
+    return input.value + unlisted::periodic(params, params.option == 0 ? params.amplitude : params.angle, input.time);
   }
 };
 

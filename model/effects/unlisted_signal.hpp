@@ -1,13 +1,16 @@
 #pragma once
 
+#include <algorithm>
+
 #include "model/delay_line.hpp"
+#include "model/effects/rate_limit.hpp"
 #include "model/effects/unlisted.hpp"
 #include "model/scalar.hpp"
 
 namespace hotfire::model {
 
 /// Command or valve command with a term added: a table over the signal's own value or over time, or a sinusoid of time; or
-/// a command that comes late by a table over its distance from zero.
+/// a command that comes late by a table over its distance from zero, or through a first-order lag.
 template <Site at>
 struct UnlistedSignal {
   using Names = UnlistedNames<at>;
@@ -17,7 +20,7 @@ struct UnlistedSignal {
   static constexpr bool can_be_late = at == Site::command;
   static constexpr auto options = [] {
     if constexpr (can_be_late) {
-      return std::array<std::string_view, 4>{"value", "time", "periodic", "delay_along_distance"};
+      return std::array<std::string_view, 5>{"value", "time", "periodic", "delay_along_distance", "lag"};
     } else {
       return std::array<std::string_view, 3>{"value", "time", "periodic"};
     }
@@ -30,12 +33,20 @@ struct UnlistedSignal {
     int option = 0;
     S frequency{1.0};
     S amplitude{0.0};
+    S phase{0.0};
+    S lag_time{0.0};
     UnlistedTable<S> table{};
     static constexpr auto fields() {
-      return std::array{
+      constexpr std::array kAll{
           Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100},
           Field<Params>{"amplitude", Names::unit, 0.0, Names::largest, Names::typical, "amplitude of the sinusoid",
-                        &Params::amplitude, 0b100}};
+                        &Params::amplitude, 0b100},
+          unlisted::phase_field<Params>(0b100),
+          Field<Params>{"lag_time", "s", 0.0, 10.0, 5e-3, "time constant of the command's lag", &Params::lag_time,
+                        0b10000}};
+      std::array<Field<Params>, can_be_late ? kAll.size() : kAll.size() - 1> own{};
+      std::copy_n(kAll.begin(), own.size(), own.begin());
+      return own;
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
@@ -75,6 +86,7 @@ struct UnlistedSignal {
   template <class S>
   struct State {
     [[no_unique_address]] std::conditional_t<can_be_late, DelayLine<S, kCommandMemory>, NoMemory<S>> earlier{};
+    S lagged{0.0};
   };
 
   template <class S>
@@ -82,6 +94,7 @@ struct UnlistedSignal {
     if constexpr (can_be_late) {
       state.earlier.fill(input.value);
     }
+    state.lagged = input.value;
   }
 
   template <class S>
@@ -92,6 +105,9 @@ struct UnlistedSignal {
         const S delay = unlisted::value_at<S>(params.table, distance);
         return state.earlier.pass(input.value, value_of(delay) < 0.0 ? S{0.0} : delay, input.h);
       }
+      if (params.option == 4) {
+        return lagged(state, input, params.lag_time);
+      }
     }
     switch (params.option) {
       case 0:
@@ -99,26 +115,41 @@ struct UnlistedSignal {
       case 1:
         return input.value + unlisted::value_at<S>(params.table, input.time);
       default:
-        return input.value + unlisted::periodic<S>(params.amplitude, params.frequency, input.time);
+        return input.value + unlisted::periodic(params, params.amplitude, input.time);
     }
+  }
+
+ private:
+  /// What follows the signal with a time constant, mean over a step in which the signal is held.
+  template <class S>
+  static S lagged(State<S>& state, const Signal<S>& input, const S& time) noexcept {
+    const S behind = state.lagged - input.value;
+    const S left = fading_exponential<S>(input.h / time);
+    state.lagged = input.value + behind * left;
+    return input.value + behind * (1.0 - left) * (time / input.h);
   }
 };
 
-/// What the spool opens: a table over the spool position added to it, or a gain that drifts, 1 + gain(t). A term added over
-/// time is the valve command's: the spool follows it too fast to tell.
+/// What the spool opens: a table over the spool position added to it, a gain that drifts, 1 + gain(t), or a spool that can
+/// only go so fast (the limit of `rate_limit`, elsewhere). A term added over time is the valve command's: the spool follows
+/// it too fast to tell.
 struct UnlistedOpening {
   static constexpr std::string_view name = "unlisted_valve";
   static constexpr Site site = Site::valve;
   static constexpr bool is_unlisted = true;
-  static constexpr std::array<std::string_view, 2> options{"value", "gain_along_time"};
+  static constexpr std::array<std::string_view, 3> options{"value", "gain_along_time", "slew"};
   static constexpr std::string_view option_key = "depends_on";
 
   template <class S>
   struct Params {
     using Scalar = S;
     int option = 0;
+    S slew_rate{RateLimit::kNoLimit};
     UnlistedTable<S> table{};
-    static constexpr auto fields() { return std::array<Field<Params>, 0>{}; }
+    static constexpr auto fields() {
+      return std::array{Field<Params>{"slew_rate", "1/s", 1e-3, RateLimit::kNoLimit, 10.0, "largest rate of the spool",
+                                      &Params::slew_rate, 0b100}};
+    }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
       return std::array{T{"value", "1", "added_at_value", "1", -10.0, 10.0, "what is added at a spool position",
@@ -129,10 +160,20 @@ struct UnlistedOpening {
   };
 
   template <class S>
-  struct State {};
+  struct State {
+    RateLimit::State<S> slewed{};
+  };
 
   template <class S>
-  static S step(const Params<S>& params, State<S>&, const Signal<S>& input) noexcept {
+  static void settle(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
+    RateLimit::settle<S>({0, params.slew_rate}, state.slewed, input);
+  }
+
+  template <class S>
+  static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
+    if (params.option == 2) {
+      return RateLimit::step<S>({0, params.slew_rate}, state.slewed, input);
+    }
     return params.option == 0 ? S(input.value + unlisted::value_at<S>(params.table, input.value))
                               : S(input.value * (1.0 + unlisted::value_at<S>(params.table, input.time)));
   }

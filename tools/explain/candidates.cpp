@@ -186,7 +186,7 @@ std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base
   std::vector<FreeParameter> free;
   std::size_t index = 0;
   model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
-    if (key.is_effect && key.effect_index == candidate.effect && (field.options >> candidate.option & 1U) != 0) {
+    if (key.is_effect && key.effect_index == candidate.effect && model::is_searched(field, candidate.option)) {
       FreeParameter parameter;
       parameter.index = index;
       parameter.key = "effects." + std::string(key.section) + "." + std::string(field.name);

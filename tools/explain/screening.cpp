@@ -8,6 +8,7 @@
 #include <span>
 
 #include "tools/explain/parallel.hpp"
+#include "tools/explain/periodic.hpp"
 #include "tools/explain/spectrum.hpp"
 #include "tools/explain/stopwatch.hpp"
 #include "tools/explain/trial.hpp"

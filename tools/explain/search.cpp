@@ -163,10 +163,12 @@ class Search {
     }
   }
 
-  /// True if more than noise is left, and so much of it that a term of unknown law could have the advantage that it needs.
+  /// True if more than noise is left, or less by declared parameters that stand in for something, and so much of it that a
+  /// term of unknown law could have the advantage that it needs.
   bool is_worth_a_table() const {
     return !reaches_noise(data_, result_.explained) &&
-           excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise &&
+           (excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise ||
+            !is_within_tolerances(result_.explained.model)) &&
            least_held_out_ratio(result_.explained, result_.calibrated) < wanted_of_unlisted();
   }
 

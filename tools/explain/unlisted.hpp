@@ -26,15 +26,4 @@ bool is_unlisted(const Candidate& candidate);
 template <class Family>
 std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, const Candidate& candidate);
 
-/// True if the candidate is a sinusoid of time, whose phase is each record's own.
-bool is_periodic(const Candidate& candidate);
-
-/// The clock of every record at its first row, as free parameters: the phase of a sinusoid.
-std::vector<FreeParameter> clocks(const Dataset& data);
-
-/// Starts for a sinusoid: at each of the frequencies, with the clock of every record at the best of six phases.
-template <class Family>
-std::vector<std::vector<double>> periodic_starts(const Evaluator<Family>& evaluator, const Fitted<Family>& with_candidate,
-                                                 std::size_t own_first, const std::vector<double>& frequencies);
-
 }  // namespace hotfire::explain

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include "tools/explain/finalists.hpp"
+#include "tools/explain/periodic.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
@@ -16,6 +21,24 @@ template <class Family>
 void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<Family>& calibrated) {
   compare(trial, with, calibrated, with.goodness.fitted);
   trial.reason = fmt::format("leaves {:.1f} % of the calibrated model's held-out error", 100.0 * trial.held_out_ratio);
+}
+
+/// A signal that falls by less than this share of its range where it should rise is flat, as in a dead band.
+constexpr double kFlat = 0.05;
+
+/// True if a term on a signal makes it fall where it is asked to rise. No amplifier and no valve does: such a table imitates
+/// something that it does not depend on, and an axis that meets it beyond these records sticks where it falls.
+template <class Family>
+bool falls_as_it_rises(const Fitted<Family>& model, const Candidate& candidate) {
+  const auto table = table_of<Family>(Evaluator<Family>::with_values(model.base, model.free, model.u), candidate);
+  if (!table || table->x_name != "value") {
+    return false;
+  }
+  std::vector<double> signal;
+  std::ranges::transform(table->x, table->y, std::back_inserter(signal), std::plus<>());
+  const auto [low, high] = std::ranges::minmax(signal);
+  const double flat = kFlat * (high - low);
+  return std::ranges::adjacent_find(signal, [&](double here, double next) { return next < here - flat; }) != signal.end();
 }
 
 }  // namespace
@@ -43,7 +66,9 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
       Assessed<Family> finalist = refiner.of_screened(s.fitted, around.u);
       if (finalist.good()) {
         compare_and_say(trial, finalist, calibrated);
-        if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
+        if (falls_as_it_rises(finalist.model, s.candidate)) {
+          trial.reason += ", but by a signal that falls where it should rise";
+        } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
           result.model = std::move(finalist);
         }
@@ -52,10 +77,18 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
     result.trials.push_back(std::move(trial));
   }
   if (result.best) {
+    Trial& best = result.trials[*result.best];
     Assessed<Family> settled = refiner.settled(result.model.model);
     if (settled.good()) {
-      compare_and_say(result.trials[*result.best], settled, calibrated);
+      compare_and_say(best, settled, calibrated);
       result.model = std::move(settled);
+    }
+    if (is_periodic(best.candidate)) {
+      Assessed<Family> common = refiner.settled(with_common_phase(data, result.model.model, best.candidate));
+      if (common.good() && criterion_change(common, result.model, result.model.goodness.fitted) <= 0.0) {
+        compare_and_say(best, common, calibrated);
+        result.model = std::move(common);
+      }
     }
   }
   return result;

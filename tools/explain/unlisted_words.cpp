@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/explain/periodic.hpp"
 #include "tools/explain/unlisted.hpp"
 
 namespace hotfire::explain {
@@ -82,6 +83,16 @@ std::string law_in_words(const Candidate& candidate) {
   if (candidate.option_name == "deflection_rate") {
     return "a damper beside the load spring: a further spring that relaxes with one time constant, which slow motion does "
            "not meet";
+  }
+  if (candidate.option_name == "lag") {
+    return "a command that goes through a first-order lag before it acts: later and, where it is fast, smaller";
+  }
+  if (candidate.option_name == "slew") {
+    return "a spool that goes no faster than so, however much is asked of it";
+  }
+  if (candidate.option_name == "slip") {
+    return "a joint beside the load spring that sticks, and slips once it is stretched so far: a loop between force and "
+           "deflection whose width does not depend on how fast it is run through";
   }
   if (candidate.name == model::UnlistedWiperPlay::name) {
     return "a reading that stays where it is until the motion has gone on by a play: a wiper that sticks, a slack linkage";

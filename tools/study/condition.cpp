@@ -26,6 +26,7 @@ constexpr std::array kHard{
     Condition{.name = "coloured-noise", .noise_corner = 20.0},
     Condition{.name = "clock-offset", .engine_late = 2},
     Condition{.name = "mis-scaled", .engine_error = 0.05},
+    Condition{.name = "mis-scaled-command", .command_error = -0.1},
     Condition{.name = "drop-outs", .drop_outs = 3},
 };
 
@@ -65,7 +66,7 @@ std::string_view Condition::fault() const {
   if (engine_late != 0) {
     return "sensor_delay";
   }
-  return engine_error != 0.0 ? "sensor_scale" : "";
+  return engine_error != 0.0 ? "sensor_scale" : command_error != 0.0 ? "command_scale" : "";
 }
 
 std::span<const Condition> hard_conditions() { return kHard; }

@@ -16,16 +16,17 @@ struct Condition {
 
   std::string_view name;
   Records records = Records::three;
-  double period = kSample;    ///< of the rows [s]; a command is held as long, or for `kSample` if that is longer
-  double command_size = 1.0;  ///< times the usual
-  double cut = 0.0;           ///< of each record's start that is not given [s]: what is left starts in motion
-  double loop_gain = 0.0;     ///< command = asked + loop_gain (asked - reading of the engine)
-  double noise_corner = 0.0;  ///< of noise that went through a first-order lag [Hz], as large as the usual; 0: white
-  int engine_late = 0;        ///< rows by which the clock of the engine's channel is late
-  double engine_error = 0.0;  ///< relative error of that channel's scale
-  int drop_outs = 0;          ///< in each record, declared by the user
+  double period = kSample;     ///< of the rows [s]; a command is held as long, or for `kSample` if that is longer
+  double command_size = 1.0;   ///< times the usual
+  double cut = 0.0;            ///< of each record's start that is not given [s]: what is left starts in motion
+  double loop_gain = 0.0;      ///< command = asked + loop_gain (asked - reading of the engine)
+  double noise_corner = 0.0;   ///< of noise that went through a first-order lag [Hz], as large as the usual; 0: white
+  int engine_late = 0;         ///< rows by which the clock of the engine's channel is late
+  double engine_error = 0.0;   ///< relative error of that channel's scale
+  double command_error = 0.0;  ///< ... and of the command's
+  int drop_outs = 0;           ///< in each record, declared by the user
 
-  /// The listed effect that a fault of the engine's channel is to be named as; empty if it has none.
+  /// The effect that a fault of a channel is to be named as; empty if it has none.
   std::string_view fault() const;
 };
 

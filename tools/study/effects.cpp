@@ -178,6 +178,17 @@ void plan_creep(Plan& plan, Random& random, std::uint64_t) {
   plan.axis.unlisted.creep_time = plan.values["time_constant"] = random.log_uniform(0.3, 2.0);
 }
 
+/// A joint that carries a part of what the spring does until it slips.
+void plan_joint_slip(Plan& plan, Random& random, std::uint64_t) {
+  const double level = plan.values["slip_force"] = random.log_uniform(2e3, 8e3);
+  plan.axis.unlisted.joint = {level, plan.values["stiffness"] = random.log_uniform(1e7, 4e7), 1.0, 1.0, 1e7};
+}
+
+void plan_engine_hum(Plan& plan, Random& random, std::uint64_t) {
+  plan.axis.unlisted.hum = plan.values["amplitude"] = random.log_uniform(4e-4, 2e-3);
+  plan.axis.unlisted.hum_frequency = plan.values["frequency"] = random.uniform(20.0, 120.0);
+}
+
 void plan_supply_sag(Plan& plan, Random& random, std::uint64_t) {
   // A fifth to a half of the supply at half of the rated flow.
   plan.axis.unlisted.supply_droop = plan.values["droop"] = random.uniform(0.4, 1.0) * 20.684e6 / 3.155e-3;
@@ -235,7 +246,21 @@ constexpr std::array kUnlisted{
                   [](Plan& p, Random& r, std::uint64_t) {
                     p.axis.unlisted.spring_damping = p.values["damping"] = r.log_uniform(5e4, 5e5);
                   }},
+    StudiedEffect{"spring_drift", "load_spring|structure",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.spring_drift = p.values["rate"] = r.sign() * r.uniform(3e-3, 8e-3);
+                  }},
+    StudiedEffect{"joint_slip", "load_spring|structure", plan_joint_slip},
+    StudiedEffect{"orifice_damping", "piston",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.orifice_damping = p.values["damping"] = r.log_uniform(5e5, 5e6);
+                  }},
     StudiedEffect{"track_wear", "sensor.piston|sensor", plan_track_wear},
+    StudiedEffect{"wiper_play", "sensor.piston|sensor",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.wiper_play = p.values["half_width"] = r.log_uniform(5e-5, 3e-4);
+                  }},
+    StudiedEffect{"engine_hum", "sensor.engine|sensor", plan_engine_hum},
     // A shifted null of the torque motor is a shifted command, K_e R beta_c, and a shifted spool.
     StudiedEffect{"null_drift", "valve_command|command|valve",
                   [](Plan& p, Random& r, std::uint64_t) {
@@ -247,6 +272,22 @@ constexpr std::array kUnlisted{
                   }},
     StudiedEffect{"friction_drift", "engine_torque", plan_friction_drift, "gimbal_friction"},
     StudiedEffect{"supply_sag", "flow|valve", plan_supply_sag},
+    StudiedEffect{"relief_valve", "flow|pressure",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.relief_from = p.values["from"] = r.log_uniform(5e5, 1.5e6);
+                    p.axis.unlisted.relief = p.values["flow_per_pressure"] = r.log_uniform(1e-10, 2e-9);
+                  }},
+    StudiedEffect{
+        "spool_slew", "valve|valve_command|flow",
+        [](Plan& p, Random& r, std::uint64_t) { p.axis.unlisted.slew = p.values["rate"] = r.log_uniform(1.0, 40.0); }},
+    StudiedEffect{"null_offset", "valve_command|command|valve",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.null_offset = p.values["offset"] = r.sign() * r.uniform(5e-3, 5e-2);
+                  }},
+    StudiedEffect{"command_lag", "command",
+                  [](Plan& p, Random& r, std::uint64_t) {
+                    p.axis.unlisted.command_lag = p.values["time_constant"] = r.log_uniform(3e-3, 2e-2);
+                  }},
     StudiedEffect{"amplitude_dead_time", "command",
                   [](Plan& p, Random& r, std::uint64_t) {
                     p.axis.unlisted.dead_time = p.values["delay_per_angle"] = r.uniform(0.1, 0.4) / kDegree * 0.01;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kNoisePart = 4;
 constexpr std::uint64_t kControllerPart = 5;
 constexpr std::uint64_t kDropOutPart = 6;
-/// The channel that a controller reads and that a condition's faults are in.
+/// The channel that a controller reads and that most faults of a condition are in.
 constexpr std::size_t kEngine = 1;
 
 Record record_of(const std::string& name, double period, const std::vector<double>& commands, const ReferenceRows& rows,
@@ -41,6 +41,9 @@ void add_fault(const Condition& condition, Record& record) {
   std::vector<double>& engine = readings(record, kEngine);
   for (double& value : engine) {
     value *= 1.0 + condition.engine_error;
+  }
+  for (double& value : record.channels.front().values) {
+    value *= 1.0 + condition.command_error;
   }
   // Every record starts at rest.
   std::rotate(engine.rbegin(), engine.rbegin() + condition.engine_late, engine.rend());

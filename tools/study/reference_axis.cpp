@@ -155,7 +155,7 @@ std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& ax
     }
     integrator.advance(settling + static_cast<double>(i + 1) * sample);
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      rows[axis].push_back(readings(*axes[axis], integrator.state(axis)));
+      rows[axis].push_back(readings(*axes[axis], integrator.time() - settling, integrator.state(axis)));
     }
   }
   if (evaluations != nullptr) {

@@ -118,19 +118,27 @@ struct ReferenceAxis {
 
   // In no list of effects.
   struct Unlisted {
-    double dead_time = 0.0;           ///< delay per size of the held command [s/rad]
-    double null_drift = 0.0;          ///< rate of the torque motor's null [1/s], from the first row on
-    double gain_drift = 0.0;          ///< opening = x_v (1 + gain_drift t) [1/s], from the first row on
-    double flow_curvature = 0.0;      ///< opening = x_v (1 + flow_curvature x_v^2)
-    double supply_droop = 0.0;        ///< supply pressure lost per flow [Pa s/m^3]
-    double supply_recovery = 0.0;     ///< time constant of the supply [s]
-    double aeration = 0.0;            ///< share of the bulk modulus lost at no load pressure
-    double aeration_pressure = 1.0;   ///< load pressure over which it comes back [Pa]
+    double dead_time = 0.0;    ///< delay per size of the held command [s/rad]
+    double command_lag = 0.0;  ///< first-order, of the command [s]
+    double null_offset = 0.0;  ///< of the torque motor [1]
+    double null_drift = 0.0;   ///< rate of the torque motor's null [1/s], from the first row on
+    double gain_drift = 0.0;   ///< opening = x_v (1 + gain_drift t) [1/s], from the first row on
+    double slew = std::numeric_limits<double>::infinity();  ///< largest rate of the spool [1/s]
+    double relief_from = 0.0;                               ///< load pressure beyond which a valve across it opens [Pa]
+    double relief = 0.0;                                    ///< its flow per pressure [m^3/(s Pa)]
+    double flow_curvature = 0.0;                            ///< opening = x_v (1 + flow_curvature x_v^2)
+    double supply_droop = 0.0;                              ///< supply pressure lost per flow [Pa s/m^3]
+    double supply_recovery = 0.0;                           ///< time constant of the supply [s]
+    double aeration = 0.0;                                  ///< share of the bulk modulus lost at no load pressure
+    double aeration_pressure = 1.0;                         ///< load pressure over which it comes back [Pa]
     double cushion = 0.0;             ///< further piston damping per distance beyond `cushion_from` [N s/m^2]
     double cushion_from = 0.0;        ///< [m]
     double creep_stiffness = 0.0;     ///< of the part of the load spring that creeps [N/m]
     double creep_time = 1.0;          ///< [s]
     double spring_damping = 0.0;      ///< of the load spring, in parallel with it [N s/m]
+    double spring_drift = 0.0;        ///< the load spring's force is k d (1 + spring_drift t) [1/s], from the first row on
+    Slip joint;                       ///< a joint beside the load spring that sticks, then slips, over the deflection [N]
+    double orifice_damping = 0.0;     ///< of the piston, orifice_damping v |v| [N s^2/m^2]
     double friction_growth = 0.0;     ///< the bristle's level is level (1 + friction_growth beta^2) [1/rad^2]
     double friction_drift = 0.0;      ///< ... and level (1 + friction_drift t) [1/s], from the first row on
     double seal_squeeze = 0.0;        ///< the seal's level is level (1 + seal_squeeze |p_L|) [1/Pa]
@@ -138,6 +146,9 @@ struct ReferenceAxis {
     double periodic_frequency = 0.0;  ///< [Hz]
     double hose = 0.0;                ///< torque per angle of the other axis beyond where a hose is taut [N m/rad]
     double hose_slack = 0.0;          ///< that angle [rad]; below it the hose hangs
+    double wiper_play = 0.0;          ///< half of the play between the piston and its sensor's wiper [m]
+    double hum = 0.0;                 ///< amplitude of a sine that the engine's sensor reads [rad], from the first row on
+    double hum_frequency = 0.0;       ///< [Hz]
   };
   Unlisted unlisted;
 };

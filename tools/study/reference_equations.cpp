@@ -7,7 +7,7 @@
 namespace hotfire::study {
 namespace {
 
-/// Rate at which the play between valve command and spool gives way beyond its width [1/s].
+/// Rate at which a play gives way beyond its width [1/s].
 constexpr double kPlayGivesWay = 1e7;
 
 struct Friction {
@@ -138,7 +138,9 @@ void oil(const ReferenceAxis& a, double elapsed, const StateVector& y, StateVect
   const double flow = a.rated_flow * opening * std::sqrt(std::max(0.0, (supply - sign(opening) * p) / a.supply));
   const double modulus =
       a.bulk_modulus * (1.0 - a.unlisted.aeration * std::exp(-std::abs(p) / a.unlisted.aeration_pressure));
-  d[kPressure] = 4.0 * modulus / a.volume * (flow - a.area * y[kPistonRate] - (a.leakage + a.laminar_leak) * p - turbulent);
+  d[kPressure] = 4.0 * modulus / a.volume *
+                 (flow - a.area * y[kPistonRate] - (a.leakage + a.laminar_leak) * p - turbulent -
+                  a.unlisted.relief * beyond(p, a.unlisted.relief_from));
   d[kWashout] = a.pressure_corner * (p - y[kWashout]);
   if (a.unlisted.supply_droop > 0.0) {
     d[kSupplyDroop] = (a.unlisted.supply_droop * std::abs(flow) - y[kSupplyDroop]) / a.unlisted.supply_recovery;
@@ -167,6 +169,9 @@ std::vector<ReferenceState> states_of(const ReferenceAxis& axis) {
   add(kEngineReading, axis.engine_sensor.lag > 0.0);
   add(kSupplyDroop, axis.unlisted.supply_droop > 0.0);
   add(kCreep, axis.unlisted.creep_stiffness > 0.0);
+  add(kJoint, axis.unlisted.joint.stiffness > 0.0);
+  add(kWiper, axis.unlisted.wiper_play > 0.0);
+  add(kCommand, axis.unlisted.command_lag > 0.0);
   return states;
 }
 
@@ -178,7 +183,7 @@ double command_at(const ReferenceProblem& problem, double t) {
 
 double torque_motor(const ReferenceAxis& axis, double command, double elapsed, const StateVector& y) {
   return axis.position_gain * (axis.arm * command - y[kPiston]) - axis.pressure_gain * (y[kPressure] - y[kWashout]) +
-         axis.unlisted.null_drift * elapsed;
+         axis.unlisted.null_offset + axis.unlisted.null_drift * elapsed;
 }
 
 StateVector derivative(const ReferenceProblem& problem, double t, const StateVector& y) {
@@ -188,9 +193,10 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
 
   // A limit of infinity makes the command jump at the start of the interval.
   const double angle = std::isinf(a.rate_limit) ? problem.command : command_at(problem, t);
-  const double asked = torque_motor(a, angle, elapsed, y);
+  const bool lags = a.unlisted.command_lag > 0.0;
+  const double asked = torque_motor(a, lags ? y[kCommand] : angle, elapsed, y);
   const double valve_command = clamp_to(asked, 1.0) - clamp_to(y[kPlay], a.play);
-  d[kSpool] = y[kSpoolRate];
+  d[kSpool] = clamp_to(y[kSpoolRate], a.unlisted.slew);
   d[kSpoolRate] = a.valve_frequency * a.valve_frequency * (valve_command - y[kSpool]) -
                   2.0 * a.valve_damping * a.valve_frequency * y[kSpoolRate];
   oil(a, elapsed, y, d);
@@ -199,11 +205,14 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   const double w = y[kAngleRate];
   const double beta = y[kAngle];
   const Lever lever = lever_of(a, beta);
-  const double force = spring_force(a, y[kPiston] - lever.stroke - a.mode_shape * y[kMode] - y[kCreep]) +
-                       a.unlisted.spring_damping * (v - lever.arm * w);
+  const double deflection = y[kPiston] - lever.stroke - a.mode_shape * y[kMode] - y[kCreep];
+  const Friction joint = elastic_slip(a.unlisted.joint, 1.0, v - lever.arm * w, y[kJoint]);
+  const double force = spring_force(a, deflection) * (1.0 + a.unlisted.spring_drift * elapsed) +
+                       a.unlisted.spring_damping * (v - lever.arm * w) + joint.force;
   const Friction seal = elastic_slip(a.seal, 1.0 + a.unlisted.seal_squeeze * std::abs(y[kPressure]), v, y[kSeal]);
   const Friction seal_bristle = lugre(a.seal_bristle, 1.0, v, y[kSealBristle]);
-  const double damping = a.piston_damping + a.unlisted.cushion * std::abs(beyond(y[kPiston], a.unlisted.cushion_from));
+  const double damping = a.piston_damping + a.unlisted.cushion * std::abs(beyond(y[kPiston], a.unlisted.cushion_from)) +
+                         a.unlisted.orifice_damping * std::abs(v);
   d[kPiston] = v;
   d[kPistonRate] = (a.area * y[kPressure] - force - damping * v - seal.force - seal_bristle.force) / a.piston_mass;
 
@@ -235,12 +244,20 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   if (a.unlisted.creep_stiffness > 0.0) {
     d[kCreep] = (force / a.unlisted.creep_stiffness - y[kCreep]) / a.unlisted.creep_time;
   }
+  if (lags) {
+    d[kCommand] = (angle - y[kCommand]) / a.unlisted.command_lag;
+  }
+  d[kJoint] = joint.rate;
+  d[kWiper] = v - kPlayGivesWay * beyond(y[kWiper], a.unlisted.wiper_play);
   return d;
 }
 
-std::array<double, 3> readings(const ReferenceAxis& axis, const StateVector& y) {
-  return {axis.piston_sensor.lag > 0.0 ? y[kPistonReading] : reading_without_lag(axis.piston_sensor, y[kPiston]),
-          axis.engine_sensor.lag > 0.0 ? y[kEngineReading] : reading_without_lag(axis.engine_sensor, y[kAngle]),
+std::array<double, 3> readings(const ReferenceAxis& axis, double elapsed, const StateVector& y) {
+  const ReferenceAxis::Unlisted& unlisted = axis.unlisted;
+  const double moved = y[kPiston] - y[kWiper];
+  const double hum = unlisted.hum * std::sin(2.0 * std::numbers::pi * unlisted.hum_frequency * elapsed);
+  return {axis.piston_sensor.lag > 0.0 ? y[kPistonReading] : reading_without_lag(axis.piston_sensor, moved),
+          (axis.engine_sensor.lag > 0.0 ? y[kEngineReading] : reading_without_lag(axis.engine_sensor, y[kAngle])) + hum,
           y[kPressure]};
 }
 

@@ -30,14 +30,17 @@ enum ReferenceState {
   kEngineReading,
   kSupplyDroop,
   kCreep,
+  kJoint,
+  kWiper,
+  kCommand,
   kStates
 };
 
 using StateVector = std::array<double, kStates>;
 
 /// What a state is measured in; tolerances are a tiny part of it.
-inline constexpr StateVector kStateScale{0.01, 1.0,  1e6,  1e6, 0.01, 0.1,  0.01, 0.1, 0.01,
-                                         1e-5, 1e-4, 1e-5, 0.1, 1.0,  0.01, 0.01, 1e6, 1e-4};
+inline constexpr StateVector kStateScale{0.01, 1.0, 1e6, 1e6,  0.01, 0.1, 0.01, 0.1,  0.01, 1e-5, 1e-4,
+                                         1e-5, 0.1, 1.0, 0.01, 0.01, 1e6, 1e-4, 1e-5, 1e-4, 0.01};
 
 inline double clamp_to(double x, double limit) { return std::clamp(x, -limit, limit); }
 inline double sign(double x) { return (x > 0.0) - (x < 0.0); }
@@ -74,7 +77,7 @@ double torque_motor(const ReferenceAxis& axis, double command, double elapsed, c
 /// The axis' equations. The states it does not have are zero in `y`, and what comes out for them is not used.
 StateVector derivative(const ReferenceProblem& problem, double t, const StateVector& y);
 
-/// What the three channels read.
-std::array<double, 3> readings(const ReferenceAxis& axis, const StateVector& y);
+/// What the three channels read, `elapsed` s into the record.
+std::array<double, 3> readings(const ReferenceAxis& axis, double elapsed, const StateVector& y);
 
 }  // namespace hotfire::study
