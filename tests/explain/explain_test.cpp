@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/explain/oscillator.hpp"
+#include "tools/files/error.hpp"
 #include "tools/simulate/simulate.hpp"
 
 #include <CppUTest/TestHarness.h>
@@ -76,6 +77,19 @@ TEST(Explain, InterruptedAtAnyMomentItSaysThatItIsUndecidedAndWhatItKnowsByThen)
   }
   CHECK(in_round.at("effects").empty());
   STRCMP_EQUAL("explained", text_of(interrupted_after(1'000'000), "verdict").c_str());
+}
+
+TEST(Explain, AMassThatMovesAgainstItsForceIsRefusedForItsSign) {
+  Record record = oscillator(400.0, kNoise);
+  for (double& position : record.channels[1].values) {
+    position = -position;
+  }
+  try {
+    explained(record);
+    FAIL("an inverted position was explained");
+  } catch (const FileError& error) {
+    STRCMP_CONTAINS("oscillator.csv: the mass moves against its force", error.what());
+  }
 }
 
 TEST(Explain, AskedForNoEffectItDoesNotSayThatNoneFits) {

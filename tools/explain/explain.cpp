@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "tools/explain/conclusion.hpp"
 #include "tools/explain/held_out_records.hpp"
 #include "tools/explain/report_json.hpp"
 #include "tools/explain/search.hpp"
+#include "tools/files/error.hpp"
 
 namespace hotfire::explain {
 
@@ -38,11 +42,41 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
   explanation.report["residual"]["next_experiment"] = text + ".";
 }
 
+/// Refuses records in which a mass moves against its force. A servo is held to its declared model before the search
+/// (`refuse_impossible_channels`); a mass may rightly be anywhere without what its model lacks, so it is the end of a search
+/// that tells: nothing follows the mass, and with the force turned something does.
+void refuse_turned_sign(const Dataset& data, const ModelFile& model, const SearchOptions& options,
+                        const SearchResult<DirectFamily>& found) {
+  constexpr double kFollows = 50.0;  // percent of the motion
+  constexpr double kClearlyLess = 0.5;
+  const ChannelFit& left = found.explained.goodness.held_out.front();
+  if (!found.searched || found.interrupted || left.fit_percent >= kFollows) {
+    return;
+  }
+  options.watch.progress("nothing follows the mass: the same with its force turned");
+  Dataset turned = data;
+  for (Experiment& experiment : turned.experiments) {
+    std::ranges::transform(experiment.input, experiment.input.begin(), std::negate<>());
+  }
+  const SearchResult<DirectFamily> other = search<DirectFamily>(turned, model, options);
+  const double left_turned = other.explained.goodness.held_out.front().rms;
+  if (!other.interrupted && left_turned < kClearlyLess * left.rms) {
+    throw FileError(fmt::format(
+        "{}: the mass moves against its force: with the sign of one turned a model leaves {:.3g} of position (rms, held-out "
+        "data), as it is {:.3g}. Position or force looks inverted; turn its sign in the records, nothing is fitted to it",
+        data.experiments.front().name, left_turned, left.rms));
+  }
+}
+
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
   const std::vector<Dataset> kept_back = held_out_data(model, options);
-  SearchResult<Family> found = search<Family>(data, model, {options.threads, options.most_effects, options.watch});
+  const SearchOptions search_options{options.threads, options.most_effects, options.watch};
+  SearchResult<Family> found = search<Family>(data, model, search_options);
+  if constexpr (std::is_same_v<Family, DirectFamily>) {
+    refuse_turned_sign(data, model, search_options, found);
+  }
   if (!found.interrupted) {
     options.watch.progress("fitting what was found to all rows");
     fit_to_all_rows(data, options.threads, found);
