@@ -42,8 +42,7 @@ struct UnlistedSignal {
           Field<Params>{"amplitude", Names::unit, 0.0, Names::largest, Names::typical, "amplitude of the sinusoid",
                         &Params::amplitude, 0b100},
           unlisted::phase_field<Params>(0b100),
-          Field<Params>{"lag_time", "s", 0.0, 10.0, 5e-3, "time constant of the command's lag", &Params::lag_time,
-                        0b10000}};
+          Field<Params>{"lag_time", "s", 0.0, 10.0, 5e-3, "time constant of the command's lag", &Params::lag_time, 0b10000}};
       std::array<Field<Params>, can_be_late ? kAll.size() : kAll.size() - 1> own{};
       std::copy_n(kAll.begin(), own.size(), own.begin());
       return own;
