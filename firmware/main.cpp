@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
-#include "firmware/options.hpp"
-#include "firmware/replay.hpp"
-#include "firmware/session.hpp"
+#include "firmware/replay/replay.hpp"
+#include "firmware/session/options.hpp"
+#include "firmware/session/session.hpp"
 
 int main(int count, char** values) {
   const auto parsed = hotfire::firmware::parse_options(std::vector<std::string>(values, values + count));

@@ -7,7 +7,7 @@
 namespace hotfire::firmware::can {
 namespace {
 
-/// The bytes behind the check, then the id, low byte first (tools/files/can_crc.hpp has the law that the tables are made
+/// The bytes behind the check, then the id, low byte first (tools/files/can/can_crc.hpp has the law that the tables are made
 /// from).
 template <class Crc>
 Crc check_of(const std::array<Crc, 256>& table, Crc start, Crc final_xor, std::span<const std::uint8_t> bytes,

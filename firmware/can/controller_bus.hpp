@@ -7,7 +7,7 @@
 #include "firmware/can/layout.hpp"
 #include "firmware/can/message_follower.hpp"
 #include "firmware/can/periodic_frame.hpp"
-#include "firmware/interlock.hpp"
+#include "firmware/interlock/interlock.hpp"
 #include "hal/can.hpp"
 #include "hal/clock.hpp"
 #include "hal/plant_bus.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tests/explain/oscillator.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 
 #include <CppUTest/TestHarness.h>

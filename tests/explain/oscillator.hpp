@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "tools/files/model_file.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/files/record/record.hpp"
 
 namespace hotfire::test {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/files/can_map.hpp"
+#include "tools/files/can/can_map.hpp"
 
 namespace hotfire::test {
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::test {
 

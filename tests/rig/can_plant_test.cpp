@@ -15,9 +15,9 @@
 #include <thread>
 
 #include "firmware/can/plant_bus.hpp"
-#include "firmware/loop.hpp"
-#include "firmware/plant.hpp"
-#include "firmware/reference_plant.hpp"
+#include "firmware/loop/loop.hpp"
+#include "firmware/plant/plant.hpp"
+#include "firmware/plant/reference_plant.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/linux/socket_can.hpp"
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "firmware/can/codec.hpp"
-#include "firmware/interlock.hpp"
+#include "firmware/interlock/interlock.hpp"
 #include "hal/can.hpp"
 
 namespace hotfire::test {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "firmware/lab_recorder.hpp"
+#include "firmware/lab/lab_recorder.hpp"
 #include "hal/recording/reader.hpp"
 
 namespace hotfire::test {

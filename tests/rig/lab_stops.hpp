@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/faults.hpp"
+#include "firmware/interlock/faults.hpp"
 
 namespace hotfire::test {
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "firmware/faults.hpp"
+#include "firmware/interlock/faults.hpp"
 #include "tests/rig/lab_bench.hpp"
 #include "tests/rig/lab_stops.hpp"
 

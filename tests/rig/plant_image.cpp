@@ -5,7 +5,7 @@
 #include <memory>
 #include <string_view>
 
-#include "firmware/reference_plant.hpp"
+#include "firmware/plant/reference_plant.hpp"
 #include "model/vehicle_keys.hpp"
 #include "tests/model/vehicles.hpp"
 #include "tools/cli/plant_image_text.hpp"

@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "tests/files/scratch.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/model_file.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/study/candidate_fit.hpp"
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <set>
 
-#include "tools/explain/dataset.hpp"
-#include "tools/explain/statistics.hpp"
-#include "tools/files/error.hpp"
+#include "tools/explain/data/dataset.hpp"
+#include "tools/explain/data/statistics.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/study/orders.hpp"
 #include "tools/study/recording.hpp"
 

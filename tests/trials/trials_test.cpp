@@ -6,7 +6,7 @@
 #include "model/effects/soft_stiffness.hpp"
 #include "model/keys.hpp"
 #include "tools/analysis/free_decay.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/disturbed.hpp"

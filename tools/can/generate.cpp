@@ -9,10 +9,10 @@
 #include <iterator>
 #include <string>
 
-#include "tools/files/can_crc.hpp"
-#include "tools/files/can_map.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/whole_file.hpp"
+#include "tools/files/can/can_crc.hpp"
+#include "tools/files/can/can_map.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/whole_file.hpp"
 
 namespace hotfire {
 

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tools/files/candump.hpp"
+#include "tools/files/can/candump.hpp"
 
 namespace hotfire {
 

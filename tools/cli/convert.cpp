@@ -6,8 +6,8 @@
 
 #include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/record/record.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire {
 

@@ -9,7 +9,7 @@
 #include "tools/analysis/welch.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/trial_options.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/trials/disturbed.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/sweep.hpp"

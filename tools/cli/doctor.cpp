@@ -9,7 +9,7 @@
 #include <string>
 
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire {
 

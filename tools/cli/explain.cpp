@@ -20,10 +20,10 @@
 
 #include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/profile_file.hpp"
-#include "tools/files/sha256.hpp"
-#include "tools/files/whole_file.hpp"
+#include "tools/files/rig/profile_file.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/sha256.hpp"
+#include "tools/files/text/whole_file.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {

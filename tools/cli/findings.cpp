@@ -7,8 +7,8 @@
 #include <string>
 
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/suggestion.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/suggestion.hpp"
 #include "tools/findings/document.hpp"
 #include "tools/trials/pictures.hpp"
 

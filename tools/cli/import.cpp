@@ -1,4 +1,4 @@
-#include "tools/files/import.hpp"
+#include "tools/files/import/import.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire {
 

@@ -4,8 +4,8 @@
 
 #include "tools/cli/commands.hpp"
 #include "tools/cli/realtime_program.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/profile_file.hpp"
+#include "tools/files/rig/profile_file.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire {
 

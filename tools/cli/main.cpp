@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/suggestion.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/suggestion.hpp"
 
 namespace hotfire {
 

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "model/key_text.hpp"
-#include "tools/files/model_file.hpp"
+#include "tools/files/model/model_file.hpp"
 
 namespace hotfire {
 

@@ -12,9 +12,9 @@
 #include <memory>
 
 #include "tools/cli/vehicle_image_text.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/fault_file.hpp"
-#include "tools/files/model_file.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/files/rig/fault_file.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire {
 

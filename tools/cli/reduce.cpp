@@ -6,8 +6,8 @@
 #include <string>
 
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/whole_file.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/whole_file.hpp"
 #include "tools/structure/reduction.hpp"
 
 namespace hotfire {

@@ -6,7 +6,7 @@
 
 #include "tools/cli/commands.hpp"
 #include "tools/cli/realtime_program.hpp"
-#include "tools/files/recording.hpp"
+#include "tools/files/record/recording.hpp"
 
 namespace hotfire {
 

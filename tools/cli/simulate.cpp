@@ -11,7 +11,7 @@
 
 #include "tools/cli/candump_options.hpp"
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 
 namespace hotfire {

@@ -10,7 +10,7 @@
 
 #include "tools/cli/commands.hpp"
 #include "tools/cli/trial_options.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/profiles.hpp"
 #include "tools/trials/results_json.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tools/cli/commands.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/profiles.hpp"
 #include "tools/trials/string_angles.hpp"

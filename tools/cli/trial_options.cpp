@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/pictures.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tools/analysis/chart.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/record/record.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <functional>
 
-#include "tools/explain/conclusion.hpp"
 #include "tools/explain/held_out_records.hpp"
-#include "tools/explain/report_json.hpp"
-#include "tools/explain/search.hpp"
-#include "tools/files/error.hpp"
+#include "tools/explain/report/conclusion.hpp"
+#include "tools/explain/report/report_json.hpp"
+#include "tools/explain/search/search.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/explain/next_experiment.hpp"
-#include "tools/explain/screening.hpp"
-#include "tools/files/model_file.hpp"
-#include "tools/files/record.hpp"
+#include "tools/explain/experiment/next_experiment.hpp"
+#include "tools/explain/search/screening.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/files/record/record.hpp"
 #include "tools/report/report_page.hpp"
 #include "tools/structure/vehicle_file.hpp"
 

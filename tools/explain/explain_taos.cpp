@@ -2,13 +2,13 @@
 
 #include <optional>
 
-#include "tools/explain/conclusion.hpp"
 #include "tools/explain/explain.hpp"
+#include "tools/explain/fit/two_axes.hpp"
 #include "tools/explain/held_out_records.hpp"
-#include "tools/explain/report_json.hpp"
-#include "tools/explain/two_axes.hpp"
-#include "tools/explain/two_axis_report.hpp"
-#include "tools/files/error.hpp"
+#include "tools/explain/report/conclusion.hpp"
+#include "tools/explain/report/report_json.hpp"
+#include "tools/explain/report/two_axis_report.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
 

@@ -4,7 +4,8 @@
 
 #include <utility>
 
-#include "tools/files/error.hpp"
+#include "tools/explain/report/errors_json.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
 
@@ -29,10 +30,6 @@ Prediction prediction_of(Fitted<Family> model, const Dataset& data, unsigned thr
 }
 
 }  // namespace
-
-nlohmann::json errors_of(const ChannelFit& fit) {
-  return {{"rms", fit.rms}, {"max", fit.max}, {"bias", fit.bias}, {"fit_percent", fit.fit_percent}};
-}
 
 nlohmann::json held_out_record_json(const Record& record, const Dataset& data,
                                     const std::vector<std::pair<const char*, Prediction>>& stages) {

@@ -4,12 +4,9 @@
 #include <vector>
 
 #include "tools/explain/explain.hpp"
-#include "tools/explain/search.hpp"
+#include "tools/explain/search/search.hpp"
 
 namespace hotfire::explain {
-
-/// "rms", "max", "bias" in the channel's unit and "fit_percent".
-nlohmann::json errors_of(const ChannelFit& fit);
 
 /// The records of `options.kept_back`, a data set each, of which every row that is not excluded is judged. Throws as
 /// `make_dataset`: before a search, so that none is in vain.

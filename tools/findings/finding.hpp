@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/analysis/chart.hpp"
-#include "tools/files/model_file.hpp"
+#include "tools/files/model/model_file.hpp"
 
 namespace hotfire::findings {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "model/keys.hpp"
-#include "tools/files/model_file.hpp"
+#include "tools/files/model/model_file.hpp"
 #include "tools/trials/sweep.hpp"
 
 namespace hotfire::findings {

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "model/step_size.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/run.hpp"
 #include "tools/simulate/scalar_parameters.hpp"
 

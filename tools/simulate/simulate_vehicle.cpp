@@ -9,7 +9,7 @@
 #include <span>
 
 #include "model/step_size.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/excitation.hpp"
 #include "tools/simulate/run.hpp"
 #include "tools/simulate/vehicle_readings.hpp"

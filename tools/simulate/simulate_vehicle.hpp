@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/files/record.hpp"
+#include "tools/files/record/record.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {

@@ -9,9 +9,9 @@
 #include <map>
 #include <set>
 
-#include "tools/files/csv_lines.hpp"
-#include "tools/files/error.hpp"
-#include "tools/files/suggestion.hpp"
+#include "tools/files/text/csv_lines.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/suggestion.hpp"
 
 namespace hotfire {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "tools/files/key_groups.hpp"
-#include "tools/files/model_group.hpp"
-#include "tools/files/suggestion.hpp"
+#include "tools/files/model/key_groups.hpp"
+#include "tools/files/model/model_group.hpp"
+#include "tools/files/text/suggestion.hpp"
 #include "tools/structure/mode_table.hpp"
 
 namespace hotfire {

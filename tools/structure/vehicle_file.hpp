@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "model/vehicle.hpp"
-#include "tools/files/axis_names.hpp"
-#include "tools/files/fault_file.hpp"
+#include "tools/files/record/axis_names.hpp"
+#include "tools/files/rig/fault_file.hpp"
 #include "tools/structure/vehicle_sensors.hpp"
 
 namespace hotfire {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "tools/files/key_groups.hpp"
-#include "tools/files/model_group.hpp"
-#include "tools/files/toml_text.hpp"
+#include "tools/files/model/key_groups.hpp"
+#include "tools/files/model/model_group.hpp"
+#include "tools/files/model/toml_text.hpp"
 
 namespace hotfire {
 

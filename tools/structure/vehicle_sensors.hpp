@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/string_potentiometer.hpp"
-#include "tools/files/toml_source.hpp"
+#include "tools/files/text/toml_source.hpp"
 
 namespace hotfire {
 

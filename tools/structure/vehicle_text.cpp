@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
-#include "tools/files/key_groups.hpp"
-#include "tools/files/toml_text.hpp"
+#include "tools/files/model/key_groups.hpp"
+#include "tools/files/model/toml_text.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "tools/explain/search.hpp"
-#include "tools/explain/stopwatch.hpp"
-#include "tools/files/error.hpp"
+#include "tools/explain/search/search.hpp"
+#include "tools/explain/search/stopwatch.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/study/judge.hpp"
 
 namespace hotfire::study {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/files/record.hpp"
+#include "tools/files/record/record.hpp"
 #include "tools/study/condition.hpp"
 #include "tools/study/effects.hpp"
 

@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "tools/files/whole_file.hpp"
+#include "tools/files/text/whole_file.hpp"
 #include "tools/study/case.hpp"
 
 namespace hotfire::study {

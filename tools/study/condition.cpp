@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::study {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tools/explain/explain.hpp"
-#include "tools/explain/stopwatch.hpp"
+#include "tools/explain/search/stopwatch.hpp"
 #include "tools/study/judge.hpp"
 
 namespace hotfire::study {

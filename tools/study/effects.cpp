@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/study/profiles.hpp"
 
 namespace hotfire::study {

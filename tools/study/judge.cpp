@@ -9,8 +9,8 @@
 #include <set>
 
 #include "tools/explain/explain.hpp"
-#include "tools/explain/stopwatch.hpp"
-#include "tools/files/error.hpp"
+#include "tools/explain/search/stopwatch.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 

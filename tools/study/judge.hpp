@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/files/model_file.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/files/record/record.hpp"
 
 namespace hotfire::study {
 

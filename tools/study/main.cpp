@@ -10,7 +10,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/study/candidate_fit.hpp"
 #include "tools/study/case.hpp"
 #include "tools/study/cost.hpp"

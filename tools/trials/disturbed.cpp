@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "model/step_size.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/normal.hpp"
 #include "tools/simulate/run.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "tools/files/model_file.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/files/record/record.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire::trials {

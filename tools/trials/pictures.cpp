@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tools/files/whole_file.hpp"
+#include "tools/files/text/whole_file.hpp"
 #include "tools/trials/profiles.hpp"
 
 namespace hotfire::trials {

@@ -5,7 +5,7 @@
 
 #include "tools/analysis/chart.hpp"
 #include "tools/analysis/welch.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/record/record.hpp"
 #include "tools/trials/stiffness.hpp"
 #include "tools/trials/sweep.hpp"
 

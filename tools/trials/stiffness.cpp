@@ -8,7 +8,7 @@
 
 #include "model/effects/soft_stiffness.hpp"
 #include "model/keys.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 
 namespace hotfire::trials {

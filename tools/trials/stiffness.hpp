@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/analysis/equivalent_stiffness.hpp"
-#include "tools/files/model_file.hpp"
+#include "tools/files/model/model_file.hpp"
 #include "tools/structure/vehicle_file.hpp"
 #include "tools/trials/sweep.hpp"
 

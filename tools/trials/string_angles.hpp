@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tools/analysis/angle_calibration.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/record/record.hpp"
 
 namespace hotfire::trials {
 

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "tools/analysis/welch.hpp"
-#include "tools/files/error.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::trials {
 

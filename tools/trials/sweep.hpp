@@ -6,7 +6,7 @@
 
 #include "tools/analysis/resonance.hpp"
 #include "tools/analysis/sines.hpp"
-#include "tools/files/record.hpp"
+#include "tools/files/record/record.hpp"
 
 namespace hotfire::trials {
 

@@ -9,8 +9,8 @@
 
 #include "firmware/can/can_map.hpp"
 #include "tests/support/allocation_guard.hpp"
-#include "tools/files/can_crc.hpp"
-#include "tools/files/can_map.hpp"
+#include "tools/files/can/can_crc.hpp"
+#include "tools/files/can/can_map.hpp"
 
 namespace hotfire::firmware::can {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "firmware/can/can_map.hpp"
 #include "firmware/can/codec.hpp"
-#include "tools/files/can_crc.hpp"
+#include "tools/files/can/can_crc.hpp"
 
 namespace hotfire::firmware::can {
 namespace {

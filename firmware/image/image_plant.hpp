@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "firmware/image/plant_image.hpp"
+#include "firmware/plant/plant.hpp"
+#include "firmware/plant/vehicle_plant.hpp"
+
+namespace hotfire::firmware {
+namespace detail {
+
+template <class Parameters>
+struct PlantOf {
+  using Vehicle = typename Parameters::Vehicle;
+  static auto make(const Parameters& parameters, double period, std::size_t, const std::vector<PlayedFault>& faults) {
+    return std::make_unique<VehiclePlant<Vehicle>>(parameters, period, faults);
+  }
+};
+
+template <class Model>
+struct PlantOfAxes {
+  static auto make(const typename Model::Parameters& parameters, double period, std::size_t actuators,
+                   const std::vector<PlayedFault>& faults) {
+    return std::make_unique<Plant<Model>>(parameters, period, actuators, faults);
+  }
+};
+template <>
+struct PlantOf<model::Simplex<double>::Parameters> : PlantOfAxes<model::Simplex<double>> {};
+template <>
+struct PlantOf<model::Direct<double>::Parameters> : PlantOfAxes<model::Direct<double>> {};
+
+}  // namespace detail
+
+/// How many actuators the plant of an image has; 0: as many as are asked for, each a copy of one axis.
+inline std::size_t actuators_of(const PlantParameters& parameters) {
+  return std::visit(
+      []<class Parameters>(const Parameters&) -> std::size_t {
+        if constexpr (requires { typename Parameters::Vehicle; }) {
+          return Parameters::Vehicle::kAxes;
+        } else {
+          return 0;
+        }
+      },
+      parameters);
+}
+
+/// What `use` makes of the plant of an image that has been read, on the heap. `period` in s; `actuators`: copies of one
+/// axis, not read for a vehicle.
+template <class Use>
+auto with_plant(const PlantImage& image, double period, std::size_t actuators, Use&& use) {
+  return std::visit(
+      [&]<class Parameters>(const Parameters& parameters) {
+        return use(detail::PlantOf<Parameters>::make(parameters, period, actuators, image.faults));
+      },
+      *image.parameters);
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,230 @@
+#include "firmware/image/plant_image.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "firmware/image/image_entries.hpp"
+#include "firmware/text/text.hpp"
+#include "model/vehicle_keys.hpp"
+
+namespace hotfire::firmware {
+namespace {
+
+/// Fills the parameters it is shown (`model::visit_keys`, `model::visit_vehicle_keys`) from the entries.
+class Filler {
+ public:
+  explicit Filler(Entries& entries) : entries_(entries) {}
+
+  template <class Field>
+  void number(const model::KeyText& key, const Field& field, double& value) {
+    value = read_bounded(entries_, std::string(key.view()), field.lower, field.upper, field.unit);
+  }
+
+  template <class E>
+  bool effect(const model::KeyText& prefix, bool& active) {
+    active = entries_.has_prefix(prefix.view());
+    return active;
+  }
+
+  template <class Options>
+  void option(const model::KeyText& key, const Options& options, int& option) {
+    option = read_word(entries_, std::string(key.view()), options);
+  }
+
+  template <class Field, class Table>
+  void table(const model::KeyText& x_key, const model::KeyText& y_key, const Field& field, Table& table) {
+    for (std::size_t i = 0; i < Table::kCapacity; ++i) {
+      const std::string x = std::string(x_key.view()) + "." + std::to_string(i);
+      const std::string y = std::string(y_key.view()) + "." + std::to_string(i);
+      if (!entries_.has(x) && !entries_.has(y)) {
+        return;
+      }
+      const double lowest = i == 0 ? -HUGE_VAL : std::nextafter(table.x[i - 1], HUGE_VAL);
+      table.x[i] = read_bounded(entries_, x, lowest, 1.7e308, field.x_unit);
+      table.y[i] = read_bounded(entries_, y, field.y_lower, field.y_upper, field.y_unit);
+      table.points = static_cast<int>(i) + 1;
+    }
+  }
+
+  void list(const model::KeyText& key, double lower, double upper, std::span<double> values) {
+    read_list(entries_, std::string(key.view()), lower, upper, "", values);
+  }
+
+  void count(const model::KeyText& key, int most, int& count) {
+    count = read_whole(entries_, std::string(key.view()), 0, most);
+  }
+
+ private:
+  Entries& entries_;
+};
+
+/// What the faults of a plant are declared on.
+struct FaultyPlant {
+  std::span<const std::string_view> channels;
+  bool hydraulic;
+  std::size_t actuators;  ///< at most
+};
+
+PlayedFault read_fault(Entries& entries, const std::string& prefix, const FaultyPlant& plant) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  constexpr double kForGood = std::numeric_limits<double>::infinity();
+  PlayedFault fault;
+  fault.kind = static_cast<PlayedKind>(read_word(entries, prefix + "kind", kPlayedKinds));
+  fault.from = read_bounded(entries, prefix + "from", 0.0, kLargest, "s");
+  fault.to = read_bounded(entries, prefix + "to", fault.from, kForGood, "s");
+  if (fault.kind == PlayedKind::bus_off) {
+    return fault;
+  }
+  fault.actuator = read_whole(entries, prefix + "actuator", 0, static_cast<int>(plant.actuators));
+  if (is_of_sensor(fault.kind)) {
+    fault.channel = read_word(entries, prefix + "channel", plant.channels);
+  } else if (!plant.hydraulic) {
+    entries.refuse(prefix + "kind: leak and lost_supply are faults of a hydraulic axis");
+  }
+  switch (fault.kind) {
+    case PlayedKind::biased:
+      fault.value = read_bounded(entries, prefix + "value", -kLargest, kLargest, "in the channel's unit");
+      break;
+    case PlayedKind::noisy:
+      fault.value = read_bounded(entries, prefix + "value", 0.0, kLargest, "in the channel's unit");
+      break;
+    case PlayedKind::delayed:
+      fault.value = read_bounded(entries, prefix + "value", 0.0, kLongestSensorDelay, "s");
+      break;
+    case PlayedKind::leak:
+      fault.value = read_bounded(entries, prefix + "value", 0.0, 1e-6, "m^3/s/Pa");
+      break;
+    case PlayedKind::lost_supply:
+      fault.value = read_bounded(entries, prefix + "value", 1e4, 1e9, "Pa");
+      break;
+    default:
+      break;
+  }
+  return fault;
+}
+
+/// Two faults would each want the actuator to be another model.
+bool are_at_odds(const PlayedFault& one, const PlayedFault& other) {
+  return is_of_actuator(one.kind) && is_of_actuator(other.kind) && one.from < other.to && other.from < one.to &&
+         (one.actuator == 0 || other.actuator == 0 || one.actuator == other.actuator);
+}
+
+std::vector<PlayedFault> read_faults(Entries& entries, const FaultyPlant& plant) {
+  std::vector<PlayedFault> faults;
+  for (std::string prefix = "fault.0."; entries.has_prefix(prefix); prefix = text("fault.%zu.", faults.size())) {
+    const PlayedFault fault = read_fault(entries, prefix, plant);
+    if (std::any_of(faults.begin(), faults.end(), [&](const PlayedFault& other) { return are_at_odds(fault, other); })) {
+      entries.refuse(prefix + "kind: a leak or lost supply of an actuator that has another one at that time");
+    }
+    faults.push_back(fault);
+  }
+  return faults;
+}
+
+/// Refuses what of some values contradicts the rest; `broken` is empty if nothing does.
+void refuse_broken(Entries& entries, const std::string& key, std::string_view broken) {
+  if (!broken.empty()) {
+    entries.refuse(key + ": " + std::string(broken));
+  }
+}
+
+template <class Parameters>
+void refuse_broken_effects(Entries& entries, const std::string& prefix, const Parameters& axis) {
+  model::visit_effects(axis, [&]<class E>(std::size_t index, const auto& values) {
+    if constexpr (requires { E::broken_relation(values); }) {
+      refuse_broken(entries, prefix + "effects." + std::string(E::name),
+                    axis.effects.active[index] ? E::broken_relation(values) : std::string_view{});
+    }
+  });
+}
+
+template <class Model>
+PlantImage fill(Entries& entries) {
+  typename Model::Parameters parameters;
+  Filler filler(entries);
+  model::visit_keys(parameters, filler);
+  constexpr bool kHydraulic = requires { parameters.actuator.leakage; };
+  std::vector<PlayedFault> faults = read_faults(entries, {Model::channels, kHydraulic, hal::kMaxActuators});
+  entries.refuse_unused();
+  refuse_broken_effects(entries, "", parameters);
+  if (!entries.error().empty()) {
+    return {std::nullopt, entries.error()};
+  }
+  return {parameters, {}, std::move(faults)};
+}
+
+template <class Vehicle>
+void refuse_broken_vehicle(Entries& entries, const model::InstrumentedVehicle<Vehicle>& instrumented) {
+  const auto& vehicle = instrumented.vehicle;
+  for (std::size_t e = 0; e < vehicle.gimbals.size(); ++e) {
+    const std::string number = std::to_string(e + 1);
+    refuse_broken_effects(entries, "pitch" + number + ".", vehicle.axes[2 * e]);
+    refuse_broken_effects(entries, "yaw" + number + ".", vehicle.axes[2 * e + 1]);
+    if (!vehicle.constant_arms[e]) {
+      refuse_broken(entries, "attach points of engine " + number,
+                    model::broken_relation(vehicle.attach[2 * e], vehicle.attach[2 * e + 1]));
+    }
+    refuse_broken(entries, "gimbal of engine " + number, model::broken_relation(vehicle.gimbals[e]));
+    refuse_broken(entries, "strings of engine " + number,
+                  model::StringPotentiometers<double>::broken_relation(instrumented.sensors.anchors[e]));
+  }
+}
+
+template <class Vehicle>
+PlantImage fill_vehicle(Entries& entries) {
+  PlantImage image;
+  auto& instrumented = std::get<model::InstrumentedVehicle<Vehicle>>(
+      image.parameters.emplace(std::in_place_type<model::InstrumentedVehicle<Vehicle>>));
+  Filler filler(entries);
+  model::visit_vehicle_keys(instrumented, filler);
+  image.faults = read_faults(entries, {Vehicle::AxisModel::channels, true, Vehicle::kAxes});
+  entries.refuse_unused();
+  refuse_broken_vehicle(entries, instrumented);
+  if (!entries.error().empty()) {
+    return {std::nullopt, entries.error()};
+  }
+  return image;
+}
+
+}  // namespace
+
+PlantImage parse_plant_image(const std::string& text, const std::string& name) {
+  Entries entries(text, name);
+  const Entry* schema = entries.take("schema");
+  if (schema != nullptr && schema->value != "1") {
+    entries.refuse(*schema, "this build reads schema 1; use hotfire and hotfire-rt of the same version");
+  }
+  const Entry* topology = entries.take("topology");
+  if (!entries.error().empty()) {
+    return {std::nullopt, entries.error()};
+  }
+  if (topology->value == model::Simplex<double>::topology) {
+    return fill<model::Simplex<double>>(entries);
+  }
+  if (topology->value == model::Direct<double>::topology) {
+    return fill<model::Direct<double>>(entries);
+  }
+  if (topology->value == model::Taos<double>::topology) {
+    return fill_vehicle<model::Taos<double>>(entries);
+  }
+  if (topology->value == model::Masv<double>::topology) {
+    return fill_vehicle<model::Masv<double>>(entries);
+  }
+  entries.refuse(*topology, "allowed are direct simplex taos masv");
+  return {std::nullopt, entries.error()};
+}
+
+PlantImage read_plant_image(const std::string& path) {
+  const ReadText file = read_image_text(path);
+  if (!file.error.empty()) {
+    return {std::nullopt, file.error};
+  }
+  PlantImage image = parse_plant_image(file.text, path);
+  image.text = file.text;
+  return image;
+}
+
+}  // namespace hotfire::firmware

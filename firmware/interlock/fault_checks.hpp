@@ -1,0 +1,117 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "firmware/interlock/faults.hpp"
+#include "hal/plant_bus.hpp"
+
+namespace hotfire::firmware {
+
+/// What a lab allows. A position is that of a piston [m], a command what the profile asks of it [m], ages in ns.
+struct FaultLimits {
+  std::int64_t command_age_ns = 0;  ///< of the newest command
+  std::int64_t reading_age_ns = 0;  ///< of each reading
+  double lowest_reading = 0.0;      ///< what the sensor can give
+  double highest_reading = 0.0;
+  double disagreement = 0.0;     ///< between the two readings of one actuator
+  double lowest_position = 0.0;  ///< where the piston may be, and be sent
+  double highest_position = 0.0;
+  double command_rate = 0.0;    ///< [m/s]
+  double position_error = 0.0;  ///< between command and position
+  std::uint64_t position_error_cycles =
+      0;  ///< for longer than this in a row: an actuator lags in every step it is asked for
+};
+
+/// One actuator in one cycle: what it is asked for, and its two redundant readings.
+struct ObservedActuator {
+  double command = 0.0;
+  std::array<double, 2> readings{};
+  std::array<std::int64_t, 2> reading_ages_ns{};
+};
+
+/// The rest of the rig in one cycle.
+struct ObservedRig {
+  std::int64_t command_age_ns = 0;
+  bool bad_frame = false;  ///< since the cycle before, as the four that follow
+  bool transmit_queue_full = false;
+  bool overrun = false;
+  bool dropped_recording = false;
+  bool emergency_stop = false;  ///< pressed, or the line cannot be read
+  bool hydraulic_enable = true;
+  bool bus_off = false;
+  bool bus_down = false;
+};
+
+/// Finds what is wrong in a cycle, before anything is sent in it. A value that is not finite is that fault and no other of
+/// its actuator: its limits say nothing then. Pure logic, no allocation.
+class FaultChecks {
+ public:
+  /// `period` in s.
+  FaultChecks(const FaultLimits& limits, double period) noexcept : limits_(limits), period_(period) {}
+
+  FaultSet look(const ObservedRig& rig, std::span<const ObservedActuator> actuators) noexcept {
+    FaultSet found;
+    found.add_if(!(rig.command_age_ns <= limits_.command_age_ns), Fault::stale_command);
+    found.add_if(rig.bad_frame, Fault::bad_frame);
+    found.add_if(rig.transmit_queue_full, Fault::transmit_queue_full);
+    found.add_if(rig.overrun, Fault::overrun);
+    found.add_if(rig.dropped_recording, Fault::recorder_full);
+    found.add_if(rig.emergency_stop, Fault::emergency_stop);
+    found.add_if(!rig.hydraulic_enable, Fault::hydraulic_enable_lost);
+    found.add_if(rig.bus_off, Fault::bus_off);
+    found.add_if(rig.bus_down, Fault::bus_down);
+    const std::size_t count = std::min(actuators.size(), hal::kMaxActuators);
+    for (std::size_t i = 0; i < count; ++i) {
+      found |= look_at(actuators[i], last_[i]);
+    }
+    return found;
+  }
+
+  /// The commands of the cycle before are no longer what the next ones are compared with: after a stop.
+  void forget() noexcept { last_ = {}; }
+
+ private:
+  struct Last {
+    double command = 0.0;
+    bool has_command = false;
+    std::uint64_t error_cycles = 0;
+  };
+
+  FaultSet look_at(const ObservedActuator& actuator, Last& last) noexcept {
+    const auto& [first, second] = actuator.readings;
+    if (!std::isfinite(first) || !std::isfinite(second) || !std::isfinite(actuator.command)) {
+      last = {};
+      return Fault::not_finite;
+    }
+    FaultSet found;
+    for (std::size_t i = 0; i < actuator.readings.size(); ++i) {
+      const double reading = actuator.readings[i];
+      found.add_if(!(reading >= limits_.lowest_reading && reading <= limits_.highest_reading), Fault::out_of_range);
+      found.add_if(!(actuator.reading_ages_ns[i] <= limits_.reading_age_ns), Fault::stale_sensor);
+      found.add_if(!within(reading), Fault::limit);
+    }
+    found.add_if(!(std::abs(first - second) <= limits_.disagreement), Fault::readings_disagree);
+    found.add_if(!within(actuator.command), Fault::limit);
+    const double rate = last.has_command ? std::abs(actuator.command - last.command) / period_ : 0.0;
+    found.add_if(!(rate <= limits_.command_rate), Fault::limit);
+    const bool astray = !(std::abs(actuator.command - 0.5 * (first + second)) <= limits_.position_error);
+    last = {actuator.command, true, astray ? last.error_cycles + 1 : 0};
+    found.add_if(last.error_cycles > limits_.position_error_cycles, Fault::position_error);
+    return found;
+  }
+
+  bool within(double position) const noexcept {
+    return position >= limits_.lowest_position && position <= limits_.highest_position;
+  }
+
+  FaultLimits limits_;
+  double period_;
+  std::array<Last, hal::kMaxActuators> last_{};
+};
+
+}  // namespace hotfire::firmware

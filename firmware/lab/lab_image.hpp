@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "firmware/lab/lab.hpp"
+
+namespace hotfire::firmware {
+
+inline constexpr std::string_view kLabTopology = "lab";
+
+/// Names of the GPIO lines of a lab.
+struct LabLines {
+  std::string emergency_stop;    ///< input: on while it is released, so that a broken wire is a stop
+  std::string hydraulic_enable;  ///< input: on while the hydraulic supply may be used
+  std::string arm;               ///< input: a person's button; the first press arms, the next starts
+  std::string supply;            ///< output: on while anything is driven
+  std::string heartbeat;         ///< output: changes every cycle
+  std::string fault;             ///< output: on while faulted
+};
+
+/// A lab, or why there is none: file, line, key, value and what is allowed.
+struct LabImage {
+  std::optional<LabSettings> settings;
+  LabLines lines{};
+  std::string error{};
+  std::string text{};  ///< the image itself
+};
+
+/// Reads what `hotfire lab` makes of a profile file, lines `key value` in SI as those of a plant image:
+///
+///     schema 1
+///     topology lab
+///     actuators 1
+///     piston_per_command 0x1.3p-2
+///     limits.reading_age 0x1.4p-7
+///     line.arm arm
+///     segment.0.duration 0x1p+2
+///     segment.0.from 0x0p+0
+///
+/// Every key is there; segments count from 0. What a segment asks for is a list with a number for each actuator, commas
+/// between them. As strict as a plant image. `period` in s.
+LabImage parse_lab_image(const std::string& text, const std::string& name, double period);
+
+}  // namespace hotfire::firmware

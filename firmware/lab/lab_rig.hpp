@@ -1,0 +1,244 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "firmware/can/layout.hpp"
+#include "firmware/can/message_follower.hpp"
+#include "firmware/can/periodic_frame.hpp"
+#include "firmware/lab/lab.hpp"
+#include "firmware/recording/recorder.hpp"
+#include "hal/can.hpp"
+#include "hal/clock.hpp"
+#include "hal/gpio.hpp"
+#include "hal/recording/fnv1a.hpp"
+
+namespace hotfire::firmware {
+
+/// Where the lines of a lab stand in its GPIO settings.
+enum LabInput : std::uint8_t { kEmergencyStopReleased, kHydraulicEnabled, kArm };
+enum LabOutput : std::uint8_t { kSupply, kHeartbeat, kFault };
+
+/// A lab on its bus and lines. For the loop it is plant and bus in one: a cycle reads the bus and the lines, looks for
+/// faults, sets the lines, and then sends the currents of that cycle if anything may be driven. `Can` has the ids of
+/// `can::controller_ids`.
+///
+/// When driving ends, a command that is still before the bus one cycle later is taken back with `stop`, so that it does not
+/// leave when the bus can be used again. After bus-off, down or that, the first press of the arm button takes the bus into
+/// use again, with what is heard from then on, and the next one arms.
+template <hal::CanBus Can, hal::GpioLines Gpio, hal::Clock Clock>
+class LabRig {
+ public:
+  LabRig(Lab& lab, Can& can, Gpio& gpio, Clock& clock, can::Layout layout, std::int64_t period_ns) noexcept
+      : lab_(lab),
+        can_(can),
+        gpio_(gpio),
+        clock_(clock),
+        layout_(layout),
+        messages_(can::reading_messages(layout, lab.actuators())),
+        sync_(can::sync::kMessage, period_ns),
+        heartbeat_(can::heartbeat::kMessage, period_ns) {}
+
+  /// The recorder whose drops are a fault; null: nothing is recorded.
+  void watch(const Recorder* recorder) noexcept { recorder_ = recorder; }
+
+  /// From any thread: the profile is to be stopped and the program to end. `ended` becomes true when nothing is driven then,
+  /// and when the profile has been run.
+  void ask_to_stop_when(const std::atomic<bool>& asked) noexcept { stop_asked_ = &asked; }
+  const std::atomic<bool>& ended() const noexcept { return ended_; }
+
+  bool try_receive_command(hal::Command&) noexcept {
+    const std::int64_t now = clock_.now_ns();
+    can_.receive(now);
+    pending_ = can_.anything_pending();
+    const bool heard = take_readings(now);
+    take_lines();
+    const bool driven = lab_.outputs().interlock.drive;
+    inputs_.rig.command_age_ns = driven && sent_ns_ != 0 ? now - sent_ns_ : 0;
+    inputs_.rig.overrun = overran_;
+    inputs_.rig.transmit_queue_full = driven && not_taken_ >= kMostNotTaken;
+    inputs_.rig.dropped_recording = recorder_ != nullptr && recorder_->dropping();
+    inputs_.rig.bus_off = can_.state() == hal::CanState::bus_off;
+    inputs_.rig.bus_down = can_.state() == hal::CanState::down;
+    inputs_.stop = stop_asked_ != nullptr && stop_asked_->load(std::memory_order_relaxed);
+    overran_ = false;
+    return heard;
+  }
+
+  void step(const hal::Command&) noexcept { lab_.step(inputs_); }
+
+  bool try_send_reading(const hal::Reading&) noexcept {
+    const InterlockOutputs& interlock = lab_.outputs().interlock;
+    set_lines(interlock);
+    if (heartbeat_.is_due()) {
+      heartbeat_.send(can_, std::array{kNode, static_cast<double>(interlock.state)});
+    }
+    const bool taken = !interlock.drive || send_currents();
+    sync_.send(can_, {});
+    if (!interlock.drive) {
+      take_back();
+      not_taken_ = 0;
+      sent_ns_ = 0;
+      ended_.store(inputs_.stop || lab_.completed(), std::memory_order_relaxed);
+    }
+    return taken;
+  }
+
+  void note_overrun() noexcept { overran_ = true; }
+
+  std::size_t actuators() const noexcept { return lab_.actuators(); }
+  /// The commands [rad].
+  std::span<const double> measured() const noexcept { return std::span(lab_.outputs().commands).first(lab_.actuators()); }
+  static constexpr std::uint32_t missing() noexcept { return 0; }
+  void add_to(hal::Fnv1a& hash) const noexcept { lab_.add_to(hash); }
+
+  const Lab& lab() const noexcept { return lab_; }
+  /// What the lab has seen in this cycle.
+  const LabInputs& inputs() const noexcept { return inputs_; }
+  const can::MessageCounters& readings(std::size_t message) const noexcept { return followers_[message].counters(); }
+  std::uint64_t unsayable() const noexcept { return unsayable_; }
+
+ private:
+  static constexpr std::size_t kMostMessages = 2;
+  static constexpr double kNode = 1.0;
+  /// A driver that confirms a frame a little late is no fault; one that does so twice in a row is.
+  static constexpr unsigned kMostNotTaken = 2;
+
+  bool take_readings(std::int64_t now) noexcept {
+    std::array<std::array<double, can::pistons_fd::kSignals.size()>, kMostMessages> values{};
+    std::array<bool, kMostMessages> taken{};
+    bool all = true;
+    bool bad = false;
+    for (std::size_t i = 0; i < messages_; ++i) {
+      const hal::CanMailbox& box = can_.mailbox(i);
+      taken[i] = box.fresh && followers_[i].take(can::reading_message(layout_, i), box.frame, values[i]);
+      arrived_ns_[i] = taken[i] ? box.arrived_ns : arrived_ns_[i];
+      bad = bad || (box.fresh && !taken[i]);
+      all = all && taken[i];
+    }
+    inputs_.rig.bad_frame = bad || lost_since_last_cycle();
+    for (std::size_t i = 0; i < lab_.actuators(); ++i) {
+      const can::PistonPlace place = can::place_of_piston(layout_, i);
+      if (taken[place.message]) {
+        inputs_.readings[i] = {values[place.message][place.value], values[place.message][place.value + 1]};
+      }
+      inputs_.ages_ns[i] = arrived_ns_[place.message] == 0 ? kNever : now - arrived_ns_[place.message];
+    }
+    return all;
+  }
+
+  /// Whether the counters say that more frames are missing than were overtaken by newer ones.
+  bool lost_since_last_cycle() noexcept {
+    std::uint64_t skipped = 0;
+    for (std::size_t i = 0; i < messages_; ++i) {
+      skipped += followers_[i].counters().skipped;
+    }
+    const std::uint64_t superseded = can_.counters().superseded;
+    const bool lost = skipped - skipped_before_ > superseded - superseded_before_;
+    skipped_before_ = skipped;
+    superseded_before_ = superseded;
+    return lost;
+  }
+
+  void take_lines() noexcept {
+    hal::GpioLevels levels = 0;
+    const bool readable = gpio_.try_read(levels) && lines_set_;
+    const auto on = [&](LabInput line) { return readable && ((levels >> line) & 1U) != 0; };
+    inputs_.rig.emergency_stop = !on(kEmergencyStopReleased);
+    inputs_.rig.hydraulic_enable = on(kHydraulicEnabled);
+    const bool pressed = on(kArm);
+    if (pressed && !pressed_before_ && !lab_.outputs().interlock.drive) {
+      press_is_spent_ = takes_bus_into_use();
+    }
+    press_is_spent_ = press_is_spent_ && pressed;
+    pressed_before_ = pressed;
+    // The interlock wants a switch seen off in its state before it acts, so one button can be both.
+    inputs_.arm = inputs_.start = pressed && !press_is_spent_;
+  }
+
+  /// Whether the bus was given up, which this press then is about.
+  bool takes_bus_into_use() noexcept {
+    if (can_.state() < hal::CanState::bus_off && !taken_back_) {
+      return false;
+    }
+    if (can_.rearm()) {
+      taken_back_ = false;
+      arrived_ns_.fill(0);
+      for (can::MessageFollower& follower : followers_) {
+        follower.forget();
+      }
+    }
+    return true;
+  }
+
+  void set_lines(const InterlockOutputs& interlock) noexcept {
+    beat_ = !beat_;
+    lines_set_ = gpio_.try_write((interlock.drive ? 1U << kSupply : 0U) | (beat_ ? 1U << kHeartbeat : 0U) |
+                                 (interlock.fault_out ? 1U << kFault : 0U));
+  }
+
+  bool send_currents() noexcept {
+    const can::Message& message = can::command_message(layout_);
+    hal::CanFrame frame;
+    if (!can::encode(message, std::span(lab_.outputs().currents).first(message.signals.size()), counter_++, frame)) {
+      ++unsayable_;
+      return false;
+    }
+    const hal::CanSend sent = can_.try_send(frame);
+    const bool taken = sent == hal::CanSend::taken;
+    not_taken_ = taken ? 0 : sent == hal::CanSend::queue_full ? kMostNotTaken : not_taken_ + 1;
+    drove_ = drove_ || taken;
+    sent_ns_ = taken ? clock_.now_ns() : sent_ns_;
+    undriven_cycles_ = 0;
+    return taken;
+  }
+
+  void take_back() noexcept {
+    if (!drove_ || ++undriven_cycles_ < 2) {
+      return;
+    }
+    drove_ = false;
+    if (pending_) {
+      can_.stop();
+      taken_back_ = true;
+    }
+  }
+
+  static constexpr std::int64_t kNever = std::int64_t{1} << 62;
+
+  Lab& lab_;
+  Can& can_;
+  Gpio& gpio_;
+  Clock& clock_;
+  can::Layout layout_;
+  std::size_t messages_;
+  can::PeriodicFrame sync_;
+  can::PeriodicFrame heartbeat_;
+  const Recorder* recorder_ = nullptr;
+  const std::atomic<bool>* stop_asked_ = nullptr;
+  std::atomic<bool> ended_{false};
+  LabInputs inputs_;
+  std::array<can::MessageFollower, kMostMessages> followers_;
+  std::array<std::int64_t, kMostMessages> arrived_ns_{};
+  std::uint64_t skipped_before_ = 0;
+  std::uint64_t superseded_before_ = 0;
+  std::uint64_t unsayable_ = 0;
+  std::uint64_t undriven_cycles_ = 0;
+  std::int64_t sent_ns_ = 0;  ///< when the last command was handed over; 0: none since driving began
+  std::uint8_t counter_ = 0;
+  unsigned not_taken_ = 0;
+  bool overran_ = false;
+  bool lines_set_ = true;
+  bool pressed_before_ = true;
+  bool press_is_spent_ = false;
+  bool beat_ = false;
+  bool drove_ = false;    ///< a command was sent that is not known to be out
+  bool pending_ = false;  ///< at the beginning of the cycle a frame of the one before was not out
+  bool taken_back_ = false;
+};
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,181 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "firmware/plant/declared_faults.hpp"
+#include "firmware/plant/white_noise.hpp"
+#include "hal/plant_bus.hpp"
+#include "hal/recording/fnv1a.hpp"
+#include "model/step_size.hpp"
+#include "model/vehicle.hpp"
+#include "model/vehicle_sensors.hpp"
+
+namespace hotfire::firmware {
+
+/// A vehicle, every engine with its two actuators on one structure, behind the plant's side of a bus: one period a step,
+/// split into equal steps of the model. Actuators in the order of the vehicle's axes: pitch and yaw of engine 1, then of
+/// engine 2 and so on. In the steady state under no command first. Plays the faults it is given.
+template <class Vehicle>
+class VehiclePlant {
+ public:
+  using Parameters = model::InstrumentedVehicle<Vehicle>;
+  static constexpr std::string_view topology = Vehicle::topology;
+  static constexpr auto channels = Vehicle::AxisModel::channels;
+  static constexpr auto channel_units = Vehicle::AxisModel::channel_units;
+  static constexpr std::string_view input_channel = Vehicle::AxisModel::input_channel;
+  static constexpr std::string_view input_unit = Vehicle::AxisModel::input_unit;
+  static_assert(Vehicle::kAxes <= hal::kMaxActuators);
+  static_assert(Vehicle::kChannels == channels.size());
+
+  /// `period` in s.
+  explicit VehiclePlant(const Parameters& parameters, double period, const std::vector<PlayedFault>& faults = {})
+      : period_(period),
+        steps_(model::steps_per_period(period)),
+        vehicle_(parameters.vehicle, period / steps_),
+        state_(std::make_unique<State>(vehicle_.steady({}))),
+        modes_(static_cast<std::size_t>(parameters.vehicle.modes.modes)),
+        sensors_(parameters.sensors, *state_),
+        readings_(faults, period, Vehicle::kAxes, channels.size()) {
+    make_broken(parameters.vehicle, faults);
+    readings_.start([this](std::span<double> readings) noexcept { measure(readings); });
+  }
+
+  int steps_per_cycle() const noexcept { return steps_; }
+
+  void step(const hal::Command& command) noexcept {
+    std::copy_n(command.values.begin(), Vehicle::kAxes, inputs_.commands.begin());
+    const Vehicle& vehicle = vehicle_now();
+    for (int i = 0; i < steps_; ++i) {
+      vehicle.step(*state_, inputs_);
+    }
+    readings_.take([this](std::span<double> readings) noexcept { measure(readings); });
+    if (has_strings_) {
+      sensors_.read_strings(*state_, period_, string_noise_);
+    }
+  }
+
+  static constexpr std::size_t actuators() noexcept { return Vehicle::kAxes; }
+
+  /// What the sensors read, actuator after actuator, in the order of `channels`.
+  std::span<const double> measured() const noexcept { return readings_.values(); }
+
+  /// Gives every engine its four string potentiometers, where the vehicle's sensors have them. Before the first step.
+  void string_up() noexcept {
+    has_strings_ = true;
+    sensors_.read_strings(*state_, period_, string_noise_);
+  }
+
+  /// What the string potentiometers read: the change of each length from zero angles [m], engine after engine.
+  std::span<const double> strings() const noexcept {
+    return has_strings_ ? std::span<const double>(sensors_.strings()) : std::span<const double>();
+  }
+
+  /// Which of the readings of `measured` are not sent, one bit each.
+  std::uint32_t missing() const noexcept { return readings_.missing(); }
+
+  /// Adds the continuous state of every axis, of the modes and of the gimbals, and what the sensors read. What an effect
+  /// remembers is not in it: it acts on the state in the next step.
+  void add_to(hal::Fnv1a& hash) const noexcept {
+    for (const auto& axis : state_->axes) {
+      hash.add(std::span(axis.y.data(), static_cast<std::size_t>(axis.y.size())));
+    }
+    for (std::size_t k = 0; k < modes_; ++k) {
+      const auto& mode = state_->structure.modes[k];
+      hash.add(std::array{mode.displacement, mode.velocity});
+    }
+    for (const auto& gimbal : state_->gimbals) {
+      hash.add(std::span(gimbal.displacement.data(), static_cast<std::size_t>(gimbal.displacement.size())));
+      hash.add(std::array{gimbal.bristle.pitch, gimbal.bristle.yaw});
+    }
+    hash.add(measured());
+  }
+
+ private:
+  using State = typename Vehicle::State;
+
+  /// The vehicle while the same faults of its actuators last: the state goes on in it.
+  struct Broken {
+    Broken(std::uint64_t first, std::uint64_t end, const typename Vehicle::Parameters& parameters, double h)
+        : from(first), to(end), vehicle(parameters, h) {}
+
+    std::uint64_t from;
+    std::uint64_t to;
+    Vehicle vehicle;
+  };
+
+  /// The axes are coupled, so faults that last at the same time need one vehicle that has them all: one for every stretch of
+  /// cycles between two moments at which a fault begins or ends.
+  void make_broken(const typename Vehicle::Parameters& parameters, const std::vector<PlayedFault>& faults) {
+    std::vector<std::uint64_t> moments;
+    for (const PlayedFault& fault : faults) {
+      if (is_of_actuator(fault.kind)) {
+        const CycleSpan cycles(fault, period_);
+        moments.insert(moments.end(), {cycles.from, cycles.to});
+      }
+    }
+    std::sort(moments.begin(), moments.end());
+    for (std::size_t i = 1; i < moments.size(); ++i) {
+      auto changed = std::make_unique<typename Vehicle::Parameters>(parameters);
+      if (moments[i - 1] < moments[i] && put_those_at(moments[i - 1], faults, *changed)) {
+        broken_.push_back(std::make_unique<Broken>(moments[i - 1], moments[i], *changed, vehicle_.step_size()));
+      }
+    }
+  }
+
+  /// False if there are none.
+  bool put_those_at(std::uint64_t cycle, const std::vector<PlayedFault>& faults,
+                    typename Vehicle::Parameters& parameters) const {
+    bool any = false;
+    for (const PlayedFault& fault : faults) {
+      if (!is_of_actuator(fault.kind) || !CycleSpan(fault, period_).has(cycle)) {
+        continue;
+      }
+      any = true;
+      for (std::size_t axis = 0; axis < actuators(); ++axis) {
+        if (fault.is_of(axis)) {
+          put_into(parameters.axes[axis], fault);
+        }
+      }
+    }
+    return any;
+  }
+
+  const Vehicle& vehicle_now() const noexcept {
+    for (const auto& one : broken_) {
+      if (readings_.cycle() >= one->from && readings_.cycle() < one->to) {
+        return one->vehicle;
+      }
+    }
+    return vehicle_;
+  }
+
+  void measure(std::span<double> readings) noexcept {
+    sensors_.read_pistons(*state_, period_, piston_noise_);
+    const auto& measured = Vehicle::measured(*state_);
+    std::copy(measured.begin(), measured.end(), readings.begin());
+    for (std::size_t axis = 0; axis < actuators(); ++axis) {
+      readings[axis * channels.size()] = sensors_.pistons()[axis];
+    }
+  }
+
+  double period_;
+  int steps_;
+  Vehicle vehicle_;
+  std::unique_ptr<State> state_;
+  std::size_t modes_;
+  typename Vehicle::Inputs inputs_;
+  model::VehicleReadings<Vehicle> sensors_;
+  WhiteNoise piston_noise_{101};
+  WhiteNoise string_noise_{102};  ///< its own: what the pistons read does not depend on whether there are strings
+  bool has_strings_ = false;
+  PlayedReadings readings_;
+  std::vector<std::unique_ptr<Broken>> broken_;
+};
+
+}  // namespace hotfire::firmware

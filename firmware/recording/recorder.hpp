@@ -1,0 +1,72 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "firmware/recording/recording_ring.hpp"
+#include "hal/ordinary_thread.hpp"
+#include "hal/recording/format.hpp"
+#include "hal/recording/sink.hpp"
+
+namespace hotfire::firmware {
+
+/// What became of the cycles that a recorder was given: offered = stored + dropped, exactly.
+struct RecorderAccount {
+  std::uint64_t offered = 0;
+  std::uint64_t stored = 0;
+  std::string failure;  ///< why the recording ended before the loop; empty: it did not
+
+  std::uint64_t dropped() const noexcept { return offered - stored; }
+};
+
+/// Takes cycles from a real-time loop and hands them to a sink by a thread of its own, which is not real-time. Between the
+/// two is a ring: when the sink is slower than the loop for so long that the ring is full, cycles are dropped, and counted.
+class Recorder {
+ public:
+  /// How often the thread empties the ring: what is lost when the process is killed is no more than this and one write.
+  static constexpr std::int64_t kEmptyEveryNs = 50'000'000;
+  /// How often what is written is also made safe from a loss of power.
+  static constexpr std::int64_t kSyncEveryNs = 1'000'000'000;
+
+  /// `slots`: cycles that the ring holds.
+  Recorder(hal::RecordingSink& sink, std::size_t actuators, std::size_t readings, std::size_t slots);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Starts the thread. Before the real-time set-up of the calling thread.
+  std::optional<hal::Failure> start();
+
+  /// Real-time, wait-free: copies the cycle into the ring, or drops it.
+  void record(const hal::CycleHead& head, std::span<const double> commands, std::span<const double> readings) noexcept;
+
+  /// True once a cycle has been dropped, whether the ring was full or the sink refuses any more. Real-time.
+  bool dropping() const noexcept { return dropping_; }
+
+  /// Writes what is left in the ring and the end of the recording, and ends the thread. Not real-time. To be called once.
+  RecorderAccount close();
+
+ private:
+  void empty_until_closed();
+  void empty_ring();
+  void append(hal::BlockHead& head, std::span<const std::byte> content);
+
+  hal::RecordingSink& sink_;
+  RecordingRing ring_;
+  std::uint64_t offered_ = 0;  ///< the loop's own
+  bool dropping_ = false;      ///< the loop's own
+  std::atomic<bool> refused_{false};
+  std::uint64_t stored_ = 0;  ///< the thread's own
+  std::string failure_;       ///< the thread's own
+  std::mutex mutex_;          ///< of `closing_`; the loop never takes it
+  std::condition_variable close_asked_;
+  bool closing_ = false;
+  hal::OrdinaryThread thread_;
+};
+
+}  // namespace hotfire::firmware

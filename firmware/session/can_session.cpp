@@ -1,0 +1,74 @@
+#include "firmware/session/can_session.hpp"
+
+#include <cstdio>
+
+#include "firmware/can/bus_load.hpp"
+#include "firmware/service/status.hpp"
+#include "firmware/text/text.hpp"
+#include "hal/linux/can_bit_rates.hpp"
+#include "hal/linux/posix_clock.hpp"
+
+namespace hotfire::firmware {
+
+void complain(const hal::Failure& failure) {
+  std::fprintf(stderr, "hotfire-rt: %s\n  mend: %s\n", failure.what.c_str(), failure.mend.c_str());
+}
+
+CanSession::CanSession(const Options& options, const can::NodeIds& ids)
+    : options_(options), socket_({options.bus, ids.subscriptions, ids.senders, options.frame_layout() == can::Layout::fd}) {}
+
+int CanSession::open() {
+  if (const auto refused = socket_.open()) {
+    complain(*refused);
+    return kHardware;
+  }
+  if (const auto refused = refuse_load()) {
+    complain(*refused);
+    return kWrongUse;
+  }
+  return kGood;
+}
+
+std::optional<hal::Failure> CanSession::refuse_load() {
+  hal::CanBitRates rates = hal::can_bit_rates(options_.bus);
+  rates.nominal = options_.bit_rate > 0.0 ? options_.bit_rate : rates.nominal;
+  rates.data = options_.data_bit_rate > 0.0 ? options_.data_bit_rate : rates.data;
+  if (rates.nominal == 0.0) {
+    return std::nullopt;
+  }
+  rates.data = rates.data > 0.0 ? rates.data : rates.nominal;
+  load_ = can::bus_load(options_.frame_layout(), options_.actuators, options_.loop.period_ns, rates.nominal, rates.data,
+                        options_.strings);
+  if (*load_ <= hal::kLargestBusLoad) {
+    return std::nullopt;
+  }
+  return hal::Failure{text("%s at %.0f bit/s would be loaded by %.1f %% in the worst case; allowed: %.0f %%",
+                           options_.bus.c_str(), rates.nominal, 100.0 * *load_, 100.0 * hal::kLargestBusLoad),
+                      "a longer --period-us, a faster bus, or --layout fd; 'hotfire check' computes a schedule"};
+}
+
+void CanSession::leave() {
+  constexpr std::int64_t kFrameNs = 1'000'000;
+  constexpr int kMostFrames = 20;
+  const hal::PosixClock clock;
+  for (int i = 0; i < kMostFrames && socket_.anything_pending(); ++i) {
+    clock.sleep_until_ns(clock.now_ns() + kFrameNs);
+    socket_.receive(clock.now_ns());
+  }
+  if (!socket_.stop()) {
+    complain({"a frame is still before " + options_.bus + " and cannot be taken back",
+              "'ip link set " + options_.bus + " down'; the program may do that itself with CAP_NET_ADMIN"});
+  }
+}
+
+BusAccount CanSession::account() const {
+  BusAccount account;
+  account.interface = options_.bus;
+  account.layout = options_.frame_layout();
+  account.load = load_;
+  account.state = socket_.state();
+  account.frames = socket_.counters();
+  return account;
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+
+#include "firmware/can/bus_account.hpp"
+#include "firmware/can/layout.hpp"
+#include "firmware/session/options.hpp"
+#include "hal/failure.hpp"
+#include "hal/linux/socket_can.hpp"
+
+namespace hotfire::firmware {
+
+/// A program's CAN interface.
+class CanSession {
+ public:
+  CanSession(const Options& options, const can::NodeIds& ids);
+
+  /// Opens it. Refuses an interface that is not there, no CAN, not FD or down, no permission, and a schedule that takes too
+  /// much of it. Prints the refusal with its mend to standard error and returns the exit status; kGood if there is none.
+  /// Nothing has been sent then.
+  int open();
+
+  /// Sees to it that nothing that was handed to the bus leaves after the program: a command that nobody has acknowledged
+  /// must not move anything when somebody does. A frame that is on its way is given the time it takes; what is left is taken
+  /// back with the interface.
+  void leave();
+
+  hal::SocketCan& socket() noexcept { return socket_; }
+
+  /// Its account so far, without messages.
+  BusAccount account() const;
+
+ private:
+  std::optional<hal::Failure> refuse_load();
+
+  const Options& options_;
+  hal::SocketCan socket_;
+  std::optional<double> load_;
+};
+
+/// Prints what is refused, and how a person mends it, to standard error.
+void complain(const hal::Failure& failure);
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,172 @@
+#include "firmware/session/option_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+#include "firmware/text/text.hpp"
+
+namespace hotfire::firmware {
+namespace {
+
+template <class Integer>
+std::string read_integer(const std::string& value, Integer lowest, Integer highest, Integer& result) {
+  Integer read{};
+  const char* const end = value.data() + value.size();
+  const auto [stop, error] = std::from_chars(value.data(), end, read);
+  if (error != std::errc{} || stop != end || read < lowest || read > highest) {
+    return "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest);
+  }
+  result = read;
+  return {};
+}
+
+std::string read_number(const std::string& value, double lowest, double highest, double& result) {
+  char* end = nullptr;
+  const double read = std::strtod(value.c_str(), &end);
+  if (value.empty() || *end != '\0' || !(read >= lowest && read <= highest)) {
+    return text("a number from %g to %g", lowest, highest);
+  }
+  result = read;
+  return {};
+}
+
+template <class Names, class Enumeration>
+std::string read_name(const std::string& value, const Names& names, Enumeration& result) {
+  const auto found = std::find(names.begin(), names.end(), value);
+  if (found == names.end()) {
+    std::string allowed;
+    for (const std::string_view name : names) {
+      allowed.append(allowed.empty() ? "" : ", ").append(name);
+    }
+    return allowed;
+  }
+  result = static_cast<Enumeration>(found - names.begin());
+  return {};
+}
+
+std::string read_period(const std::string& value, Options& options) {
+  std::int64_t period_us = 0;
+  std::string allowed = read_integer(value, kShortestPeriodNs / 1000, kLongestPeriodNs / 1000, period_us);
+  options.loop.period_ns = period_us * 1000;
+  return allowed;
+}
+
+std::string read_bus(const std::string& value, Options& options) {
+  options.bus = value;
+  return value.empty() ? "sim, or the name of a CAN interface" : "";
+}
+
+std::string read_layout(const std::string& value, Options& options) {
+  return read_name(value, can::kLayouts, options.layout.emplace());
+}
+
+std::string read_cpu(const std::string& value, Options& options) {
+  return read_integer(value, 0, 1023, options.cpu.emplace());
+}
+
+std::string read_max_latency(const std::string& value, Options& options) {
+  return read_number(value, 0.0, 1e9, options.max_latency_us.emplace());
+}
+
+std::string read_max_step(const std::string& value, Options& options) {
+  return read_number(value, 0.0, 1e9, options.max_step_us.emplace());
+}
+
+constexpr std::uint64_t kManyCycles = 1'000'000'000'000;
+
+constexpr OptionLine kLines[] = {
+    {"--image", "FILE",
+     "plant image; `hotfire plant --model M.toml` makes it from a model file. Without it\n"
+     "`timing` runs the reference axis with every effect active",
+     [](const std::string& value, Options& o) { return o.image = value, std::string(); }},
+    {"--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface, can0 say; default sim", read_bus},
+    {"--gpio", "CHIP", "lab: the chip with its lines, by path, name or label",
+     [](const std::string& value, Options& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }},
+    {"--layout", "L",
+     "frames on a CAN bus: classic (two actuators at most) or fd; default classic if there is\n"
+     "room in it",
+     read_layout},
+    {"--command-per-current", "X", "command that a servovalve current on a CAN bus stands for [rad/A]; default 10",
+     [](const std::string& value, Options& o) { return read_number(value, 1e-6, 1e6, o.command_per_current); }},
+    {"--command-age-ms", "X", "a command on a CAN bus that is older counts as none: no current; default 100",
+     [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }},
+    {"--bit-rate", "N", "of the CAN bus, for the check of its load; default what the interface says",
+     [](const std::string& value, Options& o) { return read_number(value, 1e4, 1e6, o.bit_rate); }},
+    {"--data-bit-rate", "N", "of the data of FD frames; default what the interface says",
+     [](const std::string& value, Options& o) { return read_number(value, 1e4, 8e6, o.data_bit_rate); }},
+    {"--max-lost", "N", "verdict: no more frames than this lost, repeated, refused or out of order on a CAN bus",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_lost.emplace());
+     }},
+    {"--period-us", "N", "period, 250 to 10000; default 1000. Longer than 500 is split into equal steps", read_period},
+    {"--cycles", "N", "end after N cycles, 0: when interrupted; default 0 for plant, 10000 for timing",
+     [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.cycles); }},
+    {"--warm-up", "N", "cycles before those, counted apart; default 100",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.warm_up_cycles);
+     }},
+    {"--policy", "P", "after an overrun: catch-up (default), skip or stop",
+     [](const std::string& value, Options& o) { return read_name(value, kOverrunPolicies, o.loop.policy); }},
+    {"--priority", "P", "SCHED_FIFO priority, 1 to 99; 0: an ordinary process; default 80",
+     [](const std::string& value, Options& o) { return read_integer(value, 0, 99, o.priority); }},
+    {"--cpu", "C", "run on this CPU only", read_cpu},
+    {"--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running",
+     [](const std::string&, Options& o) { return o.require_realtime = true, std::string(); }},
+    {"--max-latency-us", "X", "verdict: no wake-up later than this", read_max_latency},
+    {"--max-step-us", "X", "verdict: no step of the model longer than this", read_max_step},
+    {"--max-overruns", "N", "verdict: no more overruns than this; default 0 for timing, no limit for plant",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
+     }},
+    {"--actuators", "N",
+     "plants of a model of one axis, 1 to 8, each with a command of its own; default 1. A vehicle (taos,\n"
+     "masv) has as many as it has axes, and needs no --actuators",
+     [](const std::string& value, Options& o) {
+       o.actuators_given = true;
+       return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
+     }},
+    {"--strings", "",
+     "plant on a CAN bus: string potentiometers too, four an engine, whose pitch and yaw are actuators\n"
+     "1 and 2, 3 and 4 and so on",
+     [](const std::string&, Options& o) { return o.strings = true, std::string(); }},
+    {"--sync", "S", "what gives the cycles: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)",
+     [](const std::string& value, Options& o) { return read_name(value, kPaceKinds, o.pace); }},
+    {"--max-missed-syncs", "N", "end after more than N in a row; default 10",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
+     }},
+    {"--sync-patience-ms", "X",
+     "how long a late SYNC is waited for before its cycle is run without it; default half a period",
+     [](const std::string& value, Options& o) { return read_number(value, 0.0, 1e6, o.sync_patience_ms.emplace()); }},
+    {"--lockstep", "", "controller: no cycle before the plant has answered the one before",
+     [](const std::string&, Options& o) { return o.lockstep = true, std::string(); }},
+    {"--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`",
+     [](const std::string& value, Options& o) { return o.recording = value, std::string(); }},
+    {"--overwrite", "", "replace an older file that --record names, which is refused otherwise",
+     [](const std::string&, Options& o) { return o.overwrite = true, std::string(); }},
+    {"--record-buffer-s", "X", "how long the disk may stall before cycles are dropped; default 8",
+     [](const std::string& value, Options& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }},
+    {"--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384",
+     [](const std::string& value, Options& o) {
+       return read_integer(value, std::uint64_t{1}, std::uint64_t{1} << 24, o.record_max_mib);
+     }},
+    {"--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0",
+     [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped); }},
+    {"--command", "SHAPE", "what bus sim, or the controller, commands: steps (default), sine or rest",
+     [](const std::string& value, Options& o) {
+       return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);
+     }},
+    {"--amplitude", "X", "of the command, in the plant's unit (rad, or the record's force); default 0.01",
+     [](const std::string& value, Options& o) { return read_number(value, -1e9, 1e9, o.source.amplitude); }},
+    {"--frequency", "HZ", "of the command; default 0.5",
+     [](const std::string& value, Options& o) { return read_number(value, 0.0, 1000.0, o.source.frequency); }},
+    {"--json", "", "print the result as JSON, shaped as cyclictest's",
+     [](const std::string&, Options& o) { return o.json = true, std::string(); }}};
+
+}  // namespace
+
+std::span<const OptionLine> option_lines() { return kLines; }
+
+}  // namespace hotfire::firmware

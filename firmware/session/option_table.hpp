@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "firmware/session/options.hpp"
+
+namespace hotfire::firmware {
+
+/// One option of hotfire-rt: what the help says, and how it is read.
+struct OptionLine {
+  std::string_view name;
+  std::string_view value;    ///< empty: a flag
+  std::string_view meaning;  ///< a second line after a line feed
+  /// Reads a value into the options; returns what is allowed if it is not.
+  std::string (*read)(const std::string& value, Options& options);
+};
+
+/// Every option, in the order of the help.
+std::span<const OptionLine> option_lines();
+
+}  // namespace hotfire::firmware

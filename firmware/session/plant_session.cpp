@@ -1,0 +1,171 @@
+#include <memory>
+
+#include "firmware/can/plant_bus.hpp"
+#include "firmware/can/sync_source.hpp"
+#include "firmware/image/image_plant.hpp"
+#include "firmware/plant/reference_plant.hpp"
+#include "firmware/session/can_session.hpp"
+#include "firmware/session/run_loop.hpp"
+#include "firmware/text/text.hpp"
+#include "hal/arithmetic/denormals.hpp"
+#include "hal/linux/posix_clock.hpp"
+#include "hal/linux/socket_can_listener.hpp"
+#include "hal/sim/plant_bus.hpp"
+#include "hal/sim/sync_source.hpp"
+
+namespace hotfire::firmware {
+namespace {
+
+using Clock = hal::PosixClock;
+using Complete = std::function<void(Session&)>;
+using CanPlantBus = can::PlantBus<hal::SocketCan, Clock>;
+
+/// [s]
+double period_of(const Options& options) { return static_cast<double>(options.loop.period_ns) * 1e-9; }
+
+/// A plant between its bus and its recording.
+template <class Plant>
+class PlantSession {
+ public:
+  PlantSession(const Options& options, const PlantImage& image, std::unique_ptr<Plant> plant)
+      : options_(options), image_(image), period_(period_of(options)), plant_(std::move(plant)) {}
+
+  int run_without_wire() {
+    hal::sim::SimulatedPlantBus wire(options_.source, period_);
+    return run_paced(wire, [](Session&) {});
+  }
+
+  int run_on_can() {
+    CanSession session(options_, can::plant_ids(options_.frame_layout(), options_.actuators, options_.strings));
+    if (const int status = session.open(); status != kGood) {
+      return status;
+    }
+    if (options_.strings) {
+      plant_->string_up();
+    }
+    CanPlantBus wire(session.socket(), clock_,
+                     {options_.frame_layout(), options_.actuators, Plant::channels.size(), options_.command_per_current,
+                      options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6)});
+    const Complete complete = [&](Session& result) {
+      BusAccount account = session.account();
+      account.messages = {
+          {can::command_message(options_.frame_layout()).name, wire.commands(), session.socket().mailbox(0).superseded}};
+      account.stale_cycles = wire.stale_cycles();
+      account.too_old = wire.too_old();
+      account.unsayable = wire.unsayable();
+      result.bus = account;
+    };
+    if (options_.pace != PaceKind::can) {
+      return run_paced(wire, complete);
+    }
+    hal::SocketCanListener frames(options_.bus, {can::id_of(can::sync::kMessage)});
+    if (const auto refused = frames.open()) {
+      complain(*refused);
+      return kHardware;
+    }
+    can::CanSyncSource syncs(frames);
+    return run_locked(wire, syncs, complete);
+  }
+
+ private:
+  template <class Wire>
+  int run_paced(Wire& wire, const Complete& complete) {
+    if (options_.pace == PaceKind::clock) {
+      return run(wire, OwnPace<Clock>(clock_, options_.loop.period_ns), complete);
+    }
+    hal::sim::SimulatedSyncSource<Clock> syncs(clock_, options_.loop.period_ns);
+    return run_locked(wire, syncs, complete);
+  }
+
+  template <class Wire, class Syncs>
+  int run_locked(Wire& wire, Syncs& syncs, const Complete& complete) {
+    return run(wire,
+               SyncPace<Clock, Syncs>(clock_, syncs, options_.loop.period_ns, options_.most_missed_syncs, patience_ns()),
+               complete);
+  }
+
+  template <class Wire, class Pace>
+  int run(Wire& wire, Pace pace, const Complete& complete) {
+    using Bus = PlayedBus<Wire>;
+    Bus bus(wire, image_.faults, period_);
+    std::unique_ptr<RecordingSession> recording;
+    if (!options_.recording.empty()) {
+      recording = std::make_unique<RecordingSession>(options_, RecordedPlant::of(*plant_, image_.text));
+      if (const auto failure = recording->start()) {
+        complain(*failure);
+        return kWrongUse;
+      }
+    }
+    const auto loop = std::make_unique<Loop<Plant, Bus, Clock, Pace, Recorder>>(
+        *plant_, bus, clock_, options_.loop, pace, recording ? &recording->recorder() : nullptr);
+    Session session{options_,        loop->result(),       Plant::topology,
+                    Plant::channels, Plant::channel_units, plant_->steps_per_cycle()};
+    session.is_vehicle = actuators_of(*image_.parameters) != 0;
+    return run_loop(*loop, session, recording.get(), complete);
+  }
+
+  std::int64_t patience_ns() const {
+    return options_.sync_patience_ms ? static_cast<std::int64_t>(*options_.sync_patience_ms * 1e6)
+                                     : options_.loop.period_ns / 2;
+  }
+
+  const Options& options_;
+  const PlantImage& image_;
+  double period_;
+  Clock clock_;
+  std::unique_ptr<Plant> plant_;
+};
+
+/// The image that the options name, or the reference plant.
+PlantImage image_of(const Options& options) {
+  if (!options.image.empty()) {
+    return read_plant_image(options.image);
+  }
+  PlantImage reference;
+  reference.parameters = reference_plant_with_every_effect();
+  return reference;
+}
+
+/// What of the options the plant of the image cannot be.
+std::optional<hal::Failure> refuse_options(const Options& options, const PlantImage& image) {
+  const std::size_t own = actuators_of(*image.parameters);
+  if (own != 0 && options.actuators_given && options.actuators != own) {
+    return hal::Failure{text("--actuators %zu: the model is a vehicle of %zu actuators", options.actuators, own),
+                        "leave --actuators out: a vehicle says itself how many it has"};
+  }
+  if (options.on_can() && own > can::most_actuators(options.layout.value_or(can::Layout::fd))) {
+    return hal::Failure{text("--layout %s has no room for the %zu actuators of the model",
+                             can::kLayouts[static_cast<std::size_t>(*options.layout)].data(), own),
+                        "leave --layout out"};
+  }
+  if (options.on_can() && std::holds_alternative<model::Direct<double>::Parameters>(*image.parameters)) {
+    return hal::Failure{"a model of topology direct has no servovalve that a CAN bus could command",
+                        "a model of topology simplex, taos or masv, or --bus sim"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+int run_plant(const Options& asked) {
+  const PlantImage image = image_of(asked);
+  if (!image.parameters) {
+    std::fprintf(stderr, "hotfire-rt: %s\n", image.error.c_str());
+    return kBadData;
+  }
+  if (const auto refused = refuse_options(asked, image)) {
+    complain(*refused);
+    return kWrongUse;
+  }
+  Options options = asked;
+  if (const std::size_t own = actuators_of(*image.parameters); own != 0) {
+    options.actuators = own;
+  }
+  const hal::FlushDenormals flush;
+  return with_plant(image, period_of(options), options.actuators, [&]<class Plant>(std::unique_ptr<Plant> plant) {
+    PlantSession<Plant> session(options, image, std::move(plant));
+    return options.on_can() ? session.run_on_can() : session.run_without_wire();
+  });
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <ctime>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "firmware/can/bus_account.hpp"
+#include "firmware/interlock/interlock.hpp"
+#include "firmware/loop/loop.hpp"
+#include "firmware/recording/recorder.hpp"
+#include "firmware/service/status.hpp"
+#include "firmware/session/options.hpp"
+#include "hal/realtime.hpp"
+
+namespace hotfire::firmware {
+
+/// What became of a lab's profile.
+struct LabAccount {
+  RigState state = RigState::safe;  ///< when the loop ended
+  bool completed = false;           ///< the profile was run to its end
+  std::uint64_t armings = 0;
+  std::array<std::uint64_t, kFaults.size()> times_first{};  ///< how often a fault was the first that ended driving
+  Fault first = Fault{};                                    ///< of those since the last arming; 0: none
+};
+
+/// All that is known when a loop has ended.
+struct Session {
+  const Options& options;
+  const LoopResult& result;
+  std::string_view topology;
+  std::span<const std::string_view> channels;
+  std::span<const std::string_view> channel_units;
+  int steps_per_cycle = 1;
+  bool real_time = false;                      ///< memory locked and first-in first-out scheduling
+  std::vector<hal::Failure> failures{};        ///< what of the real-time set-up the machine refused
+  hal::ResourceUsage usage{};                  ///< of the loop after warm-up
+  std::optional<std::uint64_t> allocations{};  ///< of the loop after warm-up, if a guard is linked
+  const RecorderAccount* recording = nullptr;  ///< null: nothing was recorded
+  std::optional<BusAccount> bus{};             ///< none: there is no wire
+  std::optional<LabAccount> lab{};
+  std::string_view input = "commands";  ///< what the loop takes in every cycle, and what it sends
+  std::string_view output = "readings";
+  bool is_vehicle = false;  ///< one plant of all actuators, not a copy for each
+  hal::CpuPlace place{};
+  std::time_t started = 0;
+  std::time_t ended = 0;
+};
+
+/// Whether the limits that were asked for are met, the sentence that says so, and the exit status.
+struct Verdict {
+  bool good = true;
+  std::string reason{};
+  Status status = kGood;
+};
+Verdict judge(const Session& session);
+
+/// The result as text with a picture of the wake-up latency, or as JSON shaped as cyclictest's with `hotfire` added.
+std::string text_report(const Session& session);
+std::string json_report(const Session& session);
+
+/// Each sets up, runs its loop, prints the report to standard output and what the machine refused to standard error, and
+/// returns the exit status: the plant, a controller of one on a CAN bus, a lab, or what the options say.
+int run_plant(const Options& options);
+int run_controller(const Options& options);
+int run_lab(const Options& options);
+int run_session(const Options& options);
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,188 @@
+#include "tools/explain/data/dataset.hpp"
+
+#include <cmath>
+
+#include "tools/files/text/error.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace {
+
+hotfire::Record record(std::vector<hotfire::Channel> channels, double period) {
+  hotfire::Record result;
+  result.name = "record.csv";
+  result.path = result.name;
+  result.period = period;
+  result.rows = channels.front().values.size();
+  result.channels = std::move(channels);
+  return result;
+}
+
+hotfire::ModelFile axis() {
+  hotfire::ModelFile model;
+  model.parameters = hotfire::SimplexParameters{};
+  model.noise = {{"piston", 8e-6}};
+  return model;
+}
+
+}  // namespace
+
+TEST_GROUP(Dataset){};
+
+TEST(Dataset, AQuarterOfEveryRecordIsHeldOutAndNeverItsStart) {
+  const std::vector<double> values(26001, 0.001);
+  const auto data =
+      hotfire::explain::make_dataset(axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002),
+                                              record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)});
+  for (const auto& experiment : data.experiments) {
+    std::size_t held = 0;
+    for (const auto& block : experiment.held_out) {
+      CHECK(block.first > 0);
+      CHECK(block.last <= experiment.rows());
+      held += block.last - block.first;
+    }
+    // 13 blocks of 4 s: three or four of them.
+    CHECK(held >= experiment.rows() * 3 / 13 - 1);
+    CHECK(held <= experiment.rows() * 4 / 13 + 1);
+  }
+  // Blocks are shifted from record to record, so that the same profile is not blind to the same part twice.
+  CHECK(data.experiments[0].held_out.front().first != data.experiments[1].held_out.front().first);
+}
+
+TEST(Dataset, RowsThatTheUserExcludesAreNeitherFittedNorHeldOut) {
+  const std::vector<double> values(20000, 0.001);
+  const auto data = hotfire::explain::make_dataset(
+      axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)},
+      {hotfire::explain::exclusion_from("record.csv@3.0-11.5"), hotfire::explain::exclusion_from("record.csv@20-21")});
+  std::size_t rows = 0;
+  for (const auto& block : data.experiments[0].scored()) {
+    rows += block.last - block.first;
+    for (const auto& [from, to] : {std::pair<std::size_t, std::size_t>{1500, 5750}, {10000, 10500}}) {
+      CHECK(block.last <= from || block.first >= to);
+    }
+  }
+  LONGS_EQUAL(20000 - 4250 - 500, rows);
+}
+
+TEST(Dataset, AnExclusionThatNamesNoRecordOrNoTimeIsRefusedWithItsForm) {
+  for (const char* text : {"record.csv", "record.csv@3", "record.csv@3-2", "record.csv@a-b", "@", "record.csv@1-2x"}) {
+    try {
+      hotfire::explain::exclusion_from(text);
+      FAIL(text);
+    } catch (const hotfire::UsageError& error) {
+      STRCMP_CONTAINS("RECORD@FROM-TO", error.what());
+    }
+  }
+  try {
+    hotfire::explain::require_known_records({{"other.csv", {0.0, 1.0}}}, {"record.csv"});
+    FAIL("a record that is not there was excluded");
+  } catch (const hotfire::UsageError& error) {
+    STRCMP_CONTAINS("record.csv", error.what());
+  }
+}
+
+TEST(Dataset, WhatLacksOrIsWrongInExcludedRowsIsBridgedAndTheCommandHolds) {
+  std::vector<double> command(5000);
+  std::vector<double> piston(5000);
+  for (std::size_t row = 0; row < command.size(); ++row) {
+    command[row] = 1e-6 * static_cast<double>(row);
+    piston[row] = 2e-6 * static_cast<double>(row);
+  }
+  for (std::size_t row = 1000; row < 1500; ++row) {
+    command[row] = std::nan("");
+    piston[row] = row % 2 == 0 ? std::nan("") : -32768.0;
+  }
+  const auto data =
+      hotfire::explain::make_dataset(axis(), {record({{"command", "rad", command}, {"piston", "m", piston}}, 0.002)},
+                                     {hotfire::explain::exclusion_from("record.csv@2.0-3.0")});
+  const auto& experiment = data.experiments[0];
+  CHECK(experiment.input_is_held);
+  for (std::size_t row = 0; row < command.size(); ++row) {
+    DOUBLES_EQUAL(2e-6 * static_cast<double>(row), experiment.measured[0][row], 1e-12);
+    const std::size_t held = row >= 1000 && row < 1500 ? 999 : row;
+    DOUBLES_EQUAL(1e-6 * static_cast<double>(held), experiment.input[row], 1e-15);
+  }
+}
+
+TEST(Dataset, AValueThatLacksBesideAnExclusionIsRefusedWithItsTime) {
+  std::vector<double> piston(5000, 0.001);
+  piston[1500] = std::nan("");
+  try {
+    hotfire::explain::make_dataset(
+        axis(), {record({{"command", "rad", std::vector<double>(5000, 0.0)}, {"piston", "m", piston}}, 0.002)},
+        {hotfire::explain::exclusion_from("record.csv@2.0-3.0")});
+    FAIL("a row without a value was compared");
+  } catch (const hotfire::UsageError& error) {
+    STRCMP_CONTAINS("piston", error.what());
+    STRCMP_CONTAINS(" 3 s", error.what());
+  }
+}
+
+TEST(Dataset, AnExclusionBesideTheRecordIsRefusedWithWhereTheRecordLies) {
+  const std::vector<double> values(5001, 0.001);
+  try {
+    hotfire::explain::make_dataset(axis(), {record({{"command", "rad", values}, {"piston", "m", values}}, 0.002)},
+                                   {hotfire::explain::exclusion_from("record.csv@900-901")});
+    FAIL("rows that are not there were excluded");
+  } catch (const hotfire::UsageError& error) {
+    STRCMP_CONTAINS("record.csv@900-901", error.what());
+    STRCMP_CONTAINS("0 to 10 s", error.what());
+  }
+}
+
+TEST(Dataset, ADeclaredNoiseIsTakenAndAnUndeclaredOneIsEstimated) {
+  std::vector<double> wave(5000);
+  for (std::size_t i = 0; i < wave.size(); ++i) {
+    wave[i] = std::sin(0.01 * static_cast<double>(i)) + (i % 2 == 0 ? 1e-4 : -1e-4);
+  }
+  const auto data = hotfire::explain::make_dataset(
+      axis(), {record({{"command", "rad", wave}, {"piston", "m", wave}, {"engine", "rad", wave}}, 0.002)});
+  DOUBLES_EQUAL(8e-6, data.noise[0], 0.0);
+  CHECK(data.noise_declared[0]);
+  CHECK(!data.noise_declared[1]);
+  // An alternation of +-a has third differences of 8 a: seen as noise of 8 a / sqrt(20) = 1.79 a, up to the median's bias.
+  DOUBLES_EQUAL(1.79e-4, data.noise[1], 0.05e-4);
+}
+
+TEST(Dataset, ARecordWithoutTheModelsInputIsRefusedByName) {
+  try {
+    hotfire::explain::make_dataset(axis(), {record({{"piston", "m", std::vector<double>(100, 0.0)}}, 0.002)});
+    FAIL("a record without a command was taken");
+  } catch (const hotfire::FileError& error) {
+    STRCMP_CONTAINS("record.csv", error.what());
+    STRCMP_CONTAINS("command", error.what());
+  }
+}
+
+TEST(Dataset, AFastRecordIsThinnedToEveryKthRowUnderTheMeanOfTheCommandsBetween) {
+  std::vector<double> ramp(100001);
+  for (std::size_t row = 0; row < ramp.size(); ++row) {
+    ramp[row] = 1e-6 * static_cast<double>(row);
+  }
+  const auto data = hotfire::explain::make_dataset(axis(),
+                                                   {record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-4),
+                                                    record({{"command", "rad", ramp}, {"piston", "m", ramp}}, 2e-3)},
+                                                   {hotfire::explain::exclusion_from("record.csv@3.0-3.5")});
+  const auto thin = hotfire::explain::thinned(data, 2e-3);
+  const auto& fast = thin.experiments[0];
+  DOUBLES_EQUAL(2e-3, fast.period, 1e-15);
+  LONGS_EQUAL(10001, fast.rows());
+  LONGS_EQUAL(10001, fast.measured[0].size());
+  DOUBLES_EQUAL(ramp[70], fast.measured[0][7], 0.0);
+  // Ten commands of a ramp, from the 70th on: their mean is four and a half rows later.
+  DOUBLES_EQUAL(ramp[70] + 4.5e-6, fast.input[7], 1e-15);
+  const auto seconds = [](const hotfire::explain::Experiment& experiment, const auto& blocks) {
+    std::size_t rows = 0;
+    for (const auto& block : blocks) {
+      rows += block.last - block.first;
+    }
+    return static_cast<double>(rows) * experiment.period;
+  };
+  // A row more or less at either end of at most thirty blocks.
+  DOUBLES_EQUAL(seconds(data.experiments[0], data.experiments[0].fitted), seconds(fast, fast.fitted), 30 * 2e-3);
+  DOUBLES_EQUAL(seconds(data.experiments[0], data.experiments[0].held_out), seconds(fast, fast.held_out), 30 * 2e-3);
+  DOUBLES_EQUAL(0.5, seconds(fast, fast.excluded), 2e-3);
+  // A record that is no faster stays as it is.
+  LONGS_EQUAL(data.experiments[1].rows(), thin.experiments[1].rows());
+  CHECK(thin.experiments[1].input == data.experiments[1].input);
+}

@@ -1,0 +1,60 @@
+#include "tools/explain/data/start_state.hpp"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <CppUTest/TestHarness.h>
+
+namespace {
+
+constexpr double kPeriod = 0.001;
+constexpr double kNoise = 1e-7;
+
+/// A mass of 95 kg with an undeclared constant friction of 20 N, under a force that jumps to 90 N and rises: closed form.
+struct Pushed {
+  std::vector<double> force;
+  std::vector<double> position;
+
+  Pushed(double velocity, double noise) {
+    std::mt19937_64 generator(7);
+    std::normal_distribution<double> normal(0.0, noise);
+    for (int row = 0; row < 200; ++row) {
+      const double t = row * kPeriod;
+      force.push_back(90.0 + 2000.0 * t);
+      position.push_back(0.1 + velocity * t + (70.0 * t * t / 2 + 2000.0 * t * t * t / 6) / 95.0 + normal(generator));
+    }
+  }
+};
+
+hotfire::explain::StartState start_of(const Pushed& pushed) {
+  hotfire::DirectParameters mass;
+  mass.mass.inertia = 95.0;
+  mass.mass.damping = 0.0;
+  mass.mass.stiffness = 0.0;
+  return hotfire::explain::start_state(mass, pushed.force, pushed.position, kPeriod, kNoise);
+}
+
+}  // namespace
+
+TEST_GROUP(StartState){};
+
+TEST(StartState, AMassThatMovesAtTheFirstRowIsFoundMovingWithinFourStandardErrors) {
+  const auto start = start_of(Pushed(0.0065, kNoise));
+  CHECK(start.moves());
+  CHECK(std::abs(start.velocity - 0.0065) < 4.0 * start.velocity_error);
+  CHECK(std::abs(start.position - 0.1) < 4.0 * start.position_error);
+  // Twenty rows and a free constant force: 192 noise / (n^3)^(1/2) / period bounds the slope's error of a parabola fit.
+  CHECK(start.velocity_error < 192.0 * kNoise / std::sqrt(8000.0) / kPeriod);
+}
+
+TEST(StartState, AMassThatIsPushedFromRestIsNotTakenToMove) { CHECK(!start_of(Pushed(0.0, kNoise)).moves()); }
+
+TEST(StartState, ARecordOfFewRowsTakesItsFirstRowAsPosition) {
+  Pushed pushed(0.0, 0.0);
+  pushed.force.resize(3);
+  pushed.position.resize(3);
+  const auto start = start_of(pushed);
+  DOUBLES_EQUAL(0.1, start.position, 0.0);
+  CHECK(!start.moves());
+}

@@ -1,0 +1,176 @@
+#include "tools/explain/fit/evaluator.hpp"
+
+#include <cmath>
+#include <numeric>
+
+#include "tools/explain/fit/slopes.hpp"
+#include "tools/explain/terms/candidates.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace {
+
+using namespace hotfire::explain;
+
+/// Two records of an axis under a smooth command, measured as zero: what counts are derivatives.
+Dataset smooth_dataset() {
+  Dataset data;
+  data.channels = {"piston", "engine", "load_pressure"};
+  data.used = {true, true, false};
+  data.noise = {8e-6, 6e-5, 1.0};
+  data.noise_declared = {true, true, false};
+  for (int e = 0; e < 2; ++e) {
+    Experiment experiment;
+    experiment.name = "smooth";
+    experiment.period = 0.002;
+    for (int i = 0; i < 500; ++i) {
+      experiment.input.push_back(0.01 * std::sin((e + 2.0) * 3.0 * i * 0.002));
+    }
+    experiment.measured = {std::vector<double>(500, 0.0), std::vector<double>(500, 0.0), {}};
+    experiment.fitted = {{0, 100}, {200, 500}};
+    experiment.held_out = {{100, 200}};
+    data.experiments.push_back(experiment);
+  }
+  return data;
+}
+
+/// That axis with two of its declared parameters free.
+struct InertiaAndStiffness {
+  const Dataset data = smooth_dataset();
+  const PlainParameters<SimplexFamily> base;
+  const std::vector<FreeParameter> free =
+      declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+
+  Prediction predicted(const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u, unsigned threads = 1) const {
+    Prediction prediction;
+    CHECK(evaluator.predict(base, free, u, threads, prediction));
+    return prediction;
+  }
+  Eigen::MatrixXd slopes(const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u,
+                         unsigned threads = 1) const {
+    const std::vector<std::size_t> all{0, 1};
+    Eigen::MatrixXd jacobian;
+    CHECK(evaluator.differentiate(base, free, u, all, threads, jacobian));
+    return jacobian;
+  }
+};
+
+}  // namespace
+
+TEST_GROUP(Evaluator){};
+
+TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAndAnEffect) {
+  const Dataset data = smooth_dataset();
+  const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
+  PlainParameters<SimplexFamily> base;
+  std::map<std::string, double> tolerance;
+  hotfire::model::visit_parameters(base, [&](const hotfire::model::Key& key, const auto& field, const double&) {
+    if (!key.is_effect) {
+      tolerance[std::string(key.section) + "." + std::string(field.name)] = 0.05;
+    }
+  });
+  std::vector<FreeParameter> free = declared_parameters<SimplexFamily>(base, tolerance);
+  for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
+    if (candidate.name == "structural_mode") {
+      activate<SimplexFamily>(base, candidate);
+      const auto own = effect_parameters<SimplexFamily>(base, candidate, {});
+      free.insert(free.end(), own.begin(), own.end());
+    }
+  }
+  std::vector<double> u;
+  u.reserve(free.size());
+  for (const FreeParameter& parameter : free) {
+    u.push_back(parameter.is_declared() ? 0.1 : parameter.coordinate(parameter.unit_size));
+  }
+  std::vector<std::size_t> all(free.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  Eigen::MatrixXd jacobian;
+  CHECK(evaluator.differentiate(base, free, u, all, 2, jacobian));
+  LONGS_EQUAL(2 * 2 * 400, jacobian.rows());
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    // Central differences: truncation h^2 = 1e-8 of the third derivative; rounding of a simulation, 1e-13 of a residual of a
+    // thousand, over 2 h in 1600 rows is 2e-5.
+    const double h = 1e-4;
+    Prediction high;
+    Prediction low;
+    std::vector<double> moved = u;
+    moved[k] = u[k] + h;
+    CHECK(evaluator.predict(base, free, moved, 1, high));
+    moved[k] = u[k] - h;
+    CHECK(evaluator.predict(base, free, moved, 1, low));
+    const Eigen::VectorXd difference = (evaluator.residuals(high) - evaluator.residuals(low)) / (2.0 * h);
+    const Eigen::VectorXd exact = jacobian.col(static_cast<Eigen::Index>(k));
+    CHECK_TEXT((difference - exact).norm() <= 1e-5 * exact.norm() + 1e-4, free[k].key.c_str());
+  }
+}
+
+TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
+  const InertiaAndStiffness axis;
+  const Evaluator<SimplexFamily> evaluator(axis.data, Resolution::fine);
+  const std::vector<double> u{0.3, -0.2};
+  CHECK((axis.slopes(evaluator, u, 1).array() == axis.slopes(evaluator, u, 2).array()).all());
+  CHECK(axis.predicted(evaluator, u, 1) == axis.predicted(evaluator, u, 2));
+}
+
+TEST(Evaluator, DerivativesMayBeThoseOfLongerStepsThanItsReadings) {
+  const InertiaAndStiffness axis;
+  const std::vector<double> u{0.3, -0.2};
+  const Evaluator<SimplexFamily> coarse(axis.data, Resolution::coarse);
+  const Evaluator<SimplexFamily> rough(axis.data, Resolution::rough);
+  const Evaluator<SimplexFamily> mixed(axis.data, Resolution::coarse, Resolution::rough);
+  CHECK((axis.slopes(mixed, u).array() == axis.slopes(rough, u).array()).all());
+  CHECK(axis.predicted(mixed, u) == axis.predicted(coarse, u));
+}
+
+TEST(Evaluator, ShiftedLongStepsAreRightWhereTheShiftWasTakenAndNearlySoNearby) {
+  const InertiaAndStiffness axis;
+  const std::vector<double> there{0.3, -0.2};
+  const std::vector<double> nearby{0.8, 0.3};
+  const Evaluator<SimplexFamily> fine(axis.data, Resolution::fine);
+  const Evaluator<SimplexFamily> rough(axis.data, Resolution::rough);
+  const Evaluator<SimplexFamily> shifted = rough.shifted(axis.predicted(rough, there), axis.predicted(fine, there));
+  const auto off = [&](const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u) {
+    return (evaluator.residuals(axis.predicted(evaluator, u)) - fine.residuals(axis.predicted(fine, u))).norm();
+  };
+  const double lost = off(rough, there);
+  // What is left is the rounding of two subtractions.
+  CHECK(off(shifted, there) <= 1e-9 * lost);
+  // Half a tolerance away in each: by a hundredth of the inertia and a fortieth of the stiffness, and the error of a step
+  // with both. A fifth leaves room for its higher powers.
+  CHECK(off(shifted, nearby) <= 0.2 * lost);
+}
+
+TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARipple) {
+  const Dataset data = smooth_dataset();
+  const Evaluator<SimplexFamily> evaluator(data, Resolution::coarse);
+  PlainParameters<SimplexFamily> base;
+  std::vector<FreeParameter> free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.05}});
+  for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
+    if (candidate.name == "valve_hysteresis") {
+      activate<SimplexFamily>(base, candidate);
+      const auto own = effect_parameters<SimplexFamily>(base, candidate, {});
+      free.insert(free.end(), own.begin(), own.end());
+    }
+  }
+  LONGS_EQUAL(2, free.size());
+  const std::vector<double> u{0.2, free.back().coordinate(free.back().unit_size)};
+  const std::vector<std::size_t> all{0, 1};
+  Eigen::MatrixXd wide;
+  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::wide, 2, wide) == Slopes::wide);
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    const double step = wide_step(free[k]);
+    std::vector<double> at = u;
+    Prediction high;
+    Prediction low;
+    at[k] = u[k] + step;
+    CHECK(evaluator.predict(base, free, at, 1, high));
+    at[k] = u[k] - step;
+    CHECK(evaluator.predict(base, free, at, 1, low));
+    const Eigen::VectorXd difference = (evaluator.residuals(high) - evaluator.residuals(low)) / (2.0 * step);
+    // The same simulations; the quotient's width is rounded once more.
+    CHECK((difference - wide.col(static_cast<Eigen::Index>(k))).norm() <= 1e-12 * difference.norm());
+  }
+  Eigen::MatrixXd exact;
+  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::exact, 2, exact) == Slopes::exact);
+  CHECK((exact - wide).norm() > 0.0);
+}

@@ -1,0 +1,62 @@
+#include "tools/explain/inference/identifiability.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include "tools/explain/terms/candidates.hpp"
+
+namespace {
+
+using namespace hotfire::explain;
+
+/// An axis whose load spring and inertia are known to 5 and 2 %, and what its data add to that: `along` counts how well they
+/// tell the notch, `each` every coordinate by itself.
+Fitted<SimplexFamily> axis(double along, double each) {
+  Fitted<SimplexFamily> fitted;
+  fitted.free = declared_parameters<SimplexFamily>(fitted.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  fitted.u.assign(2, 0.0);
+  // In coordinates, in tolerances: the notch falls with J and rises with K_T, in series with the actuator.
+  const double share = 1.0 / (1.0 + fitted.base.structure.stiffness / fitted.base.actuator.stiffness);
+  Eigen::Vector2d notch;
+  for (std::size_t k = 0; k < 2; ++k) {
+    notch(static_cast<Eigen::Index>(k)) = fitted.free[k].key == "engine.inertia" ? -0.02 : share * 0.05;
+  }
+  fitted.normal = along * notch * notch.transpose() + (1.0 + each) * Eigen::Matrix2d::Identity();
+  return fitted;
+}
+
+}  // namespace
+
+TEST_GROUP(Identifiability){};
+
+TEST(Identifiability, OfANotchOnlyItsFrequencyIsTold) {
+  const auto sentences = not_told_apart(axis(1e7, 0.0));
+  CHECK_EQUAL(1U, sentences.size());
+  STRCMP_CONTAINS("K_T R^2 / J", sentences.front().c_str());
+  STRCMP_CONTAINS("engine.inertia to ", sentences.front().c_str());
+  STRCMP_CONTAINS("structure.stiffness to ", sentences.front().c_str());
+  // One over the root of 1e7.
+  STRCMP_CONTAINS("to 0.032 %, and not its factors", sentences.front().c_str());
+}
+
+TEST(Identifiability, WhereEachIsToldThereIsNothingToSay) { CHECK_TRUE(not_told_apart(axis(1e7, 1e6)).empty()); }
+
+TEST(Identifiability, WhereTheDataSayNothingTheDeclarationStands) {
+  const auto sentences = not_told_apart(axis(0.0, 0.0));
+  CHECK_EQUAL(1U, sentences.size());
+  STRCMP_CONTAINS("next to nothing on structure.stiffness, engine.inertia", sentences.front().c_str());
+}
+
+TEST(Identifiability, ParametersOfWhichOneMakesUpForTheOtherAreNamedWithTheirRate) {
+  Fitted<SimplexFamily> fitted;
+  fitted.free =
+      declared_parameters<SimplexFamily>(fitted.base, {{"engine.viscous_damping", 0.3}, {"actuator.piston_damping", 0.3}});
+  fitted.u.assign(2, 0.0);
+  // The sum of their coordinates is told a hundred times better than either: with one larger the other is smaller by as
+  // much.
+  const Eigen::Vector2d sum(1.0, 1.0);
+  fitted.normal = 1e4 * sum * sum.transpose() + Eigen::Matrix2d::Identity();
+  const auto sentences = not_told_apart(fitted);
+  CHECK_EQUAL(1U, sentences.size());
+  STRCMP_CONTAINS("with actuator.piston_damping larger by 1 %, engine.viscous_damping smaller by 1 %",
+                  sentences.front().c_str());
+}

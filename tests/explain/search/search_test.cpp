@@ -1,0 +1,75 @@
+#include "tools/explain/search/search.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <algorithm>
+
+#include "tests/explain/oscillator.hpp"
+
+namespace {
+
+using namespace hotfire;
+using test::declared_oscillator;
+using test::oscillator;
+
+explain::SearchResult<explain::DirectFamily> found_in(const Record& record, int most_effects = 4,
+                                                      double declared_stiffness = 97.0) {
+  const ModelFile model = declared_oscillator(declared_stiffness);
+  const auto data = explain::make_dataset(model, {record});
+  return explain::search<explain::DirectFamily>(data, model, {2, most_effects, {}});
+}
+
+}  // namespace
+
+TEST_GROUP(Search){};
+
+TEST(Search, ACubicStiffnessNobodyDeclaredIsFoundWithItsValueAndNothingElse) {
+  const auto found = found_in(oscillator(400.0, 1e-3));
+  LONGS_EQUAL(1, found.kept.size());
+  STRCMP_EQUAL("cubic_stiffness", found.kept[0].trial.candidate.name.c_str());
+  const auto& model = found.explained.model;
+  for (std::size_t k = 0; k < model.free.size(); ++k) {
+    if (model.free[k].key == "effects.cubic_stiffness.stiffness") {
+      // The cubic force is rms 5 % of the linear one: noise of 1e-3 over 4500 samples leaves it known to a few per cent.
+      DOUBLES_EQUAL(400.0, model.free[k].value(model.u[k]), 0.1 * 400.0);
+    }
+  }
+  // Held-out error down to the noise: rms of residual over noise within 5 % of 1.
+  DOUBLES_EQUAL(1.0, explain::Goodness::combined(found.explained.goodness.held_out), 0.1);
+}
+
+TEST(Search, AWrongDeclaredValueIsCalibratedAndNotTakenForAMissingEffect) {
+  const auto found = found_in(oscillator(0.0, 1e-3));
+  LONGS_EQUAL(0, found.kept.size());
+  LONGS_EQUAL(0, found.trials.size());
+  CHECK(explain::Goodness::combined(found.declared.goodness.held_out) > 2.0);
+  DOUBLES_EQUAL(1.0, explain::Goodness::combined(found.calibrated.goodness.held_out), 0.1);
+}
+
+// Seven tolerances of 5 % below 100: no effect is missing, but the declaration cannot be trusted that far without a look.
+TEST(Search, ACalibrationFarBeyondItsTolerancesIsLookedBeyondAndStillGetsNoEffectsName) {
+  const auto found = found_in(oscillator(0.0, 1e-3), 4, 74.0);
+  DOUBLES_EQUAL(1.0, explain::Goodness::combined(found.calibrated.goodness.held_out), 0.1);
+  CHECK(!found.trials.empty());
+  LONGS_EQUAL(0, found.kept.size());
+}
+
+TEST(Search, AForceThatNoListedEffectHasIsTakenDownAsATableOverWhatItDependsOn) {
+  const auto found = found_in(oscillator(0.0, 1e-3, 2.0));
+  LONGS_EQUAL(1, found.kept.size());
+  STRCMP_EQUAL("unlisted_force", found.kept[0].trial.candidate.name.c_str());
+  STRCMP_EQUAL("position", found.kept[0].trial.candidate.option_name.c_str());
+  CHECK(explain::held_out_ratio(found.explained, found.calibrated) < 0.5);
+  // What was tried is told in the order in which it was.
+  CHECK(std::is_sorted(found.trials.begin(), found.trials.end(),
+                       [](const auto& a, const auto& b) { return a.round < b.round; }));
+}
+
+TEST(Search, AllowedNoEffectItCalibratesAndLooksForNoneUnlistedEither) {
+  const auto found = found_in(oscillator(400.0, 1e-3), 0);
+  LONGS_EQUAL(0, found.trials.size());
+  LONGS_EQUAL(0, found.kept.size());
+  CHECK(found.explained.model.u == found.calibrated.model.u);
+  // What is missing is still there, where the effect leaves the noise alone.
+  CHECK(explain::Goodness::combined(found.explained.goodness.held_out) > 2.0);
+}

@@ -1,0 +1,64 @@
+#include "tools/explain/terms/assessed.hpp"
+
+#include <cmath>
+
+#include <CppUTest/TestHarness.h>
+
+namespace {
+
+using namespace hotfire::explain;
+
+/// A model whose held-out residuals are these many times the noise, channel by channel.
+Assessed<SimplexFamily> leaving(const std::vector<double>& errors) {
+  Assessed<SimplexFamily> assessed;
+  for (const double error : errors) {
+    assessed.goodness.held_out.push_back({.rows = 100.0, .mean_square = error * error});
+  }
+  return assessed;
+}
+
+}  // namespace
+
+TEST_GROUP(Assessed){};
+
+TEST(Assessed, OneChannelThatIsFarOffDoesNotHideWhatAnEffectDoesToTheOther) {
+  // A play found while the engine's sensor reads a twentieth too much.
+  CHECK(held_out_ratio(leaving({18.0, 1.0}), leaving({18.0, 6.0})) < 0.5);
+  // sqrt(1/6): the geometric mean of 1 and a sixth.
+  DOUBLES_EQUAL(0.408, held_out_ratio(leaving({18.0, 1.0}), leaving({18.0, 6.0})), 1e-3);
+}
+
+TEST(Assessed, WhatClearsTheWorstChannelCountsByTheRmsOverAll) {
+  // rms of 3 and 1 over that of 30 and 1; the geometric mean of the two ratios would be 0.32.
+  DOUBLES_EQUAL(std::sqrt(10.0 / 901.0), held_out_ratio(leaving({3.0, 1.0}), leaving({30.0, 1.0})), 1e-12);
+}
+
+TEST(Assessed, NoModelLeavesLessThanTheNoiseOrThanWhatOneLeavesAlready) {
+  // The worse channel can come down to 1, the better one is at 0.9 already.
+  DOUBLES_EQUAL(held_out_ratio(leaving({1.0, 0.9}), leaving({30.0, 6.0})),
+                least_held_out_ratio(leaving({1.4, 0.9}), leaving({30.0, 6.0})), 1e-12);
+}
+
+TEST(Assessed, ADeclaredParameterSixTolerancesOffStandsInForSomethingAndAnEffectsOwnDoesNot) {
+  Fitted<SimplexFamily> model;
+  model.free = declared_parameters<SimplexFamily>(model.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  model.u = {2.0, -4.0};
+  CHECK(is_within_tolerances(model));
+  model.u = {2.0, -6.0};
+  CHECK_FALSE(is_within_tolerances(model));
+  model.free[1].scale = FreeParameter::Scale::logarithmic;
+  CHECK(is_within_tolerances(model));
+}
+
+TEST(Assessed, ADeclaredValueMovedByTolerancesKeepsItsSignAndComesBackFromItsCoordinate) {
+  const Fitted<SimplexFamily> model;
+  const auto free = declared_parameters<SimplexFamily>(model.base, {{"actuator.piston_damping", 0.3}});
+  LONGS_EQUAL(1, free.size());
+  DOUBLES_EQUAL(free[0].declared, free[0].value(0.0), 1e-9);
+  DOUBLES_EQUAL(1.3, free[0].value(1.0) / free[0].declared, 1e-12);
+  for (const double u : {-40.0, -3.0, -1.0, 0.5, 4.0}) {
+    CHECK(free[0].value(u) > 0.0);
+    DOUBLES_EQUAL(u, free[0].coordinate(free[0].value(u)), 1e-9);
+    DOUBLES_EQUAL((free[0].value(u + 1e-6) - free[0].value(u - 1e-6)) / 2e-6, free[0].slope(u), 1e-6 * free[0].slope(u));
+  }
+}

@@ -1,0 +1,93 @@
+#include "tools/explain/terms/table_points.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <algorithm>
+
+#include "tests/explain/oscillator.hpp"
+#include "tools/explain/terms/unlisted.hpp"
+
+namespace {
+
+using namespace hotfire;
+using explain::Dataset;
+using explain::DirectFamily;
+using explain::Fitted;
+
+explain::Candidate force_over_position(const Dataset& data) {
+  const auto candidates = explain::unlisted_candidates<DirectFamily>(data);
+  return *std::ranges::find_if(candidates, [](const explain::Candidate& candidate) {
+    return candidate.name == "unlisted_force" && candidate.option_name == "position";
+  });
+}
+
+/// The oscillator with a force over its position that zigzags, laid over the rows that `data` has a fit see.
+Fitted<DirectFamily> with_zigzag(const ModelFile& model, const Dataset& data, const explain::Candidate& candidate) {
+  Fitted<DirectFamily> fitted;
+  fitted.base = std::get<DirectParameters>(model.parameters);
+  const Fitted<DirectFamily> plain = fitted;
+  explain::activate<DirectFamily>(fitted.base, candidate);
+  explain::lay_table<DirectFamily>(fitted.base, candidate, data, plain);
+  fitted.free = explain::effect_parameters<DirectFamily>(fitted.base, candidate, explain::scales_of(data));
+  for (std::size_t k = 0; k < fitted.free.size(); ++k) {
+    fitted.u.push_back(k % 2 == 0 ? 0.5 : -1.0 - static_cast<double>(k));
+  }
+  return fitted;
+}
+
+/// The table as the plant runs it.
+explain::FittedTable table_of(const Fitted<DirectFamily>& fitted, const explain::Candidate& candidate) {
+  return *explain::table_of<DirectFamily>(explain::Evaluator<DirectFamily>::with_values(fitted.base, fitted.free, fitted.u),
+                                          candidate);
+}
+
+model::UnlistedTable<double> runnable(const explain::FittedTable& table) {
+  model::UnlistedTable<double> result;
+  result.points = static_cast<int>(table.x.size());
+  std::ranges::copy(table.x, result.x.begin());
+  std::ranges::copy(table.y, result.y.begin());
+  return result;
+}
+
+}  // namespace
+
+TEST_GROUP(table_points){};
+
+TEST(table_points, over_further_rows_a_table_reaches_further_and_is_the_same_function) {
+  const ModelFile model = test::declared_oscillator(100.0);
+  const Dataset all = explain::make_dataset(model, {test::oscillator(0.0, 1e-3)});
+  Dataset few = all;
+  few.experiments[0].fitted = {{0, 150}};
+  Dataset every_row = all;
+  explain::fit_every_row(every_row);
+  const explain::Candidate candidate = force_over_position(all);
+  const Fitted<DirectFamily> narrow = with_zigzag(model, few, candidate);
+  const Fitted<DirectFamily> wide = explain::reaching_over<DirectFamily>(every_row, narrow, candidate);
+  const explain::FittedTable before = table_of(narrow, candidate);
+  const explain::FittedTable after = table_of(wide, candidate);
+  CHECK(after.x.front() < before.x.front());
+  CHECK(after.x.back() > before.x.back());
+  CHECK(std::ranges::is_sorted(after.x));
+  for (int i = 0; i <= 1000; ++i) {
+    const double x = after.x.front() + (after.x.back() - after.x.front()) * i / 1000.0;
+    DOUBLES_EQUAL(model::unlisted::value_at(runnable(before), x), model::unlisted::value_at(runnable(after), x), 1e-9);
+  }
+}
+
+TEST(table_points, a_table_that_reaches_over_every_row_stays_as_it_is) {
+  const ModelFile model = test::declared_oscillator(100.0);
+  Dataset data = explain::make_dataset(model, {test::oscillator(0.0, 1e-3)});
+  explain::fit_every_row(data);
+  const explain::Candidate candidate = force_over_position(data);
+  Fitted<DirectFamily> fitted = with_zigzag(model, data, candidate);
+  // Without a force the mass runs through just the rows that the table was laid over.
+  std::ranges::fill(fitted.u, 0.0);
+  const Fitted<DirectFamily> wide = explain::reaching_over<DirectFamily>(data, fitted, candidate);
+  const explain::FittedTable before = table_of(fitted, candidate);
+  const explain::FittedTable after = table_of(wide, candidate);
+  CHECK_EQUAL(before.x.size(), after.x.size());
+  for (std::size_t i = 0; i < before.x.size(); ++i) {
+    DOUBLES_EQUAL(before.x[i], after.x[i], 1e-12);
+    DOUBLES_EQUAL(before.y[i], after.y[i], 1e-12);
+  }
+}

@@ -1,0 +1,129 @@
+#include <cstdint>
+#include <cstdio>
+
+#include "tests/files/expect.hpp"
+#include "tests/files/import/write_matlab.hpp"
+#include "tests/files/scratch.hpp"
+#include "tools/files/import/import.hpp"
+
+using namespace hotfire;
+using namespace hotfire::test;
+
+TEST_GROUP(ImportMatlab) {
+  Scratch scratch;
+
+  /// Imports the variable "X" of a file, which has rows of 1 ms.
+  Record imported(const std::filesystem::path& path) const {
+    const auto map = load_import_map(
+        scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
+    return import_record(path, map, scratch.path("run.csv"));
+  }
+
+  template <class T>
+  std::filesystem::path written(MatlabVersion version, const std::string& matlab_class, const std::vector<T>& values) const {
+    std::filesystem::path path = scratch.path(matlab_class + ".mat");
+    CHECK(write_matlab_class(path, version, "X", matlab_class, values.data(), values.size()));
+    return path;
+  }
+
+  template <class T>
+  void expect_read_back(MatlabVersion version, const std::string& matlab_class, const std::vector<T>& values) const {
+    const Record record = imported(written(version, matlab_class, values));
+    UNSIGNED_LONGS_EQUAL_TEXT(values.size(), record.rows, matlab_class.c_str());
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      DOUBLES_EQUAL_TEXT(static_cast<double>(values[row]), record.channels[0].values[row], 0.0, matlab_class.c_str());
+    }
+  }
+
+  void expect_every_class_read_back(MatlabVersion version) const {
+    expect_read_back<double>(version, "double", {-1.5, 0.1, 1e300});
+    expect_read_back<float>(version, "single", {-1.5F, 0.1F, 1e30F});
+    expect_read_back<std::int8_t>(version, "int8", {-128, 0, 127});
+    expect_read_back<std::uint8_t>(version, "uint8", {0, 1, 255});
+    expect_read_back<std::int16_t>(version, "int16", {-32768, 0, 32767});
+    expect_read_back<std::uint16_t>(version, "uint16", {0, 1, 65535});
+    expect_read_back<std::int32_t>(version, "int32", {INT32_MIN, 0, INT32_MAX});
+    expect_read_back<std::uint32_t>(version, "uint32", {0, 1, UINT32_MAX});
+    expect_read_back<std::int64_t>(version, "int64", {-kLargest, 0, kLargest});
+    expect_read_back<std::uint64_t>(version, "uint64", {0, 1, kLargest});
+    expect_read_back<std::uint8_t>(version, "logical", {0, 1, 1});
+  }
+
+  /// 2^53: no integer above it is sure to be a double.
+  static constexpr std::int64_t kLargest = 9'007'199'254'740'992;
+};
+
+TEST(ImportMatlab, every_class_of_real_numbers_is_read_from_an_uncompressed_file) {
+  expect_every_class_read_back(MatlabVersion::v6);
+}
+
+TEST(ImportMatlab, every_class_of_real_numbers_is_read_from_a_compressed_file) {
+  expect_every_class_read_back(MatlabVersion::v7);
+}
+
+TEST(ImportMatlab, every_class_of_real_numbers_is_read_from_a_file_of_version_7_3) {
+  const double one = 1.0;
+  if (!write_matlab_class(scratch.path("try.mat"), MatlabVersion::v7_3, "X", "double", &one, 1)) {
+    std::printf("\nskipped: matio of this machine is built without HDF5 and writes no version 7.3\n");
+    return;
+  }
+  expect_every_class_read_back(MatlabVersion::v7_3);
+}
+
+TEST(ImportMatlab, integers_that_no_double_holds_are_refused_with_variable_row_and_value) {
+  const auto refused = [this]<class T>(const std::string& matlab_class, const std::vector<T>& values) {
+    return refusal([&] { imported(written(MatlabVersion::v7, matlab_class, values)); });
+  };
+  expect_message(refused("int64", std::vector<std::int64_t>{0, kLargest + 1, 0}),
+                 {"int64.mat: X for piston: row 2: 9007199254740993", "at most 2^53 = 9007199254740992"});
+  expect_message(refused("int64", std::vector<std::int64_t>{0, 0, INT64_MIN}), {"row 3: -9223372036854775808", "2^53"});
+  expect_message(refused("uint64", std::vector<std::uint64_t>{UINT64_MAX, 0}), {"row 1: 18446744073709551615", "2^53"});
+}
+
+TEST(ImportMatlab, what_holds_no_numbers_is_refused_with_the_classes_that_do) {
+  expect_message(refusal([&] {
+                   imported(written(MatlabVersion::v7, "char", std::vector<std::uint8_t>{'a', 'b'}));
+                 }),
+                 {"char.mat: X for piston: holds no numbers", "int8 to int64, uint8 to uint64, logical"});
+}
+
+TEST(ImportMatlab, AMatlabFileGivesVectorsMatrixColumnsAndFieldsOfStructs) {
+  std::vector<double> time;
+  std::vector<double> matrix;
+  time.reserve(50);
+  matrix.reserve(100);
+  for (int i = 0; i < 50; ++i) {
+    time.push_back(1e-3 * i);
+  }
+  for (int i = 0; i < 100; ++i) {
+    matrix.push_back(0.1 * i);
+  }
+  const auto path = scratch.path("run.mat");
+  write_matlab(path, {{"t", 50, 1, time}, {"X", 50, 2, matrix}}, {"data", "beta", time});
+  const auto map = load_import_map(scratch.write(
+      "map.toml",
+      "schema = 1\ntime = {column = \"t\", unit = \"s\"}\n[channels]\ncommand = {column = \"data.beta\", unit = "
+      "\"rad\"}\npiston = {column = \"X:2\", unit = \"mm\"}\n"));
+  const Record record = import_record(path, map, scratch.path("run.csv"));
+  LONGS_EQUAL(50, record.rows);
+  DOUBLES_EQUAL(7e-3, record.find("command")->values[7], 1e-15);
+  DOUBLES_EQUAL(5.7e-3, record.find("piston")->values[7], 1e-15);
+}
+
+TEST(ImportMatlab, AMatlabVariableThatIsNotThereIsRefusedWithThoseThatAre) {
+  const auto path = scratch.path("run.mat");
+  write_matlab(path, {{"t", 3, 1, {0.0, 0.001, 0.002}}, {"X", 3, 2, {1, 2, 3, 4, 5, 6}}}, {"data", "beta", {1, 2, 3}});
+  const auto refused_column = [&](const std::string& column) {
+    const auto map = load_import_map(scratch.write(
+        "map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"" + column + "\"\n"));
+    return refusal([&] { import_record(path, map, scratch.path("run.csv")); });
+  };
+  expect_message(refused_column("xp"), {"run.mat", "no variable \"xp\"", "t, X, data"});
+  expect_message(refused_column("X"), {"3 x 2", "X:1"});
+  expect_message(refused_column("X:3"), {"has 2 columns"});
+  expect_message(refused_column("data.gamma"), {"no field \"gamma\""});
+  const auto text = scratch.write("text.mat", "time,piston\n");
+  const auto map = load_import_map(
+      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
+  expect_message(refusal([&] { import_record(text, map, scratch.path("run.csv")); }), {"text.mat", "no MATLAB file"});
+}

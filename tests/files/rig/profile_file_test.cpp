@@ -1,0 +1,116 @@
+#include "tools/files/rig/profile_file.hpp"
+
+#include "tests/files/expect.hpp"
+#include "tests/files/scratch.hpp"
+
+namespace hotfire {
+
+using test::refusal;
+
+TEST_GROUP(ProfileFile) {
+  test::Scratch scratch;
+  std::string head =
+      "schema = 1\n[lab]\nactuators = 1\npiston_per_command = \"0.5 m/rad\"\ncurrent_per_command = 0.125\n"
+      "current_per_error = 0\ncurrent_limit = \"20 mA\"\napproach_rate = 0.5\nrest_speed = \"1 mm/s\"\n"
+      "stopping_time = 2\n[limits]\ncommand_age = \"2 ms\"\nreading_age = \"2 ms\"\nlowest_reading = -0.5\n"
+      "highest_reading = 0.5\ndisagreement = 0.001\nlowest_position = -0.0625\nhighest_position = 0.0625\n"
+      "command_rate = 40\nposition_error = 0.02\nposition_error_time = 0.3\n[lines]\nemergency_stop = \"estop\"\n"
+      "hydraulic_enable = \"hydraulic\"\narm = \"arm\"\nsupply = \"supply\"\nheartbeat = \"heartbeat\"\nfault = \"fault\"\n";
+
+  std::string lines(const std::string& profile) const { return load_profile(scratch.write("p.toml", head + profile)).image; }
+
+  void refused(const std::string& profile, std::initializer_list<const char*> parts) const {
+    test::expect_message(refusal([&] { lines(profile); }), parts);
+  }
+  void refused_head(const std::string& line, const std::string& instead, std::initializer_list<const char*> parts) {
+    const std::string whole = head;
+    head.replace(head.find(line), line.size(), instead);
+    refused("[[profile]]\nkind = \"rest\"\nduration = 1\n", parts);
+    head = whole;
+  }
+};
+
+TEST(ProfileFile, ProfileBecomesLinesOfAnImageInSi) {
+  const std::string text = lines(
+      "[[profile]]\nkind = \"steps\"\nlevels = [0, 0.0625]\nhold = \"500 ms\"\n[[profile]]\nkind = \"sweep\"\n"
+      "amplitude = 0.0625\nfrom = 0.25\nto = 8\nduration = 4\n[[profile]]\nkind = \"sines\"\namplitudes = [0.0625, 0.125]\n"
+      "frequencies = [1, 2]\nperiods = 3\n[[profile]]\nkind = \"table\"\ntimes = [0, 1, 3]\ncommands = [0, 0.125, 0]\n"
+      "[[profile]]\nkind = \"rest\"\nduration = 1\n");
+  test::expect_message(
+      text, {"topology lab\nactuators 1\npiston_per_command 0x1p-1\n", "limits.command_age 0x1.0624dd2f1a9fcp-9\n",
+             "limits.overruns 0\nline.emergency_stop estop\n", "segment.1.duration 0x1p-1\nsegment.1.from 0x1p-4\n",
+             "segment.2.amplitude 0x1p-4\nsegment.2.frequency 0x1p-2\nsegment.2.last_frequency 0x1p+3\n",
+             "segment.4.duration 0x1.8p+0\n", "segment.6.duration 0x1.8p+0\nsegment.6.from 0x0p+0\n",
+             "segment.8.duration 0x1p+1\nsegment.8.from 0x1p-3\nsegment.8.to 0x0p+0\n", "segment.9.duration 0x1p+0\n"});
+}
+
+TEST(ProfileFile, ASineOrASweepSwingsAboutItsBiasAndIsHeldToTheLimitsThere) {
+  const std::string text = lines(
+      "[[profile]]\nkind = \"sines\"\namplitudes = [0.0625]\nfrequencies = [1]\nperiods = 3\nbias = -0.0625\n"
+      "[[profile]]\nkind = \"sweep\"\namplitude = 0.0625\nfrom = 1\nto = 2\nduration = 4\nbias = 0.03125\n");
+  test::expect_message(text, {"segment.0.from -0x1p-4\nsegment.0.to -0x1p-4\nsegment.0.amplitude 0x1p-4\n",
+                              "segment.1.from 0x1p-5\nsegment.1.to 0x1p-5\nsegment.1.amplitude 0x1p-4\n"});
+  refused("[[profile]]\nkind = \"sines\"\namplitudes = [0.0625]\nfrequencies = [1]\nperiods = 3\nbias = 0.0635\n",
+          {"limits.highest_position"});
+}
+
+TEST(ProfileFile, OtherPartsTakeThePlaceOfItsOwnAndAllElseStays) {
+  const auto path = scratch.write("p.toml", head + "[[profile]]\nkind = \"rest\"\nduration = 1\n");
+  const LabProfile was = load_profile(path);
+  const std::string text = profile_with_parts(path, "[[profile]]\nkind = \"rest\"\nduration = 2\n");
+  const LabProfile is = load_profile(scratch.write("q.toml", text));
+  DOUBLES_EQUAL(2.0, is.duration, 0.0);
+  DOUBLES_EQUAL(0.125, is.highest_command, 0.0);
+  DOUBLES_EQUAL(80.0, is.command_rate, 0.0);
+  const auto settings_of = [](const std::string& image) { return image.substr(0, image.find("segment.0.")); };
+  STRCMP_EQUAL(settings_of(was.image).c_str(), settings_of(is.image).c_str());
+}
+
+TEST(ProfileFile, AnAngleIsOneForAllActuatorsOrAListWithOneForEach) {
+  head.replace(head.find("actuators = 1"), 13, "actuators = 2");
+  const std::string text = lines(
+      "[[profile]]\nkind = \"steps\"\nlevels = [0.0625, [0.0625, -0.125]]\nhold = 1\n[[profile]]\nkind = \"sweep\"\n"
+      "amplitude = [\"0 rad\", 0.0625]\nfrom = 1\nto = 2\nduration = 4\n[[profile]]\nkind = \"sines\"\n"
+      "amplitudes = [[0.125, 0.0625]]\nfrequencies = [1, 2]\nperiods = 3\n[[profile]]\nkind = \"table\"\ntimes = [0, 1]\n"
+      "commands = [0, [0.125, 0.0625]]\n");
+  test::expect_message(
+      text, {"segment.0.from 0x1p-4,0x1p-4\n", "segment.1.to 0x1p-4,-0x1p-3\n", "segment.2.amplitude 0x0p+0,0x1p-4\n",
+             "segment.4.amplitude 0x1p-3,0x1p-4\n", "segment.5.from 0x0p+0,0x0p+0\nsegment.5.to 0x1p-3,0x1p-4\n"});
+  refused("[[profile]]\nkind = \"steps\"\nlevels = [[0, 0, 0]]\nhold = 1\n",
+          {"profile.0.levels", "for all actuators, or a list of 2, one for each"});
+  refused("[[profile]]\nkind = \"steps\"\nlevels = [[0, 0.126]]\nhold = 1\n", {"the commands of actuator 2, ", "0.126 rad"});
+}
+
+TEST(ProfileFile, WhatCannotBeIsRefusedWithItsLineAndWhatIsAllowed) {
+  refused("", {"profile: missing; declare at least one"});
+  refused("[[profile]]\nkind = \"swep\"\n", {"p.toml:30", "profile.0.kind", "did you mean \"sweep\"?"});
+  refused("[[profile]]\nkind = \"rest\"\n", {"profile.0.duration: missing"});
+  refused("[[profile]]\nkind = \"rest\"\nduration = \"1 m\"\n", {"profile.0.duration"});
+  refused("[[profile]]\nkind = \"steps\"\nlevels = []\nhold = 1\n",
+          {"profile.0.levels", "a list, each entry a number in rad"});
+  refused("[[profile]]\nkind = \"sines\"\namplitudes = [0.01]\nfrequencies = [1]\nperiods = 0\n",
+          {"profile.0.periods", "1 to"});
+  refused("[[profile]]\nkind = \"table\"\ntimes = [0, 2, 1]\ncommands = [0, 0, 0]\n", {"rising, but 1 follows 2"});
+  refused("[[profile]]\nkind = \"table\"\ntimes = [0, 2]\ncommands = [0]\n", {"as many as commands"});
+  refused_head("current_limit = \"20 mA\"", "current_limit = \"40 mA\"", {"lab.current_limit", "0.032 A"});
+  refused_head("actuators = 1", "actuators = 9", {"lab.actuators", "1 to 8"});
+  refused_head("supply = \"supply\"", "supply = \"two words\"", {"lines.supply", "without spaces"});
+  refused_head("disagreement = 0.001\n", "", {"limits.disagreement: missing; allowed: a number in m"});
+  refused_head("rest_speed", "rest_sped", {"rest_sped"});
+}
+
+TEST(ProfileFile, PositionBeyondTheLimitsIsRefusedBeforeAnythingIsDriven) {
+  refused("[[profile]]\nkind = \"steps\"\nlevels = [0, 0.126]\nhold = 1\n",
+          {"profile.0", "0.126 rad", "limits.highest_position"});
+  refused("[[profile]]\nkind = \"sweep\"\namplitude = 0.13\nfrom = 1\nto = 2\nduration = 1\n", {"limits.lowest_position"});
+}
+
+TEST(ProfileFile, TheProfileOfTheDocumentationIsGood) {
+  CHECK(is_profile(HOTFIRE_LAB_PROFILE));
+  const LabProfile profile = load_profile(HOTFIRE_LAB_PROFILE);
+  // A sweep, five steps, nine sines and a table.
+  DOUBLES_EQUAL(60.0 + 10.0 + 3 * (20.0 + 10.0 + 5.0) + 3.0, profile.duration, 1e-9);
+  test::expect_message(profile.image, {"topology lab\n", "segment.0.amplitude", "line.arm arm\n"});
+}
+
+}  // namespace hotfire

@@ -1,0 +1,92 @@
+#include <CppUTest/TestHarness.h>
+
+#include <bit>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "firmware/image/plant_image.hpp"
+#include "model/keys.hpp"
+#include "tools/cli/plant_image_text.hpp"
+#include "tools/files/model/model_file.hpp"
+
+namespace hotfire {
+
+namespace {
+
+/// Units, a table, laws and channels; decimals that no binary number hits.
+const char* const kSimplex = R"(schema = 1
+name = "round trip"
+topology = "simplex"
+[servovalve]
+rated_flow = "50 gallon/minute"
+[actuator]
+piston_area = "24.8 in^2"
+supply_pressure = "3000 psi"
+[engine]
+inertia = 9490.1
+[effects.command_delay]
+delay = 0.0123
+[effects.soft_stiffness]
+law = "table"
+load = [0.0, 1234.5, 9876.1]
+table_stiffness = [4.1e7, 7.7e7, 1.21e8]
+[effects.gimbal_friction]
+law = "lugre"
+coulomb_torque = 12.3e3
+[effects.sensor_lag]
+channel = "engine"
+time_constant = 0.0031
+)";
+
+const char* const kDirect = R"(schema = 1
+name = "mass"
+topology = "direct"
+[mass]
+inertia = 95.1089
+damping = 203.5034
+stiffness = 0.0
+[effects.sliding_friction]
+law = "coulomb"
+coulomb_forward = 20.39
+coulomb_backward = 19.1
+)";
+
+template <class Parameters>
+std::vector<std::uint64_t> bits_of(const Parameters& parameters) {
+  std::vector<std::uint64_t> bits;
+  model::visit_parameters(parameters, [&](const model::Key&, const auto&, double value) {
+    bits.push_back(std::bit_cast<std::uint64_t>(value));
+  });
+  return bits;
+}
+
+}  // namespace
+
+TEST_GROUP(PlantImageRoundTrip) {
+  std::filesystem::path path = std::filesystem::temp_directory_path() / "hotfire_plant_image_round_trip.toml";
+
+  void teardown() override { std::filesystem::remove(path); }
+
+  template <class Parameters>
+  void check(const char* toml) {
+    std::ofstream(path) << toml;
+    const ModelFile model = load_model(path);
+    const std::string text = plant_image_text(model);
+    const firmware::PlantImage image = firmware::parse_plant_image(text, "image");
+    STRCMP_EQUAL("", image.error.c_str());
+    const auto& declared = std::get<Parameters>(model.parameters);
+    const auto& arrived = std::get<Parameters>(*image.parameters);
+    CHECK(bits_of(declared) == bits_of(arrived));
+    CHECK(declared.effects.active == arrived.effects.active);
+    ModelFile again = model;
+    again.parameters = arrived;
+    STRCMP_EQUAL(text.c_str(), plant_image_text(again).c_str());
+  }
+};
+
+TEST(PlantImageRoundTrip, SimplexOfAModelFileArrivesBitForBit) { check<SimplexParameters>(kSimplex); }
+
+TEST(PlantImageRoundTrip, DirectMassOfAModelFileArrivesBitForBit) { check<DirectParameters>(kDirect); }
+
+}  // namespace hotfire

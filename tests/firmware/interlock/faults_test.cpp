@@ -1,0 +1,150 @@
+#include "firmware/interlock/faults.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "firmware/interlock/fault_checks.hpp"
+
+namespace hotfire::firmware {
+
+namespace {
+
+constexpr double kPeriod = 1e-3;
+constexpr FaultLimits kLimits{5'000'000, 3'000'000, -0.2, 0.2, 1e-3, -0.1, 0.1, 1.0, 0.01, 20};
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The sections of docs/faults.md below its second level headings, each with its heading first.
+std::vector<std::string> sections() {
+  std::ifstream file(HOTFIRE_FAULTS_PAGE);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::vector<std::string> found;
+  for (std::size_t at = text.find("\n## "); at != std::string::npos;) {
+    const std::size_t next = text.find("\n## ", at + 1);
+    found.push_back(text.substr(at + 4, next == std::string::npos ? next : next - at - 4));
+    at = next;
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_GROUP(Faults) {
+  FaultChecks checks{kLimits, kPeriod};
+  ObservedRig rig;
+  std::vector<ObservedActuator> actuators{8};
+
+  void expect(FaultSet faults) { CHECK(checks.look(rig, actuators) == faults); }
+};
+
+TEST(Faults, NumbersAreThoseOfTheListAndNamesAreDifferent) {
+  for (std::size_t i = 0; i < kFaults.size(); ++i) {
+    UNSIGNED_LONGS_EQUAL(i + 1, static_cast<std::size_t>(kFaults[i].fault));
+    for (std::size_t j = 0; j < i; ++j) {
+      CHECK(kFaults[i].name != kFaults[j].name);
+    }
+  }
+  LONGS_EQUAL(15, FaultSet::all().count());
+}
+
+TEST(Faults, EveryFaultHasASectionThatSaysWhatItMeansWhatTheRigDidAndWhatToDo) {
+  const std::vector<std::string> found = sections();
+  UNSIGNED_LONGS_EQUAL(kFaults.size(), found.size());
+  for (std::size_t i = 0; i < kFaults.size(); ++i) {
+    const std::string heading = std::to_string(i + 1) + " " + std::string(kFaults[i].name) + "\n";
+    STRCMP_EQUAL(heading.c_str(), found[i].substr(0, heading.size()).c_str());
+    for (const char* part : {"**Means.** ", "**The rig** ", "**To do.** "}) {
+      STRCMP_CONTAINS(part, found[i].c_str());
+    }
+  }
+}
+
+TEST(Faults, NothingIsFoundOnAHealthyRigNotEvenAtTheLimits) {
+  expect({});
+  rig.command_age_ns = kLimits.command_age_ns;
+  actuators[7].reading_ages_ns = {kLimits.reading_age_ns, kLimits.reading_age_ns};
+  actuators[7].readings = {0.0, kLimits.disagreement};
+  expect({});
+}
+
+TEST(Faults, EachSignalOfTheRigIsItsOwnFault) {
+  const std::vector<std::pair<Fault, void (*)(ObservedRig&)>> signals{
+      {Fault::stale_command, [](ObservedRig& r) { r.command_age_ns = kLimits.command_age_ns + 1; }},
+      {Fault::bad_frame, [](ObservedRig& r) { r.bad_frame = true; }},
+      {Fault::bus_off, [](ObservedRig& r) { r.bus_off = true; }},
+      {Fault::bus_down, [](ObservedRig& r) { r.bus_down = true; }},
+      {Fault::transmit_queue_full, [](ObservedRig& r) { r.transmit_queue_full = true; }},
+      {Fault::emergency_stop, [](ObservedRig& r) { r.emergency_stop = true; }},
+      {Fault::hydraulic_enable_lost, [](ObservedRig& r) { r.hydraulic_enable = false; }},
+      {Fault::overrun, [](ObservedRig& r) { r.overrun = true; }},
+      {Fault::recorder_full, [](ObservedRig& r) { r.dropped_recording = true; }}};
+  for (const auto& [fault, set] : signals) {
+    rig = {};
+    set(rig);
+    expect(fault);
+  }
+}
+
+TEST(Faults, OldReadingOfAnyActuatorIsStale) {
+  actuators[5].reading_ages_ns[1] = kLimits.reading_age_ns + 1;
+  expect(Fault::stale_sensor);
+}
+
+TEST(Faults, ReadingThatTheSensorCannotGiveIsOutOfRangeAndBeyondTheLimit) {
+  actuators[2].readings = {0.21, 0.21};
+  actuators[2].command = 0.1;
+  const FaultSet found = checks.look(rig, actuators);
+  CHECK(found.has(Fault::out_of_range) && found.has(Fault::limit));
+}
+
+TEST(Faults, RedundantReadingsThatAreTooFarApartDisagree) {
+  actuators[0].readings = {0.0, 1.01e-3};
+  expect(Fault::readings_disagree);
+}
+
+TEST(Faults, PositionCommandAndItsRateAreLimited) {
+  actuators[0].readings = {0.11, 0.11};
+  actuators[0].command = 0.1;
+  expect(Fault::limit);
+  checks.forget();
+  actuators[0] = {};
+  actuators[0].command = 0.101;
+  expect(Fault::limit);
+  checks.forget();
+  actuators[0].command = 0.0;
+  expect({});
+  actuators[0].command = 1.001e-3;
+  expect(Fault::limit);
+}
+
+TEST(Faults, ActuatorThatLagsIsNoFaultUntilItHasLaggedForLongerThanAllowed) {
+  actuators[3].command = 0.05;
+  for (std::uint64_t cycle = 0; cycle < kLimits.position_error_cycles; ++cycle) {
+    expect({});
+  }
+  actuators[3].readings = {0.05, 0.05};
+  expect({});
+  actuators[3].readings = {};
+  for (std::uint64_t cycle = 0; cycle < kLimits.position_error_cycles; ++cycle) {
+    expect({});
+  }
+  expect(Fault::position_error);
+}
+
+TEST(Faults, ValueThatIsNotFiniteIsThatFaultAndNoOther) {
+  actuators[1].readings[0] = kNan;
+  expect(Fault::not_finite);
+  actuators[1] = {};
+  actuators[1].command = kNan;
+  expect(Fault::not_finite);
+  actuators[1].command = std::numeric_limits<double>::infinity();
+  expect(Fault::not_finite);
+  actuators[1] = {};
+  expect({});
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,54 @@
+#include "firmware/lab/lab_image.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace hotfire::firmware {
+
+TEST_GROUP(LabImage) {
+  std::string image =
+      "schema 1\ntopology lab\nactuators 2\npiston_per_command 0.5\ncurrent_per_command 0.1\ncurrent_per_error 0\n"
+      "current_limit 0.02\napproach_rate 1\nrest_speed 0.001\nstopping_time 1\nlimits.command_age 0.005\n"
+      "limits.reading_age 0x1p-7\nlimits.lowest_reading -0.15\nlimits.highest_reading 0.15\nlimits.disagreement 0.001\n"
+      "limits.lowest_position -0.06\nlimits.highest_position 0.06\nlimits.command_rate 100\nlimits.position_error 0.005\n"
+      "limits.position_error_time 0.5\nlimits.overruns 3\nline.emergency_stop estop\nline.hydraulic_enable hydraulic\n"
+      "line.arm arm\nline.supply supply\nline.heartbeat heartbeat\nline.fault fault\nsegment.0.duration 2\n"
+      "segment.0.from 0.01,-1\nsegment.0.to 0.03,-0x1p+1\nsegment.0.amplitude 0,0\nsegment.0.frequency "
+      "1\nsegment.0.last_frequency 1\n";
+
+  void refused(const std::string& line, const std::string& instead, const char* part) const {
+    std::string changed = image;
+    changed.replace(changed.find(line), line.size(), instead);
+    const LabImage read = parse_lab_image(changed, "image", 1e-3);
+    CHECK(!read.settings);
+    STRCMP_CONTAINS(part, read.error.c_str());
+  }
+};
+
+TEST(LabImage, EveryKeyArrives) {
+  const LabImage read = parse_lab_image(image, "image", 1e-3);
+  STRCMP_EQUAL("", read.error.c_str());
+  UNSIGNED_LONGS_EQUAL(2, read.settings->actuators);
+  LONGS_EQUAL(7'812'500, read.settings->limits.reading_age_ns);
+  UNSIGNED_LONGS_EQUAL(500, read.settings->limits.position_error_cycles);
+  UNSIGNED_LONGS_EQUAL(3, read.settings->most_overruns);
+  DOUBLES_EQUAL(0.02, read.settings->profile.at(1.0)[0], 1e-12);
+  DOUBLES_EQUAL(-1.5, read.settings->profile.at(1.0)[1], 1e-12);
+  STRCMP_EQUAL("hydraulic", read.lines.hydraulic_enable.c_str());
+}
+
+TEST(LabImage, WhatCannotBeIsRefusedWithItsLine) {
+  refused("topology lab", "topology simplex", "line 2: topology = simplex: allowed are lab");
+  refused("actuators 2", "actuators 9", "allowed is a number from 1 to 8");
+  refused("current_per_command 0.1", "current_per_command 0", "no command would move anything");
+  refused("current_limit 0.02", "current_limit 1", "from 1e-09 to 0.032 A");
+  refused("limits.highest_position 0.06", "limits.highest_position -0.1", "from -0.06");
+  refused("rest_speed 0.001", "rest_speed nan", "rest_speed = nan");
+  refused("line.arm arm\n", "", "missing key line.arm");
+  refused("segment.0.to 0.03", "segment.1.to 0.03", "missing key segment.0.to");
+  refused("segment.0.to 0.03,-0x1p+1", "segment.0.to 0.03", "allowed is 2 numbers, commas between them, from");
+  refused("segment.0.to 0.03", "segment.0.to 0.03,1", "allowed is 2 numbers");
+  refused("segment.0.duration 2", "segment.0.duration 2,3", "allowed is a number");
+  refused("schema 1", "schema 1\nstranger 1", "stranger");
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "firmware/lab/lab.hpp"
+
+namespace hotfire::firmware::test_lab {
+
+constexpr double kPeriod = 1e-3;
+constexpr std::int64_t kPeriodNs = 1'000'000;
+
+inline Segment segment(double duration, double from, double to, double amplitude = 0.0, double frequency = 1.0,
+                       double last_frequency = 1.0) {
+  return {duration, {from}, {to}, {amplitude}, frequency, last_frequency};
+}
+
+/// A lab of one actuator that steps to 0.02 rad for a second.
+inline LabSettings settings() {
+  LabSettings made;
+  made.profile = Profile({segment(1.0, 0.02, 0.02)});
+  made.piston_per_command = 0.5;
+  made.current_per_command = 0.1;
+  made.current_limit = 0.02;
+  made.approach_rate = 1.0;
+  made.rest_speed = 0.01;
+  made.stopping_time = 0.1;
+  made.limits = {5 * kPeriodNs, 5 * kPeriodNs, -0.15, 0.15, 0.001, -0.06, 0.06, 10.0, 0.004, 10};
+  return made;
+}
+
+}  // namespace hotfire::firmware::test_lab

@@ -1,0 +1,203 @@
+#include "firmware/plant/vehicle_plant.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <cmath>
+#include <memory>
+
+#include "firmware/loop/loop.hpp"
+#include "hal/arithmetic/denormals.hpp"
+#include "hal/sim/manual_clock.hpp"
+#include "hal/sim/plant_bus.hpp"
+#include "tests/model/vehicles.hpp"
+#include "tests/support/allocation_guard.hpp"
+
+namespace hotfire::firmware {
+
+namespace {
+
+using test::Masv;
+using test::Taos;
+using Rows = std::vector<std::vector<double>>;
+
+constexpr double kPeriod = 1e-3;
+constexpr std::int64_t kPeriodNs = 1'000'000;
+constexpr std::size_t kChannels = Masv::kChannels;
+
+/// Four engines on 20 modes that carry the anchors of the strings too, at hot fire.
+std::unique_ptr<model::InstrumentedVehicle<Masv>> hot_masv() {
+  auto rig = std::make_unique<model::InstrumentedVehicle<Masv>>();
+  rig->vehicle = test::hot_fire<Masv>();
+  rig->vehicle.modes = test::random_modes<Masv::Modes>(20, 5e-9, 7);
+  rig->sensors.piston.lag = 2e-3;
+  rig->sensors.piston.noise = 1e-5;
+  rig->sensors.string_shape.topRows(Masv::kPorts) = 0.1 * rig->vehicle.modes.shape;
+  return rig;
+}
+
+using MasvLoop = Loop<VehiclePlant<Masv>, hal::sim::SimulatedPlantBus, hal::sim::ManualClock>;
+
+/// What a plant of one hot engine sends in every cycle while its two actuators are under sines of their own.
+Rows played(const std::vector<PlayedFault>& faults) {
+  model::InstrumentedVehicle<Taos> rig;
+  rig.vehicle = test::hot_fire<Taos>();
+  const auto plant = std::make_unique<VehiclePlant<Taos>>(rig, kPeriod, faults);
+  Rows rows;
+  hal::Command command;
+  for (int cycle = 0; cycle < 400; ++cycle) {
+    command.values[0] = 0.02 * std::sin(20.0 * cycle * kPeriod);
+    command.values[1] = 0.015 * std::sin(31.0 * cycle * kPeriod);
+    plant->step(command);
+    rows.emplace_back(plant->measured().begin(), plant->measured().end());
+  }
+  return rows;
+}
+
+/// The first cycle in which any of some readings differs; the number of cycles if none does.
+std::size_t first_difference(const Rows& one, const Rows& other, std::size_t from, std::size_t to) {
+  std::size_t cycle = 0;
+  for (; cycle < one.size(); ++cycle) {
+    for (std::size_t i = from; i < to; ++i) {
+      if (one[cycle][i] != other[cycle][i]) {
+        return cycle;
+      }
+    }
+  }
+  return cycle;
+}
+
+}  // namespace
+
+TEST_GROUP(VehiclePlant){};
+
+TEST(VehiclePlant, LoopGivesTheBitsOfOfflineStepping) {
+  constexpr std::uint64_t kCycles = 1000;
+  const hal::sim::CommandSource source{hal::sim::CommandSource::Shape::steps, 0.01, 1.2};
+  const hal::FlushDenormals flush;
+  const auto rig = hot_masv();
+  const auto plant = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
+  hal::sim::SimulatedPlantBus bus(source, kPeriod);
+  hal::sim::ManualClock clock;
+  const auto loop =
+      std::make_unique<MasvLoop>(*plant, bus, clock, LoopSettings{kPeriodNs, kCycles - 50, 50, OverrunPolicy::catch_up});
+  loop->run(false, [&]() noexcept { clock.delay_next_wake_up_ns(3 * kPeriodNs); });
+
+  const auto vehicle = std::make_unique<Masv>(rig->vehicle, kPeriod / 2);
+  const auto state = std::make_unique<Masv::State>(vehicle->steady({}));
+  Masv::Inputs inputs;
+  for (std::uint64_t cycle = 0; cycle < kCycles; ++cycle) {
+    inputs.commands.fill(source.at(static_cast<double>(cycle) * kPeriod));
+    vehicle->step(*state, inputs);
+    vehicle->step(*state, inputs);
+  }
+  // A piston is read through its potentiometer; the other channels are the vehicle's own.
+  for (std::size_t i = 0; i < state->measured.size(); ++i) {
+    if (i % kChannels != 0) {
+      DOUBLES_EQUAL(state->measured[i], plant->measured()[i], 0.0);
+    }
+  }
+  CHECK(std::abs(plant->measured()[1]) > 1e-4);
+}
+
+TEST(VehiclePlant, CyclesOfFourEnginesWithModesStringsAndFaultsAllocateNothing) {
+  std::vector<PlayedFault> faults;
+  for (const PlayedKind kind : {PlayedKind::stuck, PlayedKind::biased, PlayedKind::noisy, PlayedKind::dropped,
+                                PlayedKind::delayed, PlayedKind::leak}) {
+    faults.push_back({kind, 0.1, 0.3, 0, 0, 1e-9});
+  }
+  const auto plant = std::make_unique<VehiclePlant<Masv>>(*hot_masv(), kPeriod, faults);
+  plant->string_up();
+  hal::sim::SimulatedPlantBus bus({}, kPeriod);
+  hal::sim::ManualClock clock;
+  const auto loop =
+      std::make_unique<MasvLoop>(*plant, bus, clock, LoopSettings{kPeriodNs, 1000, 0, OverrunPolicy::catch_up});
+  const test::AllocationGuard guard;
+  loop->run(false, []() noexcept {});
+  UNSIGNED_LONGS_EQUAL(0, guard.allocations());
+  UNSIGNED_LONGS_EQUAL(0, guard.releases());
+  UNSIGNED_LONGS_EQUAL(1000, loop->result().account.cycles());
+}
+
+TEST(VehiclePlant, ActuatorsAreTheAxesInTheirOrder) {
+  const auto plant = std::make_unique<VehiclePlant<Masv>>(*std::make_unique<model::InstrumentedVehicle<Masv>>(), kPeriod);
+  UNSIGNED_LONGS_EQUAL(8, plant->actuators());
+  UNSIGNED_LONGS_EQUAL(8 * kChannels, plant->measured().size());
+  hal::Command command;
+  command.values[5] = 0.02;  // yaw of engine 3
+  for (int cycle = 0; cycle < 500; ++cycle) {
+    plant->step(command);
+  }
+  for (std::size_t actuator = 0; actuator < plant->actuators(); ++actuator) {
+    const double angle = plant->measured()[actuator * kChannels + 1];
+    CHECK_EQUAL(actuator == 5, std::abs(angle) > 0.01);
+  }
+}
+
+TEST(VehiclePlant, StringsReadAnglesBearingAndStructureAndChangeNoBitOfTheRest) {
+  const auto rig = hot_masv();
+  const auto plain = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
+  const auto stringed = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
+  rig->sensors.string_shape.setZero();
+  const auto still = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
+  stringed->string_up();
+  still->string_up();
+  UNSIGNED_LONGS_EQUAL(0, plain->strings().size());
+  UNSIGNED_LONGS_EQUAL(hal::kMaxStrings, stringed->strings().size());
+  hal::Command command;
+  command.values = {0.02, -0.01, 0.015};
+  for (int cycle = 0; cycle < 300; ++cycle) {
+    plain->step(command);
+    stringed->step(command);
+    still->step(command);
+  }
+  hal::Fnv1a one;
+  hal::Fnv1a other;
+  plain->add_to(one);
+  stringed->add_to(other);
+  CHECK(one.value() == other.value());
+  // The bearing gives way to the thrust by a millimetre or so, and the modes carry the anchors.
+  const model::StringPotentiometers<double> geometry(model::StringPotentiometers<double>::representative());
+  const std::span<const double> read = plain->measured();
+  const auto turned = geometry.lengths(read[1], read[kChannels + 1], {0.0, 0.0, 0.0});
+  CHECK(std::abs(turned[0]) > 1e-3);
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    DOUBLES_EQUAL(turned[i], still->strings()[i], 2e-3);
+    CHECK(turned[i] != still->strings()[i]);
+    CHECK(still->strings()[i] != stringed->strings()[i]);
+  }
+}
+
+TEST(VehiclePlant, FaultsOfSensorsAreOnTheirReadingAndNowhereElse) {
+  const Rows healthy = played({});
+  const Rows stuck = played({{PlayedKind::stuck, 0.1, 0.25, 2, 0}});
+  UNSIGNED_LONGS_EQUAL(100, first_difference(healthy, stuck, kChannels, kChannels + 1));
+  DOUBLES_EQUAL(healthy[99][kChannels], stuck[249][kChannels], 0.0);
+  DOUBLES_EQUAL(healthy[250][kChannels], stuck[250][kChannels], 0.0);
+  UNSIGNED_LONGS_EQUAL(healthy.size(), first_difference(healthy, stuck, 0, kChannels));
+  UNSIGNED_LONGS_EQUAL(healthy.size(), first_difference(healthy, stuck, kChannels + 1, 2 * kChannels));
+}
+
+TEST(VehiclePlant, FaultsOfActuatorsThatOverlapActTogetherAndEachInItsTime) {
+  const PlayedFault leak{PlayedKind::leak, 0.1, 0.3, 1, 0, 1e-8};
+  const PlayedFault loss{PlayedKind::lost_supply, 0.2, 0.35, 2, 0, 4e5};
+  const Rows healthy = played({});
+  const Rows leaking = played({leak});
+  const Rows both = played({loss, leak});
+  const std::size_t all = 2 * kChannels;
+  UNSIGNED_LONGS_EQUAL(100, first_difference(healthy, leaking, 0, all));
+  UNSIGNED_LONGS_EQUAL(200, first_difference(leaking, both, 0, all));
+  // The state goes on: the first cycle of a fault differs by less than the piston moves in it.
+  CHECK(std::abs(leaking[100][0] - healthy[100][0]) < std::abs(healthy[100][0] - healthy[99][0]));
+  // Each acts on its own actuator: without supply the yaw piston no longer follows, with a leak the pitch piston does.
+  CHECK(std::abs(both[300][kChannels] - healthy[300][kChannels]) > 1e-3);
+  CHECK(std::abs(both[300][0] - leaking[300][0]) < 1e-3);
+}
+
+TEST(VehiclePlant, FaultOfEveryActuatorIsThatOfEach) {
+  const PlayedFault every{PlayedKind::leak, 0.1, 0.3, 0, 0, 1e-8};
+  const Rows one = played({every});
+  const Rows each = played({{PlayedKind::leak, 0.1, 0.3, 1, 0, 1e-8}, {PlayedKind::leak, 0.1, 0.3, 2, 0, 1e-8}});
+  UNSIGNED_LONGS_EQUAL(one.size(), first_difference(one, each, 0, 2 * kChannels));
+}
+
+}  // namespace hotfire::firmware

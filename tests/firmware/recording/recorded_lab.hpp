@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "firmware/lab/lab_image.hpp"
+#include "firmware/lab/lab_recorder.hpp"
+#include "firmware/session/recording_session.hpp"
+#include "tests/firmware/lab/lab_on_wire.hpp"
+
+namespace hotfire::firmware::test_lab {
+
+inline const std::string kRecordedLabImage =
+    "schema 1\ntopology lab\nactuators 1\npiston_per_command 0.5\ncurrent_per_command 0.1\ncurrent_per_error 0.3\n"
+    "current_limit 0.02\napproach_rate 1\nrest_speed 0.01\nstopping_time 0.05\nlimits.command_age 0.005\n"
+    "limits.reading_age 0.005\nlimits.lowest_reading -0.15\nlimits.highest_reading 0.15\nlimits.disagreement 0.001\n"
+    "limits.lowest_position -0.06\nlimits.highest_position 0.06\nlimits.command_rate 100\nlimits.position_error 0.05\n"
+    "limits.position_error_time 0.5\nlimits.overruns 0\nline.emergency_stop estop\nline.hydraulic_enable hydraulic\n"
+    "line.arm arm\nline.supply supply\nline.heartbeat heartbeat\nline.fault fault\nsegment.0.duration 0.1\n"
+    "segment.0.from 0\nsegment.0.to 0\nsegment.0.amplitude 0.01\nsegment.0.frequency 10\nsegment.0.last_frequency 20\n";
+
+/// Records a lab to a file. It is armed, run, stopped by an emergency stop, armed and run again to the end of its profile,
+/// and is pressed once more when its readings are out of range. Cycle `gap` is left out. Returns how many cycles are in the
+/// file.
+inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~std::uint64_t{0}) {
+  LabImage image = parse_lab_image(kRecordedLabImage, "image", kPeriod);
+  LabOnWire bench(std::move(*image.settings));
+  Options options;
+  options.recording = path;
+  options.overwrite = true;  // a test may record again
+  RecordedPlant plant;
+  plant.topology = kLabTopology;
+  plant.input = {"command", "rad"};
+  plant.channels.assign(kLabChannels.begin(), kLabChannels.end());
+  plant.start.assign(kLabChannels.size(), 0.0);
+  plant.image = kRecordedLabImage;
+  RecordingSession session(options, plant);
+  CHECK(!session.start());
+  LabRecorder<LabOnWire::Rig> recorder(session.recorder(), bench.rig);
+  hal::Fnv1a hash;
+  hal::CycleHead head;
+  bench.after_cycle = [&] {
+    bench.rig.add_to(hash);
+    head.hash = hash.value();
+    if (head.cycle != gap) {
+      recorder.record(head, {}, bench.rig.measured());
+    }
+    ++head.cycle;
+    // An actuator that lags.
+    bench.piston += 0.2 * (0.5 * bench.lab.outputs().commands[0] - bench.piston);
+  };
+  bench.piston = 0.004;
+  bench.cycles(5);
+  bench.press();
+  bench.press();
+  bench.cycles(30);
+  bench.board.drive(kEmergencyStopReleased, false);
+  bench.cycles(5);
+  bench.board.drive(kEmergencyStopReleased, true);
+  bench.press();
+  bench.press();
+  bench.cycles(300);
+  CHECK(bench.lab.completed());
+  bench.piston = 0.2;
+  bench.press();
+  return session.close().stored;
+}
+
+}  // namespace hotfire::firmware::test_lab

@@ -1,0 +1,102 @@
+#include "firmware/replay/lab_replay.hpp"
+
+#include <cstring>
+
+#include "tests/files/scratch.hpp"
+#include "tests/firmware/recording/recorded_lab.hpp"
+#include "tests/firmware/recording/rewritten_recording.hpp"
+
+namespace hotfire::firmware {
+
+TEST_GROUP(LabReplay) {
+  test::Scratch scratch;
+  const std::string path = scratch.path("lab.hfr").string();
+
+  std::uint64_t record() const { return test_lab::record_lab(path); }
+
+  Replay replayed() const { return test_recording::replayed(path); }
+
+  /// Writes the recording again with `change(head, values)` made to cycle 20.
+  template <class Change>
+  void rewrite(Change && change) const {
+    scratch.write("lab.hfr", test_recording::rewritten(path, [&](std::uint64_t cycle, std::string& bytes) {
+                    if (cycle == 20) {
+                      hal::CycleHead head;
+                      std::vector<double> values((bytes.size() - sizeof head) / sizeof(double));
+                      std::memcpy(&head, bytes.data(), sizeof head);
+                      std::memcpy(values.data(), bytes.data() + sizeof head, values.size() * sizeof(double));
+                      change(head, values);
+                      std::memcpy(bytes.data(), &head, sizeof head);
+                      std::memcpy(bytes.data() + sizeof head, values.data(), values.size() * sizeof(double));
+                    }
+                    return true;
+                  }));
+  }
+
+  template <class Change>
+  void differs(const char* part, Change&& change, std::uint64_t at = 20) {
+    record();
+    rewrite(change);
+    const Replay result = replayed();
+    CHECK(result.difference.has_value());
+    UNSIGNED_LONGS_EQUAL(at, result.difference->cycle);
+    STRCMP_CONTAINS(part, result.difference->what.c_str());
+  }
+};
+
+TEST(LabReplay, EveryCycleIsDecidedAgainToTheSameBits) {
+  const std::uint64_t stored = record();
+  const Replay result = replayed();
+  STRCMP_EQUAL("", result.error.c_str());
+  STRCMP_EQUAL("", result.difference ? result.difference->what.c_str() : "");
+  UNSIGNED_LONGS_EQUAL(stored, result.proved);
+}
+
+TEST(LabReplay, WhatTheLabSawIsTakenOutAsItWasPutIn) {
+  record();
+  hal::RecordingReader reader(path);
+  hal::RecordedCycle cycle;
+  std::uint64_t stopped = 0;
+  std::uint64_t pressed = 0;
+  while (reader.next(cycle)) {
+    const LabInputs inputs = recorded_inputs(cycle.head, cycle.readings);
+    CHECK(inputs.rig.hydraulic_enable);
+    CHECK(!inputs.rig.bus_down && !inputs.rig.bad_frame && !inputs.stop);
+    CHECK_EQUAL(inputs.arm, inputs.start);
+    stopped += inputs.rig.emergency_stop ? 1 : 0;
+    pressed += inputs.arm ? 1 : 0;
+    // Nothing had come before the first cycle, whose clock shows 0.
+    LONGS_EQUAL(cycle.head.cycle == 0 ? std::int64_t{1} << 62 : 0, inputs.ages_ns[0]);
+  }
+  UNSIGNED_LONGS_EQUAL(5, stopped);
+  UNSIGNED_LONGS_EQUAL(10, pressed);
+}
+
+TEST(LabReplay, OneThingThatIsNotAsTheLogicWouldHaveItIsNamed) {
+  differs("command of actuator 1: recorded ",
+          [](hal::CycleHead&, std::vector<double>& values) { values[0] = std::nextafter(values[0], 1.0); });
+  differs("servovalve_current of actuator 1: recorded ", [](hal::CycleHead&, std::vector<double>& values) {
+    values[1 + kServovalveCurrent] = std::nextafter(values[1 + kServovalveCurrent], 1.0);
+  });
+  differs("state and first fault: recorded 4 and 0, replayed 2 and 0",
+          [](hal::CycleHead& head, std::vector<double>&) { head.flags ^= hal::CycleHead::lab_flags(2 ^ 4, 0); });
+  differs("recorded 2 and 0, replayed 4 and 9", [](hal::CycleHead& head, std::vector<double>&) {
+    head.flags ^= std::uint64_t{1} << (hal::CycleHead::kInputsShift + 4);
+  });
+  differs("recorded 2 and 0, replayed 4 and 3",
+          [](hal::CycleHead&, std::vector<double>& values) { values[1 + kPistonB] = 0.151; });
+  // Where the piston was at its end, the next cycle knows.
+  differs(
+      "piston of actuator 1: recorded ", [](hal::CycleHead&, std::vector<double>& values) { values[1 + kPiston] = 0.0; },
+      21);
+}
+
+TEST(LabReplay, NothingBehindADroppedCycleIsClaimed) {
+  test_lab::record_lab(path, 30);
+  const Replay result = replayed();
+  CHECK(!result.difference);
+  UNSIGNED_LONGS_EQUAL(30, result.gap.value());
+  UNSIGNED_LONGS_EQUAL(30, result.proved);
+}
+
+}  // namespace hotfire::firmware

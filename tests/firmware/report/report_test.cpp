@@ -1,0 +1,122 @@
+#include <CppUTest/TestHarness.h>
+
+#include <memory>
+
+#include "firmware/session/session.hpp"
+#include "model/simplex.hpp"
+#include "tests/firmware/session/scripted_world.hpp"
+
+namespace hotfire::firmware {
+
+using test::run_scripted;
+using test::ScriptedWorld;
+TEST_GROUP(Report) {
+  ScriptedWorld world;
+  Options options;
+  std::unique_ptr<LoopResult> result;
+
+  Session session() {
+    world = ScriptedWorld{};
+    world.delays[30].wake_up_ns = 250'000;
+    world.delays[40].step_ns = 1'500'000;
+    options.loop.cycles = 100;
+    options.loop.warm_up_cycles = 10;
+    options.command_line = "hotfire-rt \"quoted\"";
+    result = std::make_unique<LoopResult>(run_scripted(world, options.loop));
+    using Simplex = model::Simplex<double>;
+    return {options, *result, Simplex::topology, Simplex::channels, Simplex::channel_units, 2};
+  }
+};
+
+TEST(Report, VerdictWithoutLimitsIsGoodAndSaysSo) {
+  const Verdict verdict = judge(session());
+  CHECK(verdict.good);
+  STRCMP_EQUAL("no limit asked for", verdict.reason.c_str());
+}
+
+TEST(Report, LimitOnOverrunsIsMetAtTheLimitAndBrokenBelowIt) {
+  options.max_overruns = 1;
+  CHECK(judge(session()).good);
+  options.max_overruns = 0;
+  const Verdict verdict = judge(session());
+  CHECK(!verdict.good);
+  STRCMP_EQUAL("1 overruns, allowed 0", verdict.reason.c_str());
+}
+
+TEST(Report, LimitOnLatencyLooksAtTheLatestWakeUp) {
+  options.max_latency_us = 250.0;
+  CHECK(judge(session()).good);
+  options.max_latency_us = 249.9;
+  CHECK(!judge(session()).good);
+}
+
+TEST(Report, LimitOnTheStepLooksAtTheLongestOne) {
+  options.max_step_us = 1500.0;
+  CHECK(judge(session()).good);
+  options.max_step_us = 1499.9;
+  const Verdict verdict = judge(session());
+  CHECK(!verdict.good);
+  STRCMP_EQUAL("longest step 1500.0 us, allowed 1499.9 us", verdict.reason.c_str());
+}
+
+TEST(Report, LimitsAreJudgedWithoutTheWarmUp) {
+  options.max_latency_us = 0.0;
+  options.max_overruns = 0;
+  world = ScriptedWorld{};
+  world.delays[5] = {400'000, 10'000, 3'000'000, 10'000};
+  options.loop.cycles = 100;
+  options.loop.warm_up_cycles = 10;
+  result = std::make_unique<LoopResult>(run_scripted(world, options.loop));
+  using Simplex = model::Simplex<double>;
+  const Verdict verdict = judge({options, *result, Simplex::topology, Simplex::channels, Simplex::channel_units, 2});
+  CHECK(verdict.good);
+  UNSIGNED_LONGS_EQUAL(1, result->warm_up_overruns);
+}
+
+TEST(Report, CycleMissingInTheRecordingIsBadUnlessAllowed) {
+  const RecorderAccount account{100, 99, "the disk is full"};
+  const auto with_recording = [&] {
+    Session with = session();
+    with.recording = &account;
+    return with;
+  };
+  CHECK(!judge(with_recording()).good);
+  STRCMP_CONTAINS("99 of 100 cycles, 1 dropped; ended early: the disk is full", text_report(with_recording()).c_str());
+  STRCMP_CONTAINS("\"recording\":{\"file\":\"\",\"offered\":100,\"stored\":99,\"dropped\":1",
+                  json_report(with_recording()).c_str());
+  options.max_dropped = 1;
+  CHECK(judge(with_recording()).good);
+}
+
+TEST(Report, LoopStoppedByAnOverrunIsBadWhateverTheLimits) {
+  options.max_overruns = 10;
+  options.loop.policy = OverrunPolicy::stop;
+  const Verdict verdict = judge(session());
+  CHECK(!verdict.good);
+  STRCMP_EQUAL("stopped by an overrun", verdict.reason.c_str());
+}
+
+TEST(Report, TextNamesTheFiguresTheBlameAndThatItWasNoRealTime) {
+  const std::string text = text_report(session());
+  STRCMP_CONTAINS("real time     NO", text.c_str());
+  STRCMP_CONTAINS("cycles        100 at 1000.0000 Hz", text.c_str());
+  STRCMP_CONTAINS("overruns      1, blamed on: wake_up 0, read 0, step 1, write 0, backlog 0", text.c_str());
+  STRCMP_CONTAINS("worst cycle   40: wake-up 0.0, read 10.0, step 1500.0, write 10.0, account 0.0 us; longest: step",
+                  text.c_str());
+  STRCMP_CONTAINS("max 250.0 us", text.c_str());
+  STRCMP_CONTAINS("as an ordinary process", text.c_str());
+}
+
+TEST(Report, JsonHasTheShapeOfCyclictestAndOurOwnBesideIt) {
+  const std::string json = json_report(session());
+  STRCMP_CONTAINS("{\"file_version\":1,\"cmdline:\":\"hotfire-rt \\\"quoted\\\"\",\"rt_test_version:\":\"hotfire ",
+                  json.c_str());
+  STRCMP_CONTAINS("\"return_code\":0,\"sysinfo\":{\"sysname\":\"Linux\"", json.c_str());
+  STRCMP_CONTAINS(
+      "\"num_threads\":1,\"resolution_in_ns\":0,\"thread\":{\"0\":{\"histogram\":{\"0\":98,\"250\":1},\"cycles\":100,"
+      "\"min\":0,\"max\":250,\"avg\":",
+      json.c_str());
+  STRCMP_CONTAINS("\"overruns\":1,\"blame\":{\"wake_up\":0,\"read\":0,\"step\":1,\"write\":0,\"backlog\":0}", json.c_str());
+}
+
+}  // namespace hotfire::firmware

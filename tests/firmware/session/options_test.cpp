@@ -1,0 +1,123 @@
+#include "firmware/session/options.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace hotfire::firmware {
+
+TEST_GROUP(Options){
+    static Options accepted(std::vector<std::string> arguments){arguments.insert(arguments.begin(), "hotfire-rt");
+const ParsedOptions parsed = parse_options(arguments);
+STRCMP_EQUAL("", parsed.message.c_str());
+CHECK(parsed.options.has_value());
+return *parsed.options;
+}  // namespace hotfire::firmware
+
+static void refused(std::vector<std::string> arguments, const char* message) {
+  arguments.insert(arguments.begin(), "hotfire-rt");
+  const ParsedOptions parsed = parse_options(arguments);
+  CHECK(!parsed.options);
+  LONGS_EQUAL(2, parsed.status);
+  STRCMP_CONTAINS(message, parsed.message.c_str());
+}
+}
+;
+
+TEST(Options, TimingRunsTenThousandCyclesAndAllowsNoOverrunByDefault) {
+  const Options options = accepted({"timing"});
+  UNSIGNED_LONGS_EQUAL(10'000, options.loop.cycles);
+  CHECK(options.max_overruns == std::uint64_t{0});
+  CHECK(!options.max_latency_us);
+}
+
+TEST(Options, PlantRunsUntilAskedToStopAndHasNoLimitByDefault) {
+  const Options options = accepted({"plant", "--image", "p.image"});
+  UNSIGNED_LONGS_EQUAL(0, options.loop.cycles);
+  CHECK(!options.max_overruns);
+}
+
+TEST(Options, ValuesAreTakenFromTheNextArgumentOrAfterAnEqualsSign) {
+  const Options options = accepted({"timing", "--period-us", "250", "--policy=skip", "--cpu", "1", "--max-latency-us=12.5",
+                                    "--command", "sine", "--amplitude", "-0.02", "--json"});
+  LONGS_EQUAL(250'000, options.loop.period_ns);
+  CHECK(options.loop.policy == OverrunPolicy::skip);
+  LONGS_EQUAL(1, *options.cpu);
+  DOUBLES_EQUAL(12.5, *options.max_latency_us, 0.0);
+  CHECK(options.source.shape == hotfire::hal::sim::CommandSource::Shape::sine);
+  DOUBLES_EQUAL(-0.02, options.source.amplitude, 0.0);
+  CHECK(options.json);
+}
+
+TEST(Options, PeriodOutsideItsRangeIsRefusedWithTheRange) {
+  refused({"timing", "--period-us", "249"}, "--period-us 249: allowed is a whole number from 250 to 10000");
+  refused({"timing", "--period-us", "10001"}, "from 250 to 10000");
+}
+
+TEST(Options, LayoutOfACanBusIsTheSmallestThatHasRoomUnlessSaid) {
+  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--actuators", "2"}).frame_layout() == can::Layout::classic);
+  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--actuators", "3"}).frame_layout() == can::Layout::fd);
+  CHECK(accepted({"controller", "--bus", "can0", "--layout", "fd"}).frame_layout() == can::Layout::fd);
+  refused({"plant", "--image", "p", "--bus", "can0", "--actuators", "3", "--layout", "classic"}, "room for 2 actuators");
+}
+
+TEST(Options, WhatABusCannotDoIsRefused) {
+  refused({"controller"}, "--bus can0");
+  refused({"controller", "--bus", "can0", "--sync", "can"}, "sends SYNC itself");
+  refused({"timing", "--bus", "can0"}, "timing needs no bus");
+  refused({"plant", "--image", "p", "--sync", "can"}, "--sync can needs the CAN bus");
+  refused({"plant", "--image", "p", "--strings"}, "--strings is of a plant on a CAN bus");
+  refused({"controller", "--bus", "can0", "--strings"}, "--strings is of a plant on a CAN bus");
+  refused({"plant", "--image", "p", "--bus", ""}, "the name of a CAN interface");
+}
+
+TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
+  refused({}, "plant, timing, controller, lab or replay");
+  refused({"fly"}, "plant, timing, controller, lab or replay");
+  refused({"plant"}, "hotfire plant --model");
+  refused({"timing", "--perod-us", "500"}, "unknown argument --perod-us");
+  refused({"timing", "--cycles"}, "--cycles needs a value");
+  refused({"timing", "--json=yes"}, "--json takes no value");
+  refused({"timing", "--policy", "hope"}, "catch-up, skip, stop");
+  refused({"timing", "--amplitude", "nan"}, "a number from");
+  refused({"timing", "--cycles", "-1"}, "a whole number");
+  refused({"timing", "--cycles", "10x"}, "a whole number");
+  refused({"timing", "--priority", "0", "--require-realtime"}, "exclude each other");
+}
+
+TEST(Options, RecordingAndItsLimitsAreRead) {
+  const Options options =
+      accepted({"plant", "--image", "p", "--record", "run.hfr", "--record-buffer-s", "2.5", "--record-max-mib=64",
+                "--overwrite", "--max-dropped", "7", "--actuators", "8", "--sync", "sim", "--max-missed-syncs", "0"});
+  STRCMP_EQUAL("run.hfr", options.recording.c_str());
+  DOUBLES_EQUAL(2.5, options.record_buffer_s, 0.0);
+  UNSIGNED_LONGS_EQUAL(64, options.record_max_mib);
+  CHECK(options.overwrite);
+  UNSIGNED_LONGS_EQUAL(7, options.max_dropped);
+  UNSIGNED_LONGS_EQUAL(8, options.actuators);
+  CHECK(options.actuators_given);
+  CHECK(!accepted({"plant", "--image", "p"}).actuators_given);
+  CHECK(options.pace == PaceKind::sim);
+  UNSIGNED_LONGS_EQUAL(0, options.most_missed_syncs);
+  refused({"plant", "--image", "p", "--actuators", "9"}, "from 1 to 8");
+  refused({"plant", "--image", "p", "--sync", "gps"}, "clock, sim, can");
+  refused({"timing", "--record", "run.hfr"}, "--record needs a model");
+}
+
+TEST(Options, ReplayTakesOneRecording) {
+  const Options options = accepted({"replay", "run.hfr", "--json"});
+  CHECK(options.mode == Mode::replay);
+  CHECK(options.json);
+  STRCMP_EQUAL("run.hfr", options.recording.c_str());
+  refused({"replay"}, "needs a recording");
+  refused({"replay", "a.hfr", "b.hfr"}, "unknown argument b.hfr");
+  refused({"replay", "a.hfr", "--image"}, "unknown argument --image");
+}
+
+TEST(Options, HelpNamesEveryOptionAndAnExample) {
+  const ParsedOptions parsed = parse_options({"hotfire-rt", "timing", "--help"});
+  LONGS_EQUAL(0, parsed.status);
+  for (const char* part : {"--image", "--bus", "--policy", "--require-realtime", "hotfire timing --cycles"}) {
+    STRCMP_CONTAINS(part, parsed.message.c_str());
+  }
+}
+
+}  // namespace hotfire::firmware

@@ -1,0 +1,216 @@
+#include "tools/explain/data/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tools/explain/data/statistics.hpp"
+#include "tools/files/text/error.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+constexpr double kBlockSeconds = 4.0;
+constexpr std::size_t kFewestBlocks = 8;
+constexpr std::size_t kHoldOutEvery = 4;
+
+std::vector<Block> hold_out(std::size_t rows, double period, std::size_t shift) {
+  const auto wanted = static_cast<std::size_t>(std::lround(static_cast<double>(rows) * period / kBlockSeconds));
+  const std::size_t blocks = std::max(kFewestBlocks, wanted);
+  std::vector<Block> held;
+  for (std::size_t block = 0; block < blocks; ++block) {
+    // The third of each four, shifted from record to record: never the first block, which holds the start.
+    if ((block + shift) % kHoldOutEvery == 2 && block > 0) {
+      held.push_back({rows * block / blocks, rows * (block + 1) / blocks});
+    }
+  }
+  return held;
+}
+
+/// Shares the rows of an experiment out between fit and judgement.
+void share_out(Experiment& experiment) {
+  std::vector<Block> taken{{0, experiment.first_scored}};
+  taken.insert(taken.end(), experiment.excluded.begin(), experiment.excluded.end());
+  std::erase_if(experiment.held_out, [&](const Block& block) { return block.first < experiment.first_scored; });
+  experiment.fitted = without(without({{0, experiment.rows()}}, experiment.held_out), taken);
+  experiment.held_out = without(experiment.held_out, experiment.excluded);
+  if (experiment.fitted.empty()) {
+    throw UsageError(fmt::format("--exclude leaves no row of {} to fit", experiment.name));
+  }
+}
+
+/// What a record may lack its user excludes: a value that still lacks is beside it.
+void require_values(const Channel& channel, const Experiment& experiment) {
+  for (const Block& kept : without({{0, channel.values.size()}}, experiment.excluded)) {
+    for (std::size_t row = kept.first; row < kept.last; ++row) {
+      if (std::isnan(channel.values[row])) {
+        throw UsageError(
+            fmt::format("{}: channel {} has no value at {:.6g} s, beside what --exclude names; exclude that too",
+                        experiment.name, channel.name, experiment.time_of(row)));
+      }
+    }
+  }
+}
+
+template <class Parameters>
+struct ChannelsOf;
+template <>
+struct ChannelsOf<SimplexParameters> {
+  using Plant = model::Simplex<double>;
+};
+template <>
+struct ChannelsOf<DirectParameters> {
+  using Plant = model::Direct<double>;
+};
+
+/// A record in the channels of the model, of which it marks those that the record has as used.
+Experiment experiment_of(const Record& record, const std::string& input, const std::vector<Exclusion>& exclusions,
+                         Dataset& data) {
+  require_channel(record, input, "the model is driven by it");
+  Experiment experiment;
+  experiment.name = record.name;
+  experiment.start = record.start;
+  experiment.period = record.period;
+  experiment.excluded = excluded_rows(record, exclusions);
+  experiment.input_is_held = is_missing_somewhere(*record.find(input));
+  experiment.input = held_where_missing(*record.find(input), record);
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const Channel* channel = record.find(data.channels[c]);
+    experiment.measured.emplace_back();
+    if (channel != nullptr) {
+      require_values(*channel, experiment);
+      experiment.measured.back() = bridged(channel->values, experiment.excluded);
+      data.used[c] = true;
+    }
+  }
+  if (std::ranges::all_of(experiment.measured, &std::vector<double>::empty)) {
+    require_channel(record, data.channels.front(), "without a measured channel there is nothing to explain");
+  }
+  return experiment;
+}
+
+}  // namespace
+
+std::vector<Block> Experiment::scored() const {
+  std::vector<Block> blocks = fitted;
+  blocks.insert(blocks.end(), held_out.begin(), held_out.end());
+  std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.first < b.first; });
+  return blocks;
+}
+
+Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records, const std::vector<Exclusion>& exclusions) {
+  Dataset data;
+  std::string input;
+  std::visit(
+      [&](const auto& parameters) {
+        using Plant = typename ChannelsOf<std::remove_cvref_t<decltype(parameters)>>::Plant;
+        for (const auto channel : Plant::channels) {
+          data.channels.emplace_back(channel);
+        }
+        input = Plant::input_channel;
+      },
+      model.parameters);
+  data.used.assign(data.channels.size(), false);
+
+  data.experiments.reserve(records.size());
+  for (const Record& record : records) {
+    data.experiments.push_back(experiment_of(record, input, exclusions, data));
+    data.experiments.back().held_out = hold_out(record.rows, record.period, data.experiments.size() - 1);
+  }
+
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const auto declared = model.noise.find(data.channels[c]);
+    data.noise_declared.push_back(declared != model.noise.end());
+    if (declared != model.noise.end()) {
+      data.noise.push_back(declared->second);
+      continue;
+    }
+    std::vector<double> estimates;
+    for (const Experiment& experiment : data.experiments) {
+      if (!experiment.measured[c].empty()) {
+        estimates.push_back(noise_from_differences(kept_rows(experiment.measured[c], experiment.excluded)));
+      }
+    }
+    data.noise.push_back(estimates.empty() ? 1.0 : *std::min_element(estimates.begin(), estimates.end()));
+  }
+  if (const auto* mass = std::get_if<DirectParameters>(&model.parameters)) {
+    for (Experiment& experiment : data.experiments) {
+      experiment.start_state =
+          start_state(*mass, experiment.input, experiment.measured.front(), experiment.period, data.noise.front());
+    }
+  } else {
+    for (Experiment& experiment : data.experiments) {
+      experiment.first_scored = rows_to_forget_start(std::get<SimplexParameters>(model.parameters), experiment.input,
+                                                     experiment.measured, experiment.period, data.noise);
+    }
+  }
+  for (Experiment& experiment : data.experiments) {
+    share_out(experiment);
+  }
+  return data;
+}
+
+void fit_every_row(Dataset& data) {
+  for (Experiment& experiment : data.experiments) {
+    experiment.fitted = experiment.scored();
+    experiment.held_out.clear();
+  }
+}
+
+Dataset thinned(const Dataset& data, double period) {
+  Dataset thin = data;
+  for (Experiment& experiment : thin.experiments) {
+    const auto every = static_cast<std::size_t>(std::max(1.0, std::floor(period / experiment.period * (1.0 + 1e-9))));
+    if (every == 1) {
+      continue;
+    }
+    const auto kept = [&](std::size_t row) { return (row + every - 1) / every; };
+    const auto thin_blocks = [&](std::vector<Block>& blocks) {
+      for (Block& block : blocks) {
+        block = {kept(block.first), kept(block.last)};
+      }
+      std::erase_if(blocks, [](const Block& block) { return block.first == block.last; });
+    };
+    const std::vector<double> full = std::move(experiment.input);
+    experiment.input.assign(kept(full.size()), 0.0);
+    for (std::size_t row = 0; row < experiment.input.size(); ++row) {
+      const auto first = full.begin() + static_cast<std::ptrdiff_t>(row * every);
+      const auto held = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(every), full.end() - first);
+      experiment.input[row] = std::accumulate(first, first + held, 0.0) / static_cast<double>(held);
+    }
+    const auto thin_rows = [&](std::vector<double>& values) {
+      for (std::size_t row = 0; row * every < values.size(); ++row) {
+        values[row] = values[row * every];
+      }
+      values.resize(kept(values.size()));
+    };
+    for (std::vector<double>& channel : experiment.measured) {
+      thin_rows(channel);
+    }
+    for (std::vector<double>* motion : {&experiment.other.angle, &experiment.other.rate, &experiment.other.force}) {
+      thin_rows(*motion);
+    }
+    experiment.period *= static_cast<double>(every);
+    experiment.first_scored = kept(experiment.first_scored);
+    thin_blocks(experiment.fitted);
+    thin_blocks(experiment.held_out);
+    thin_blocks(experiment.excluded);
+  }
+  return thin;
+}
+
+std::vector<std::string> held_out_names(const Dataset& data) {
+  std::vector<std::string> names;
+  for (const Experiment& experiment : data.experiments) {
+    for (const Block& block : experiment.held_out) {
+      names.push_back(
+          fmt::format("{}@{:.1f}-{:.1f}", experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
+    }
+  }
+  return names;
+}
+
+}  // namespace hotfire::explain

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/explain/data/block.hpp"
+#include "tools/explain/data/exclusions.hpp"
+#include "tools/explain/data/other_axis.hpp"
+#include "tools/explain/data/start_state.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/files/record/record.hpp"
+
+namespace hotfire::explain {
+
+/// One record as the finder sees it.
+struct Experiment {
+  std::string name;
+  double start = 0.0;
+  double period = 0.0;
+  std::vector<double> input;
+  std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record lacks the channel
+  std::vector<Block> fitted;                  ///< rows that a fit sees
+  std::vector<Block> held_out;                ///< rows that no fit sees
+  std::vector<Block> excluded;                ///< rows that the user excludes
+  bool input_is_held = false;                 ///< the input is missing in some of those: it holds there
+  StartState start_state;                     ///< of a force-driven mass
+  std::size_t first_scored = 0;               ///< rows before it are simulated, not compared: the start is not at rest
+  OtherAxis other;                            ///< of a hydraulic axis that is one of two
+
+  std::size_t rows() const { return input.size(); }
+  double time_of(std::size_t row) const { return start + static_cast<double>(row) * period; }
+  /// Rows that are compared with the model, fitted or held out, in their order.
+  std::vector<Block> scored() const;
+};
+
+/// All records of one run of the finder.
+struct Dataset {
+  std::vector<std::string> channels;  ///< of the model, in its order
+  std::vector<bool> used;             ///< channels that at least one record has
+  std::vector<double> noise;          ///< rms by channel; 1 where unused
+  std::vector<bool> noise_declared;
+  std::vector<Experiment> experiments;
+  AxisGeometry geometry;  ///< read where experiments have another axis
+
+  /// True if the axis is one of two.
+  bool has_other_axis() const { return !experiments.empty() && experiments.front().other.is_there(); }
+};
+
+/// Puts records into the model's channels, estimates noise where it is not declared, and holds out every fourth block of
+/// about four seconds (at least eight blocks a record), so that each kind of motion is in both parts. Over excluded rows
+/// channels are `bridged`; exclusions of other records have no meaning here.
+/// Throws FileError if a record lacks the input or has none of the model's channels, UsageError if an exclusion leaves
+/// nothing of a record.
+Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
+                     const std::vector<Exclusion>& exclusions = {});
+
+/// Gives a fit every row that is scored: nothing is held out any more.
+void fit_every_row(Dataset& data);
+
+/// The records at a period of about `period` [s]: every k-th row, under the mean of the commands held from it to the next.
+/// The rows that a fit sees, are held out or excluded stay so. Records that are no faster are left as they are.
+Dataset thinned(const Dataset& data, double period);
+
+/// "steps.csv@8.0-12.0" for every held-out block.
+std::vector<std::string> held_out_names(const Dataset& data);
+
+}  // namespace hotfire::explain

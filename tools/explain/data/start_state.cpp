@@ -1,0 +1,110 @@
+#include "tools/explain/data/start_state.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/step_size.hpp"
+#include "tools/simulate/run.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+constexpr std::size_t kRows = 20;
+constexpr double kStandardErrors = 4.0;
+constexpr double kSlopeStandardErrors = 6.0;
+/// Share of a deviation at which it is forgotten.
+constexpr double kForgotten = 1e-4;
+
+using Mass = model::Direct<double>;
+
+/// Positions of the mass by row from an initial state under a force.
+Eigen::VectorXd response(const Mass& mass, Mass::State state, std::span<const double> force, int steps) {
+  Eigen::VectorXd positions = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(force.size()));
+  run(mass, force, state, steps,
+      [&](std::size_t row, const auto& readings) { positions(static_cast<Eigen::Index>(row)) = readings[0]; });
+  return positions;
+}
+
+}  // namespace
+
+bool StartState::moves() const { return std::abs(velocity) > kStandardErrors * velocity_error; }
+
+StartState start_state(const DirectParameters& parameters, std::span<const double> force, std::span<const double> position,
+                       double period, double noise) {
+  StartState start;
+  const std::size_t rows = std::min({kRows, force.size(), position.size()});
+  if (rows < 4) {
+    start.position = position.empty() ? 0.0 : position.front();
+    start.position_error = noise;
+    return start;
+  }
+  DirectParameters declared = parameters;
+  declared.effects.active.fill(false);
+  const int steps = model::steps_per_period<Mass>(declared, period);
+  const Mass mass(declared, period / steps);
+  const std::vector<double> none(rows, 0.0);
+  // Columns in units that a record of this length shows alike: a velocity by the record's own time, a force by its inertia.
+  const double time = static_cast<double>(rows) * period;
+  const double unit_velocity = 1.0 / time;
+  const std::vector<double> constant(rows, declared.mass.inertia / (time * time));
+  Eigen::MatrixX3d columns(static_cast<Eigen::Index>(rows), 3);
+  columns.col(0) = response(mass, mass.moving(1.0, 0.0), none, steps);
+  columns.col(1) = response(mass, mass.moving(0.0, unit_velocity), none, steps);
+  columns.col(2) = response(mass, mass.moving(0.0, 0.0), constant, steps);
+  const Eigen::VectorXd forced = response(mass, mass.moving(0.0, 0.0), force.first(rows), steps);
+  const Eigen::VectorXd free = Eigen::Map<const Eigen::VectorXd>(position.data(), static_cast<Eigen::Index>(rows)) - forced;
+  const Eigen::LDLT<Eigen::Matrix3d> normal(columns.transpose() * columns);
+  const Eigen::Vector3d found = normal.solve(columns.transpose() * free);
+  const double variance = std::max(noise * noise, (columns * found - free).squaredNorm() / static_cast<double>(rows - 3));
+  const Eigen::Matrix3d covariance = variance * normal.solve(Eigen::Matrix3d::Identity());
+  start.position = found(0);
+  start.velocity = found(1) * unit_velocity;
+  start.position_error = std::sqrt(covariance(0, 0));
+  start.velocity_error = std::sqrt(covariance(1, 1)) * unit_velocity;
+  return start;
+}
+
+std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<const double> command,
+                                 std::span<const std::vector<double>> measured, double period,
+                                 std::span<const double> noise) {
+  constexpr std::size_t kMotionChannels = 2;  // piston, engine
+  const std::size_t rows = std::min(kRows, command.size());
+  if (rows < 4) {
+    return 0;
+  }
+  const int steps = model::steps_per_period(period);
+  const model::Simplex<double> axis(parameters, period / steps);
+  auto state = axis.steady(command.front());
+  std::vector<std::array<double, kMotionChannels>> simulated;
+  run(axis, command.first(rows), state, steps, [&](std::size_t, const auto& readings) {
+    simulated.push_back({readings[0], readings[1]});
+  });
+  bool steady = true;
+  const double middle = 0.5 * static_cast<double>(rows - 1);
+  for (std::size_t c = 0; c < kMotionChannels && simulated.size() == rows; ++c) {
+    if (measured[c].empty()) {
+      continue;
+    }
+    double slope = 0.0;
+    double spread = 0.0;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const double place = static_cast<double>(row) - middle;
+      slope += place * (measured[c][row] - simulated[row][c]);
+      spread += place * place;
+    }
+    steady = steady && std::abs(slope) <= kSlopeStandardErrors * noise[c] * std::sqrt(spread);
+  }
+  if (steady) {
+    return 0;
+  }
+  const auto& valve = parameters.servovalve;
+  const double loop_gain = valve.rated_flow * valve.position_gain / parameters.actuator.piston_area;
+  const double seconds = -std::log(kForgotten) * (1.0 / loop_gain + 1.0 / valve.pressure_feedback_corner);
+  return std::min(command.size() / 4, static_cast<std::size_t>(seconds / period));
+}
+
+}  // namespace hotfire::explain

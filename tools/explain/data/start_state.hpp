@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tools/files/model/model_file.hpp"
+
+namespace hotfire::explain {
+
+/// Where a force-driven mass is at the first row of a record, told from its first rows, with standard errors.
+struct StartState {
+  double position = 0.0;
+  double velocity = 0.0;
+  double position_error = 0.0;
+  double velocity_error = 0.0;
+
+  /// True if the velocity is beyond what chance gives a mass at rest: four standard errors, a chance of 1 in 16,000.
+  bool moves() const;
+};
+
+/// Least squares of the first twenty rows on the declared mass: initial position, initial velocity and a constant force that
+/// stands for what the declared model lacks over so short a time (friction, an offset). The declared mass without effects is
+/// linear, so its response to each is exact. `noise` is the rms of the position's sensor noise; where the fit is worse than
+/// that, the standard errors grow with it.
+StartState start_state(const DirectParameters& parameters, std::span<const double> force, std::span<const double> position,
+                       double period, double noise);
+
+/// How many rows pass until a hydraulic axis has forgotten where it started; 0 if it starts in the steady state under its
+/// first command. It does not where measured minus simulated piston or engine motion has a slope over the first twenty rows
+/// that is beyond six standard errors. What is forgotten: the servo's position error and the pressure washout, each to a
+/// ten-thousandth.
+std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<const double> command,
+                                 std::span<const std::vector<double>> measured, double period,
+                                 std::span<const double> noise);
+
+}  // namespace hotfire::explain

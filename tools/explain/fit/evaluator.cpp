@@ -1,0 +1,339 @@
+#include "tools/explain/fit/evaluator.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "model/step_size.hpp"
+#include "tools/explain/fit/parallel.hpp"
+#include "tools/simulate/run.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Where an experiment starts, as far as it is not told by its first command.
+template <class S>
+struct Start {
+  std::array<S, 3> values{S(0.0), S(0.0), S(0.0)};  ///< position, velocity, clock: FreeParameter::state
+};
+
+template <class Plant, class S>
+typename Plant::State initial_state(const Plant& plant, const Dataset& data, const Experiment& experiment,
+                                    const Start<S>& start) {
+  typename Plant::State state = [&] {
+    if constexpr (Plant::topology == "direct") {
+      return plant.moving(start.values[0], start.values[1]);
+    } else if (experiment.other.is_there()) {
+      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
+      const OtherAxis& other = experiment.other;
+      return plant.steady(S(experiment.input.front()),
+                          [&](const S& angle) { return beside(angle, other.angle.front(), 0.0, other.force.front()); });
+    } else {
+      return plant.steady(S(experiment.input.front()));
+    }
+  }();
+  state.clock = start.values[2];
+  return state;
+}
+
+/// Steps a plant through an experiment; an axis that is one of two, beside the motion of the other.
+template <class Plant, class Sink>
+bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& experiment, typename Plant::State& state,
+                    int steps, Sink&& sink) {
+  if constexpr (Plant::topology != "direct") {
+    if (experiment.other.is_there()) {
+      using S = typename Plant::Scalar;
+      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
+      const Excitation angle(experiment.other.angle, steps, Excitation::Between::interpolated);
+      const Excitation rate(experiment.other.rate, steps, Excitation::Between::interpolated);
+      const Excitation force(experiment.other.force, steps, Excitation::Between::interpolated);
+      const auto advance = [&](std::size_t row, int k) {
+        const double other_angle = angle(row, k);
+        const double other_rate = rate(row, k);
+        const double other_force = force(row, k);
+        plant.step(state, S(experiment.input[row]),
+                   [&](const S& own) { return beside(own, other_angle, other_rate, other_force); });
+      };
+      return run_rows<Plant>(experiment.rows(), state, steps, advance, sink);
+    }
+  }
+  return run(plant, experiment.input, state, steps, sink);
+}
+
+/// Constants of a run for every sampling period that occurs.
+template <class Plant, class Steps>
+std::map<double, std::unique_ptr<Plant>> plants_by_period(const Dataset& data, const typename Plant::Parameters& parameters,
+                                                          Steps&& steps) {
+  std::map<double, std::unique_ptr<Plant>> plants;
+  for (const Experiment& experiment : data.experiments) {
+    auto& plant = plants[experiment.period];
+    if (!plant) {
+      plant = std::make_unique<Plant>(parameters, experiment.period / steps(experiment));
+    }
+  }
+  return plants;
+}
+
+/// The start of an experiment: as measured and at rest, or what free parameters say.
+template <class S, class Value>
+Start<S> start_of(const Dataset& data, std::size_t experiment, std::span<const FreeParameter> free, Value&& value) {
+  Start<S> start;
+  const auto& first = data.experiments[experiment].measured.front();
+  if (!first.empty()) {
+    start.values[0] = S(first.front());
+  }
+  start.values[2] = S(data.experiments[experiment].start);
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (free[k].experiment == static_cast<int>(experiment)) {
+      start.values[static_cast<std::size_t>(free[k].state)] = value(k);
+    }
+  }
+  return start;
+}
+
+/// Derivatives carried by one simulation: as many as one wide register holds. More spill, and cost more each.
+constexpr std::size_t kLanes = 4;
+using Dual = ceres::Jet<double, kLanes>;
+
+/// The parameters whose derivatives one simulation carries, a lane each.
+struct Chunk {
+  std::span<const FreeParameter> free;
+  std::span<const double> u;
+  std::span<const std::size_t> wanted;  ///< at most kLanes of them
+  Eigen::Index first_column = 0;
+
+  /// Parameter k as a dual number.
+  Dual value(std::size_t k) const {
+    Dual dual(free[k].value(u[k]));
+    seed(k, dual);
+    return dual;
+  }
+
+  void seed(std::size_t k, Dual& dual) const {
+    for (std::size_t lane = 0; lane < wanted.size(); ++lane) {
+      if (wanted[lane] == k) {
+        dual.v[static_cast<Eigen::Index>(lane)] = free[k].slope(u[k]);
+      }
+    }
+  }
+
+  template <class Parameters>
+  void seed_all(Parameters& parameters) const {
+    std::size_t index = 0;
+    model::visit_values(parameters, [&](Dual& value) {
+      for (const std::size_t k : wanted) {
+        if (!free[k].is_initial_state() && free[k].index == index) {
+          seed(k, value);
+        }
+      }
+      ++index;
+    });
+  }
+};
+
+/// Puts the derivatives of one experiment's readings where they belong in the Jacobian, row by row in ascending order.
+class Writer {
+ public:
+  Writer(const Dataset& data, const std::vector<Stretch>& stretches, std::size_t experiment, Eigen::MatrixXd& jacobian)
+      : data_(data), jacobian_(jacobian), next_(data.channels.size(), 0), by_channel_(data.channels.size()) {
+    for (const Stretch& s : stretches) {
+      if (s.experiment == experiment) {
+        by_channel_[s.channel].push_back(&s);
+      }
+    }
+  }
+
+  /// False if a derivative is not finite.
+  bool write(std::size_t row, std::size_t channel, const Dual& reading, const Chunk& chunk) {
+    const auto& stretches = by_channel_[channel];
+    std::size_t& next = next_[channel];
+    while (next < stretches.size() && row >= stretches[next]->last) {
+      ++next;
+    }
+    if (next >= stretches.size() || row < stretches[next]->first) {
+      return true;
+    }
+    const auto i = static_cast<Eigen::Index>(stretches[next]->offset + row - stretches[next]->first);
+    const double weight = 1.0 / data_.noise[channel];
+    const auto lanes = static_cast<Eigen::Index>(chunk.wanted.size());
+    for (Eigen::Index lane = 0; lane < lanes; ++lane) {
+      jacobian_(i, chunk.first_column + lane) = reading.v[lane] * weight;
+    }
+    return reading.v.allFinite();
+  }
+
+ private:
+  const Dataset& data_;
+  Eigen::MatrixXd& jacobian_;
+  std::vector<std::size_t> next_;
+  std::vector<std::vector<const Stretch*>> by_channel_;
+};
+
+}  // namespace
+
+template <class Family>
+Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution, Resolution slopes)
+    : data_(data), resolution_(resolution), slopes_(slopes), longest_first_(data.experiments.size()) {
+  std::iota(longest_first_.begin(), longest_first_.end(), std::size_t{0});
+  std::stable_sort(longest_first_.begin(), longest_first_.end(),
+                   [&](std::size_t a, std::size_t b) { return data.experiments[a].rows() > data.experiments[b].rows(); });
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const Experiment& experiment = data.experiments[e];
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      if (experiment.measured[c].empty()) {
+        continue;
+      }
+      for (const Block& block : experiment.fitted) {
+        stretches_.push_back({e, c, block.first, block.last, fit_rows_});
+        fit_rows_ += block.last - block.first;
+      }
+    }
+  }
+}
+
+template <class Family>
+typename Evaluator<Family>::Parameters Evaluator<Family>::with_values(const Parameters& base,
+                                                                      std::span<const FreeParameter> free,
+                                                                      std::span<const double> u) {
+  Parameters parameters = base;
+  std::size_t index = 0;
+  model::visit_values(parameters, [&](double& value) {
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      if (!free[k].is_initial_state() && free[k].index == index) {
+        value = free[k].value(u[k]);
+      }
+    }
+    ++index;
+  });
+  return parameters;
+}
+
+template <class Family>
+bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                                unsigned threads, Prediction& prediction) const {
+  using Plant = typename Family::template Plant<double>;
+  const auto plants = plants_by_period<Plant>(data_, with_values(base, free, u),
+                                              [&](const Experiment& e) { return steps_of(base, e, resolution_); });
+  prediction.resize(data_.experiments.size());
+  std::atomic<bool> finite{true};
+  parallel_for(data_.experiments.size(), threads, [&](std::size_t task) {
+    const std::size_t e = longest_first_[task];
+    const Experiment& experiment = data_.experiments[e];
+    auto& channels = prediction[e];
+    channels.resize(data_.channels.size());
+    for (std::vector<double>& channel : channels) {
+      channel.resize(experiment.rows());
+    }
+    const auto& plant = *plants.at(experiment.period);
+    const auto start = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
+    auto state = initial_state(plant, data_, experiment, start);
+    if (!run_experiment(plant, data_, experiment, state, steps_of(base, experiment, resolution_),
+                        [&](std::size_t row, const auto& readings) {
+                          for (std::size_t c = 0; c < readings.size(); ++c) {
+                            channels[c][row] = readings[c] + (shift_.empty() ? 0.0 : shift_[e][c][row]);
+                          }
+                        })) {
+      finite = false;
+    }
+  });
+  return finite;
+}
+
+template <class Family>
+Evaluator<Family> Evaluator<Family>::shifted(const Prediction& own, const Prediction& finer) const {
+  Evaluator moved = *this;
+  moved.shift_ = finer;
+  for (std::size_t e = 0; e < own.size(); ++e) {
+    for (std::size_t c = 0; c < own[e].size(); ++c) {
+      std::transform(finer[e][c].begin(), finer[e][c].end(), own[e][c].begin(), moved.shift_[e][c].begin(), std::minus<>{});
+    }
+  }
+  return moved;
+}
+
+template <class Family>
+Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const {
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(fit_rows_));
+  for (const Stretch& s : stretches_) {
+    const auto& measured = data_.experiments[s.experiment].measured[s.channel];
+    const auto& predicted = prediction[s.experiment][s.channel];
+    for (std::size_t row = s.first; row < s.last; ++row) {
+      residual(static_cast<Eigen::Index>(s.offset + row - s.first)) =
+          (predicted[row] - measured[row]) / data_.noise[s.channel];
+    }
+  }
+  return residual;
+}
+
+template <class Family>
+std::vector<double> Evaluator<Family>::squares_by_channel(const Eigen::VectorXd& residual) const {
+  std::vector<double> square(data_.channels.size(), 0.0);
+  for (const Stretch& s : stretches_) {
+    square[s.channel] +=
+        residual.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first)).squaredNorm();
+  }
+  return square;
+}
+
+template <class Family>
+int Evaluator<Family>::steps_of(const Parameters& base, const Experiment& experiment, Resolution resolution) const {
+  const int fine = model::steps_per_period<typename Family::template Plant<double>>(base, experiment.period);
+  const int times_longer = resolution == Resolution::fine ? 1 : resolution == Resolution::coarse ? 2 : 4;
+  return (fine + times_longer - 1) / times_longer;
+}
+
+template <class Family>
+bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                                      std::span<const std::size_t> wanted, unsigned threads,
+                                      Eigen::MatrixXd& jacobian) const {
+  using Plant = typename Family::template Plant<Dual>;
+  jacobian.resize(static_cast<Eigen::Index>(fit_rows_), static_cast<Eigen::Index>(wanted.size()));
+  std::vector<Chunk> chunks;
+  for (std::size_t first = 0; first < wanted.size(); first += kLanes) {
+    const std::size_t count = std::min(kLanes, wanted.size() - first);
+    chunks.push_back({free, u, wanted.subspan(first, count), static_cast<Eigen::Index>(first)});
+  }
+  const auto plain = with_values(base, free, u);
+  std::vector<std::map<double, std::unique_ptr<Plant>>> plants(chunks.size());
+  parallel_for(chunks.size(), threads, [&](std::size_t c) {
+    auto parameters = with_scalar<typename Plant::Parameters>(plain);
+    chunks[c].seed_all(parameters);
+    plants[c] = plants_by_period<Plant>(data_, parameters, [&](const Experiment& e) { return steps_of(base, e, slopes_); });
+  });
+
+  std::atomic<bool> finite{true};
+  parallel_for(chunks.size() * data_.experiments.size(), threads, [&](std::size_t task) {
+    const Chunk& chunk = chunks[task % chunks.size()];
+    const std::size_t e = longest_first_[task / chunks.size()];
+    const Experiment& experiment = data_.experiments[e];
+    const auto& plant = *plants[task % chunks.size()].at(experiment.period);
+    const auto start = start_of<Dual>(data_, e, free, [&](std::size_t k) { return chunk.value(k); });
+    // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
+    auto state = std::make_unique<typename Plant::State>(initial_state(plant, data_, experiment, start));
+    Writer writer(data_, stretches_, e, jacobian);
+    bool good = true;
+    const auto sink = [&](std::size_t row, const auto& readings) {
+      for (std::size_t channel = 0; channel < readings.size(); ++channel) {
+        good = writer.write(row, channel, readings[channel], chunk) && good;
+      }
+    };
+    const bool ran = run_experiment(plant, data_, experiment, *state, steps_of(base, experiment, slopes_), sink);
+    if (!ran || !good) {
+      finite = false;
+    }
+  });
+  return finite;
+}
+
+template class Evaluator<SimplexFamily>;
+template class Evaluator<DirectFamily>;
+
+}  // namespace hotfire::explain

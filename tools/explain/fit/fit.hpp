@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "tools/explain/fit/evaluator.hpp"
+#include "tools/explain/fit/tangent.hpp"
+
+namespace hotfire::explain {
+
+/// How far the residuals of each channel are inflated against sensor noise: one sample of channel c counts as 1/temper[c]
+/// samples of noise. A model that lacks an effect leaves residuals that are large and coloured; without this they would
+/// press declared parameters through their tolerances. 1 where the model reaches the noise.
+using Temper = std::vector<double>;
+
+/// A parameterised model at a point, and how it fits.
+template <class Family>
+struct Fitted {
+  PlainParameters<Family> base;     ///< active effects, laws and fixed values
+  std::vector<FreeParameter> free;  ///< what the fit moved
+  std::vector<double> u;            ///< where it ended
+  Temper temper;
+  Eigen::MatrixXd normal;  ///< J^T J of the last derivative, priors included
+  bool converged = false;
+  bool chaotic = false;  ///< exact derivatives ran away where it ended
+};
+
+/// Derivatives of the declared parameters, frozen at a calibrated model: while candidates are screened, the declared
+/// parameters move linearly and only the candidate is simulated with derivatives.
+struct Frozen {
+  std::vector<double> u;
+  Eigen::MatrixXd jacobian;
+};
+
+struct FitOptions {
+  int iterations = 30;
+  unsigned threads = 1;
+  double tolerance = 1e-5;         ///< relative change of the cost at which a fit has converged
+  Slopes slopes = Slopes::exact;   ///< how derivatives are asked for
+  const Frozen* frozen = nullptr;  ///< for the first frozen->u.size() parameters
+};
+
+/// Minimises the weighted simulation error plus the priors of the declared tolerances from `fitted.u` (Levenberg-Marquardt
+/// in Ceres), and leaves the result there. False if the start itself can't be simulated.
+template <class Family>
+bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options);
+
+/// The temper that residuals ask for: mean square times statistical inefficiency, at least 1.
+template <class Family>
+Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& residual);
+
+/// What one over sensor noise of every residual counts under a temper: 1 / sqrt(temper of its channel).
+template <class Family>
+Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& temper);
+
+extern template bool fit(const Evaluator<SimplexFamily>&, Fitted<SimplexFamily>&, const FitOptions&);
+extern template bool fit(const Evaluator<DirectFamily>&, Fitted<DirectFamily>&, const FitOptions&);
+extern template Eigen::VectorXd weights_of(const Evaluator<SimplexFamily>&, const Temper&);
+extern template Eigen::VectorXd weights_of(const Evaluator<DirectFamily>&, const Temper&);
+extern template Temper temper_of(const Evaluator<SimplexFamily>&, const Eigen::VectorXd&);
+extern template Temper temper_of(const Evaluator<DirectFamily>&, const Eigen::VectorXd&);
+
+}  // namespace hotfire::explain

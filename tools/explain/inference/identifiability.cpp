@@ -1,0 +1,212 @@
+#include "tools/explain/inference/identifiability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+#include "tools/explain/inference/uncertainty.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// A quantity is told where its factors are not if its deviation is below this share of each factor's.
+constexpr double kBetterThanFactors = 0.5;
+/// A declared parameter is told by the data if it is known to less than this share of its tolerance.
+constexpr double kTold = 0.9;
+/// Correlation from which two parameters are not told apart: either is known to a third of its deviation if the other is
+/// given.
+constexpr double kAlike = 0.95;
+
+/// A quantity of the plant of which the data may tell more than of its factors.
+template <class Family>
+struct Combination {
+  std::string name;
+  std::function<double(const PlainParameters<Family>&)> value;
+};
+
+template <class Family>
+std::vector<Combination<Family>> combinations() {
+  using P = PlainParameters<Family>;
+  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    // The step does not matter to what is asked of the plant.
+    constexpr double kStep = 1e-3;
+    return {{"K_T R^2 / J, the square of the notch's frequency",
+             [](const P& p) {
+               return model::Simplex<double>(p, kStep).stiffness() * p.actuator.moment_arm * p.actuator.moment_arm /
+                      p.engine.inertia;
+             }},
+            {"rated flow times position gain over piston area, the gain of the loop",
+             [](const P& p) { return p.servovalve.rated_flow * p.servovalve.position_gain / p.actuator.piston_area; }},
+            {"bulk modulus times piston area squared over trapped volume, the stiffness of the oil",
+             [](const P& p) {
+               return p.actuator.bulk_modulus * p.actuator.piston_area * p.actuator.piston_area / p.actuator.trapped_volume;
+             }},
+            {"the damping of the engine over its inertia",
+             [](const P& p) { return p.engine.viscous_damping / p.engine.inertia; }}};
+  } else {
+    return {{"stiffness over inertia, the square of the natural frequency",
+             [](const P& p) { return p.mass.stiffness / p.mass.inertia; }},
+            {"damping over inertia", [](const P& p) { return p.mass.damping / p.mass.inertia; }}};
+  }
+}
+
+/// Percent, with two digits.
+std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
+
+template <class Family>
+class Identifiability {
+ public:
+  explicit Identifiability(const Fitted<Family>& fitted) : fitted_(fitted), covariance_(covariance_of(fitted.normal)) {
+    for (std::size_t k = 0; k < fitted.free.size(); ++k) {
+      const FreeParameter& parameter = fitted.free[k];
+      if (!parameter.is_ordinate && !parameter.is_initial_state() && parameter.value(fitted.u[k]) != 0.0) {
+        considered_.push_back(k);
+      }
+    }
+  }
+
+  std::vector<std::string> sentences() {
+    std::vector<std::string> all;
+    for (const Combination<Family>& combination : combinations<Family>()) {
+      say_combination(combination, all);
+    }
+    say_groups(all);
+    say_untold(all);
+    return all;
+  }
+
+ private:
+  const FreeParameter& parameter(std::size_t k) const { return fitted_.free[k]; }
+
+  double covariance(std::size_t a, std::size_t b) const {
+    return covariance_(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
+
+  /// Relative change of a parameter by a unit of its coordinate.
+  double relative_slope(std::size_t k) const { return parameter(k).slope(fitted_.u[k]) / parameter(k).value(fitted_.u[k]); }
+
+  double relative_deviation(std::size_t k) const {
+    return std::abs(relative_slope(k)) * std::sqrt(std::max(0.0, covariance(k, k)));
+  }
+
+  void say_combination(const Combination<Family>& combination, std::vector<std::string>& all) {
+    const auto logarithm = [&](std::size_t k, double move) {
+      std::vector<double> u = fitted_.u;
+      u[k] += move;
+      return std::log(std::abs(combination.value(Evaluator<Family>::with_values(fitted_.base, fitted_.free, u))));
+    };
+    constexpr double kMove = 1e-4;
+    std::vector<std::size_t> factors;
+    std::vector<double> slopes;
+    for (const std::size_t k : considered_) {
+      const double slope = (logarithm(k, kMove) - logarithm(k, -kMove)) / (2.0 * kMove);
+      if (std::isfinite(slope) && slope != 0.0) {
+        factors.push_back(k);
+        slopes.push_back(slope);
+      }
+    }
+    double variance = 0.0;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      for (std::size_t j = 0; j < factors.size(); ++j) {
+        variance += slopes[i] * slopes[j] * covariance(factors[i], factors[j]);
+      }
+    }
+    const double deviation = std::sqrt(std::max(0.0, variance));
+    const bool better = std::all_of(factors.begin(), factors.end(),
+                                    [&](std::size_t k) { return deviation < kBetterThanFactors * relative_deviation(k); });
+    if (factors.size() < 2 || !better) {
+      return;
+    }
+    std::vector<std::string> each;
+    for (const std::size_t k : factors) {
+      each.push_back(fmt::format("{} to {}", parameter(k).key, percent(relative_deviation(k))));
+      said_.insert(k);
+    }
+    all.push_back(fmt::format("The data tell {}, to {}, and not its factors one by one: {}.", combination.name,
+                              percent(deviation), fmt::join(each, ", ")));
+  }
+
+  double correlation(std::size_t a, std::size_t b) const {
+    return covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+  }
+
+  /// The parameters that are not told from one of the others in the group, directly or by way of each other.
+  std::vector<std::size_t> group_about(std::size_t first, std::set<std::size_t>& left) const {
+    std::vector<std::size_t> group{first};
+    left.erase(first);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      for (auto other = left.begin(); other != left.end();) {
+        if (std::abs(correlation(group[i], *other)) > kAlike) {
+          group.push_back(*other);
+          other = left.erase(other);
+        } else {
+          ++other;
+        }
+      }
+    }
+    return group;
+  }
+
+  void say_groups(std::vector<std::string>& all) {
+    std::set<std::size_t> left(considered_.begin(), considered_.end());
+    while (!left.empty()) {
+      std::vector<std::size_t> group = group_about(*left.begin(), left);
+      const bool said = std::all_of(group.begin(), group.end(), [&](std::size_t k) { return said_.contains(k); });
+      if (group.size() < 2 || said) {
+        continue;
+      }
+      std::sort(group.begin(), group.end());
+      const std::size_t first = group.front();
+      std::vector<std::string> others;
+      for (const std::size_t k : group) {
+        // Along the ridge, by a percent of the first.
+        const double rate = covariance(first, k) / covariance(first, first) * relative_slope(k) / relative_slope(first);
+        if (k != first) {
+          others.push_back(fmt::format("{} {} by {}", parameter(k).key, rate < 0.0 ? "smaller" : "larger",
+                                       percent(0.01 * std::abs(rate))));
+        }
+      }
+      said_.insert(group.begin(), group.end());
+      all.push_back(fmt::format(
+          "Hardly told apart: with {} larger by 1 %, {} fits nearly as well; {} by itself is known to {}.",
+          parameter(first).key, fmt::join(others, ", "), parameter(first).key, percent(relative_deviation(first))));
+    }
+  }
+
+  void say_untold(std::vector<std::string>& all) const {
+    std::vector<std::string> untold;
+    for (const std::size_t k : considered_) {
+      // A coordinate of a declared parameter is in its tolerances.
+      if (parameter(k).is_declared() && !said_.contains(k) && std::sqrt(covariance(k, k)) > kTold) {
+        untold.push_back(parameter(k).key);
+      }
+    }
+    if (!untold.empty()) {
+      all.push_back(fmt::format("The data say next to nothing on {}: what is declared stands.", fmt::join(untold, ", ")));
+    }
+  }
+
+  const Fitted<Family>& fitted_;
+  Eigen::MatrixXd covariance_;
+  std::vector<std::size_t> considered_;
+  std::set<std::size_t> said_;  ///< parameters that a sentence has named
+};
+
+}  // namespace
+
+template <class Family>
+std::vector<std::string> not_told_apart(const Fitted<Family>& fitted) {
+  if (fitted.free.empty() || fitted.normal.rows() != static_cast<Eigen::Index>(fitted.free.size())) {
+    return {};
+  }
+  return Identifiability<Family>(fitted).sentences();
+}
+
+template std::vector<std::string> not_told_apart(const Fitted<SimplexFamily>&);
+template std::vector<std::string> not_told_apart(const Fitted<DirectFamily>&);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "tools/explain/search/search.hpp"
+
+namespace hotfire::explain {
+
+/// True of an effect that is a fault of the record, not of the plant: a channel that is mis-scaled or late.
+bool is_fault_of_record(const Candidate& candidate);
+
+/// `explained`, `nothing-missing`, `partly-explained`, `unlisted-effect`, or `undecided`: nothing is kept, more than noise
+/// is left, and the search was interrupted or not asked for. docs/report.md
+template <class Family>
+std::string verdict_of(const Dataset& data, const SearchResult<Family>& found);
+
+/// What was found, in one sentence or two.
+template <class Family>
+std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found);
+
+/// What the term of unknown law that was kept is not: the listed effect and the other such terms that came closest, and what
+/// they leave.
+template <class Family>
+std::string what_it_is_not(const SearchResult<Family>& found);
+
+}  // namespace hotfire::explain

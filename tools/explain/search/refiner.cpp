@@ -1,0 +1,261 @@
+#include "tools/explain/search/refiner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/explain/inference/uncertainty.hpp"
+#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/terms/trial.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Where an axis comes to rest in a play or a dead band depends on how it came there, and so the error of a model has
+/// ripples over its parameters. They are as high as such rests are apart: a few times the sensor noise, or nobody would see
+/// them.
+constexpr double kHighestRipple = 3.0;
+/// Rough steps serve where they change the residuals of every channel by less than this share of them. They are shifted by
+/// that change, and what is left of it is the square of a share.
+constexpr double kLostToSteps = 0.5;
+/// Places on the way that screening moves what was free before, the whole way first. It stands unless it leaves more than so
+/// many times what another leaves: what little a linear move misses is for the fit.
+constexpr std::array kSharesOfMove{1.0, 0.5, 0.25, 0.0};
+constexpr double kMovedTooFar = 2.0;
+
+/// True if what two models leave of every channel differs by less than that share of it. One that is met to its noise counts
+/// with all its rows, and so it must not be lost in the residuals of another that is far off.
+template <class Family>
+bool are_alike(const Evaluator<Family>& evaluator, const Eigen::VectorXd& left, const Eigen::VectorXd& other) {
+  const std::vector<double> square = evaluator.squares_by_channel(left);
+  const std::vector<double> change = evaluator.squares_by_channel(other - left);
+  for (std::size_t c = 0; c < square.size(); ++c) {
+    if (square[c] > 0.0 && change[c] >= kLostToSteps * kLostToSteps * square[c]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+template <class Family>
+std::optional<Evaluator<Family>> Refiner<Family>::rough_about(const Fitted<Family>& model) const {
+  Prediction by_rough;
+  Prediction by_coarse;
+  if (&rough_ == &coarse_ || !rough_.predict(model.base, model.free, model.u, threads_, by_rough) ||
+      !coarse_.predict(model.base, model.free, model.u, threads_, by_coarse) ||
+      !are_alike(coarse_, coarse_.residuals(by_coarse), rough_.residuals(by_rough))) {
+    return std::nullopt;
+  }
+  return rough_.shifted(by_rough, by_coarse);
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Effort& effort) const {
+  Effort rest = effort;
+  Fitted<Family> start = fitted;
+  const auto rough = effort.passes > 1 ? rough_about(fitted) : std::nullopt;
+  if (rough) {
+    Assessed<Family> near =
+        refined(*rough, *rough, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
+    if (near.good()) {
+      start = std::move(near.model);
+      --rest.passes;
+    }
+  }
+  return refined(coarse_, fine_, threads_, std::move(start), rest);
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, std::span<const double> frozen) const {
+  std::vector<Fitted<Family>> starts;
+  for (const double share : kSharesOfMove) {
+    starts.push_back(screened);
+    for (std::size_t k = 0; k < frozen.size(); ++k) {
+      starts.back().u[k] = std::lerp(frozen[k], screened.u[k], share);
+    }
+  }
+  if (std::ranges::any_of(screened.free, &FreeParameter::is_ordinate)) {
+    starts.push_back(starts.back());
+    for (std::size_t k = frozen.size(); k < screened.free.size(); ++k) {
+      if (screened.free[k].is_ordinate) {
+        starts.back().u[k] = 0.0;
+      }
+    }
+  }
+  Fitted<Family> best = screened;
+  double least = std::numeric_limits<double>::infinity();
+  for (Fitted<Family>& start : starts) {
+    Prediction prediction;
+    if (!coarse_.predict(start.base, start.free, start.u, threads_, prediction)) {
+      continue;
+    }
+    const double left = Goodness::combined(goodness(coarse_.data(), prediction).fitted);
+    if (left < least) {
+      least = &start == &starts.front() ? left / kMovedTooFar : left;
+      best = std::move(start);
+    }
+  }
+  return ranked(best, kRanking);
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const {
+  if (is_done(winner)) {
+    return winner;
+  }
+  watch_.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
+  if (is_far_from_declared(winner.model)) {
+    Assessed<Family> afresh = ranked(with_declared_values(winner.model), kRanking);
+    winner = better_of(std::move(winner), std::move(afresh));
+    if (is_done(winner)) {
+      return winner;
+    }
+  }
+  Assessed<Family> again = from_other_values(winner, candidate);
+  return better_of(std::move(winner), std::move(again));
+}
+
+template <class Family>
+std::vector<OfLaw<Family>> Refiner<Family>::of_richer_laws(int round, const Assessed<Family>& winner,
+                                                           const Candidate& candidate) const {
+  std::vector<OfLaw<Family>> richer;
+  if (lacks_nothing(data_, winner)) {
+    return richer;
+  }
+  const std::size_t own = effect_parameters<Family>(winner.model.base, candidate, scales_).size();
+  const Fitted<Family> rest = without_effect(winner.model, candidate);
+  for (const Candidate& law : laws_of<Family>(data_, candidate)) {
+    const std::vector<FreeParameter> parameters = effect_parameters<Family>(rest.base, law, scales_);
+    if (parameters.size() <= own || watch_.interrupted()) {
+      continue;
+    }
+    watch_.progress(fmt::format("round {}: fitting {} from where {} ended", round, label(law), label(candidate)));
+    Fitted<Family> start = rest;
+    activate<Family>(start.base, law);
+    for (const FreeParameter& parameter : parameters) {
+      start.free.push_back(parameter);
+      start.u.push_back(parameter.coordinate(parameter.unit_size));
+    }
+    Assessed<Family> fitted = ranked(start, kCheck);
+    if (fitted.good() && criterion_change(fitted, winner, fitted.goodness.fitted) < -kStrongEvidence) {
+      Assessed<Family> closer = ranked(fitted.model, kRanking);
+      richer.push_back({law, better_of(std::move(fitted), std::move(closer))});
+    }
+  }
+  return richer;
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candidate& candidate) const {
+  if (!winner.good()) {
+    return winner;
+  }
+  const auto own = effect_parameters<Family>(winner.model.base, candidate, scales_);
+  const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
+  // A static ratio of 1, the least there can be, is that of a law without one: an interval that reaches so far leaves it
+  // open.
+  const auto is_open = [&](const FreeParameter& parameter) {
+    for (std::size_t k = 0; k < estimated.size(); ++k) {
+      if (winner.model.free[k].key == parameter.key) {
+        const auto& interval = estimated[k].interval;
+        return !interval || interval->first <= parameter.lower || interval->second >= parameter.upper;
+      }
+    }
+    return false;
+  };
+  for (const Candidate& law : laws_of<Family>(data_, candidate)) {
+    const auto fewer = effect_parameters<Family>(winner.model.base, law, scales_);
+    const auto has = [&](const FreeParameter& parameter) {
+      return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.key == parameter.key; });
+    };
+    const bool leaves_out_only_open = std::all_of(
+        own.begin(), own.end(), [&](const FreeParameter& parameter) { return has(parameter) || is_open(parameter); });
+    if (fewer.size() >= own.size() || !leaves_out_only_open) {
+      continue;
+    }
+    Fitted<Family> reduced = winner.model;
+    activate<Family>(reduced.base, law);
+    drop_parameters(reduced, [&](const FreeParameter& parameter) {
+      const auto is = [&](const FreeParameter& p) { return p.key == parameter.key; };
+      return std::any_of(own.begin(), own.end(), is) && !has(parameter);
+    });
+    Assessed<Family> simple = settled(reduced);
+    const std::vector<ChannelFit>& effective = winner.goodness.fitted;
+    if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {
+      candidate = law;
+      return simple;
+    }
+  }
+  return winner;
+}
+
+template <class Family>
+bool Refiner<Family>::is_done(const Assessed<Family>& winner) const {
+  return lacks_nothing(data_, winner) || watch_.interrupted();
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::without(const Fitted<Family>& model, const Candidate& candidate) const {
+  Assessed<Family> rest = ranked(without_effect(model, candidate), kCheck);
+  return rest.good() ? over_ripples(std::move(rest)) : rest;
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::in_place_of(const Fitted<Family>& model, const Candidate& candidate,
+                                              const Candidate& other, const Fitted<Family>& tied) const {
+  Fitted<Family> start = without_effect(model, candidate);
+  activate<Family>(start.base, other);
+  const std::string prefix = "effects." + other.name + ".";
+  for (std::size_t k = 0; k < tied.free.size(); ++k) {
+    if (tied.free[k].key.starts_with(prefix)) {
+      start.free.push_back(tied.free[k]);
+      start.u.push_back(tied.u[k]);
+    }
+  }
+  const Assessed<Family> near = ranked(start, kRanking);
+  return near.good() ? settled(near.model) : near;
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted) const {
+  const double left = excess_over_noise(data_, fitted.prediction);
+  if (left < kNothingLeft || left >= kHighestRipple || watch_.interrupted()) {
+    return fitted;
+  }
+  Assessed<Family> beyond = ranked(fitted.model, kOverRipples);
+  if (beyond.good()) {
+    beyond = ranked(beyond.model, kRanking);
+  }
+  return better_of(std::move(fitted), std::move(beyond));
+}
+
+template <class Family>
+Assessed<Family> Refiner<Family>::from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const {
+  Fitted<Family> anchor = without_effect(winner.model, candidate);
+  anchor.base.effects.active[candidate.effect] = true;
+  std::vector<double> own;
+  const std::string prefix = "effects." + candidate.name + ".";
+  for (std::size_t k = 0; k < winner.model.free.size(); ++k) {
+    if (winner.model.free[k].key.starts_with(prefix)) {
+      own.push_back(winner.model.u[k]);
+    }
+  }
+  const Evaluator<Family> evaluator = for_screening(anchor);
+  const Screening<Family> screening(evaluator, anchor, scales_, threads_);
+  const Screened<Family> again = screening.restart(candidate, own, watch_);
+  return again.good ? of_screened(again.fitted, anchor.u) : Assessed<Family>{};
+}
+
+template class Refiner<SimplexFamily>;
+template class Refiner<DirectFamily>;
+
+}  // namespace hotfire::explain

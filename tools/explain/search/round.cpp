@@ -1,0 +1,249 @@
+#include "tools/explain/search/round.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/search/stopwatch.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// A model that leaves less than this many times the noise may be the last; one that leaves more is fitted again beside the
+/// next effect.
+constexpr double kNearNoise = 3.0;
+/// Far above the noise an effect that leaves more than this share of the held-out error is not named: it takes up a little
+/// of what it does not have. Even the largest of four that are missing, all alike, leaves 0.87.
+constexpr double kHardlyLess = 0.95;
+
+/// True if a trial ranks before another: by the BIC, but one that held-out data do not support never before one that they
+/// do.
+bool is_before(const Trial& one, const Trial& other) {
+  return is_supported(one) == is_supported(other) ? one.delta_criterion < other.delta_criterion : is_supported(one);
+}
+
+}  // namespace
+
+template <class Family>
+Round<Family>::Round(int number, const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& current,
+                     std::vector<Screened<Family>> screened, const Watch& watch)
+    : number_(number),
+      data_(data),
+      refiner_(refiner),
+      current_(current),
+      screened_(std::move(screened)),
+      watch_(watch),
+      finalists_(screened_.size()),
+      order_(finalists_of<Family>(screened_)) {
+  for (const Screened<Family>& s : screened_) {
+    trials_.push_back({number_, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "", s.scanned});
+  }
+}
+
+template <class Family>
+RoundResult<Family> Round<Family>::run() {
+  fit_finalists();
+  rank();
+  if (watch_.interrupted()) {
+    return undecided();
+  }
+  if (best_ && clears_up(finalists_[*best_]) && !reaches_noise(data_, finalists_[*best_])) {
+    cross_ripples();
+    rank();
+  }
+  RoundResult<Family> result;
+  if (best_ && clears_up(finalists_[*best_])) {
+    finalists_[*best_] = refiner_.from_other_starts(number_, std::move(finalists_[*best_]), trials_[*best_].candidate);
+    add_richer_laws();
+    rank();
+    result.settled = is_near_noise(*best_);
+    result.model = winner();
+  }
+  const bool kept =
+      best_ && result.model.good() && is_supported(trials_[*best_]) && is_worth_a_name(trials_[*best_], result.model);
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    const bool is_tied = kept && trials_[i].refined && trials_[i].delta_criterion - trials_[*best_].delta_criterion < kTied;
+    trials_[i].decision = kept && i == *best_ ? "kept" : is_tied ? "tied" : "dropped";
+    trials_[i].reason = reason_of(trials_[i], best_ ? &trials_[*best_] : nullptr);
+  }
+  result.trials = trials_;
+  if (kept) {
+    result.kept = Kept{trials_[*best_], trials_};
+    std::vector<Trial>& others = result.kept->alternatives;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(*best_));
+    std::stable_sort(others.begin(), others.end(),
+                     [](const Trial& a, const Trial& b) { return a.delta_criterion < b.delta_criterion; });
+    result.rival = rival_of(*result.kept);
+  }
+  return result;
+}
+
+/// False where what is left is of the noise's size already and a further effect takes away little of it: it then imitates
+/// how the laws that were found differ from the truth's.
+template <class Family>
+bool Round<Family>::clears_up(const Assessed<Family>& with) const {
+  const double before = excess_over_noise(data_, current_.prediction);
+  const double after = excess_over_noise(data_, with.prediction);
+  return before > kLargerThanNoise || after * after < kClearsUp * before * before;
+}
+
+template <class Family>
+bool Round<Family>::is_worth_a_name(const Trial& trial, const Assessed<Family>& with) const {
+  return trial.held_out_ratio < kHardlyLess || excess_over_noise(data_, with.prediction) < kNearNoise;
+}
+
+/// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
+/// another effect that promised more than twice as much.
+template <class Family>
+bool Round<Family>::is_decided_against(std::size_t wanted) const {
+  return std::any_of(order_.begin(), order_.end(), [&](std::size_t i) {
+    if (!finalists_[i].good() || excess_over_noise(data_, finalists_[i].prediction) >= kNothingLeft) {
+      return false;
+    }
+    return screened_[i].candidate.name == screened_[wanted].candidate.name
+               ? screened_[i].fitted.free.size() < screened_[wanted].fitted.free.size()
+               : screened_[wanted].criterion > 0.5 * screened_[i].criterion;
+  });
+}
+
+template <class Family>
+bool Round<Family>::is_near_noise(std::size_t finalist) const {
+  return excess_over_noise(data_, finalists_[finalist].prediction) < kNearNoise;
+}
+
+template <class Family>
+void Round<Family>::fit_finalists() {
+  for (const std::size_t i : simplest_laws_first<Family>(order_, screened_)) {
+    if (watch_.interrupted()) {
+      return;
+    }
+    if (is_decided_against(i)) {
+      continue;
+    }
+    tell("with everything else", i);
+    const Stopwatch stopwatch;
+    finalists_[i] = refiner_.of_screened(screened_[i].fitted, current_.model.u);
+    trials_[i].seconds += stopwatch.seconds();
+  }
+}
+
+template <class Family>
+void Round<Family>::cross_ripples() {
+  for (const std::size_t i : contenders_of(order_, screened_, finalists_)) {
+    tell("over ripples", i);
+    const Stopwatch stopwatch;
+    finalists_[i] = refiner_.over_ripples(std::move(finalists_[i]));
+    trials_[i].seconds += stopwatch.seconds();
+  }
+}
+
+/// Puts among the finalists the laws of the best one's effect that have more parameters, from where it ended.
+template <class Family>
+void Round<Family>::add_richer_laws() {
+  for (OfLaw<Family>& richer : refiner_.of_richer_laws(number_, finalists_[*best_], screened_[*best_].candidate)) {
+    for (std::size_t i = 0; i < screened_.size(); ++i) {
+      if (label(screened_[i].candidate) != label(richer.candidate)) {
+        continue;
+      }
+      if (finalists_[i].good()) {
+        finalists_[i] = better_of(std::move(finalists_[i]), std::move(richer.model));
+      } else {
+        finalists_[i] = std::move(richer.model);
+        order_.push_back(i);
+      }
+    }
+  }
+}
+
+/// Sets how every finalist does, all on the effective samples of the one with the least error: a model that leaves a
+/// coloured residual must not set the price of a parameter.
+template <class Family>
+void Round<Family>::rank() {
+  std::optional<std::size_t> closest;
+  for (const std::size_t i : order_) {
+    if (finalists_[i].good() && (!closest || Goodness::combined(finalists_[i].goodness.fitted) <
+                                                 Goodness::combined(finalists_[*closest].goodness.fitted))) {
+      closest = i;
+    }
+  }
+  best_.reset();
+  for (const std::size_t i : order_) {
+    if (finalists_[i].good()) {
+      compare(trials_[i], finalists_[i], current_, finalists_[*closest].goodness.fitted);
+      if (!best_ || is_before(trials_[i], trials_[*best_])) {
+        best_ = i;
+      }
+    }
+  }
+}
+
+/// The best finalist, by the simplest of its laws and under fine steps where it may be the last, with which all others are
+/// compared once more. One that is not supported as it was ranked rarely is under fine steps: a short fit tells.
+template <class Family>
+Assessed<Family> Round<Family>::winner() {
+  Assessed<Family> winner = finalists_[*best_];
+  if (is_near_noise(*best_)) {
+    tell("with fine steps", *best_);
+    if (!is_supported(trials_[*best_])) {
+      winner = refiner_.settled(winner.model, kCheck);
+      if (winner.good()) {
+        compare(trials_[*best_], winner, current_, winner.goodness.fitted);
+      }
+    }
+    if (winner.good() && is_supported(trials_[*best_])) {
+      winner = refiner_.by_simplest_law(refiner_.settled(winner.model), trials_[*best_].candidate);
+    }
+  }
+  for (const std::size_t i : order_) {
+    const Assessed<Family>& finalist = i == *best_ ? winner : finalists_[i];
+    if (winner.good() && finalist.good()) {
+      compare(trials_[i], finalist, current_, winner.goodness.fitted);
+    }
+  }
+  return winner;
+}
+
+/// What was known of every candidate when the search was interrupted.
+template <class Family>
+RoundResult<Family> Round<Family>::undecided() {
+  for (Trial& trial : trials_) {
+    trial.decision = kUndecided;
+    trial.reason = trial.refined    ? "fitted jointly, not all others were, when the search was interrupted"
+                   : trial.screened ? "screened when the search was interrupted"
+                                    : "not fitted when the search was interrupted";
+  }
+  RoundResult<Family> result;
+  result.trials = trials_;
+  return result;
+}
+
+/// The closest of the other finalists, fitted as well as the winner was, if the data do not tell the two apart.
+template <class Family>
+std::optional<Rival<Family>> Round<Family>::rival_of(const Kept& kept) const {
+  for (const Trial& other : kept.alternatives) {
+    if (!other.refined || other.delta_criterion - kept.trial.delta_criterion >= kTied) {
+      continue;
+    }
+    for (std::size_t i = 0; i < screened_.size(); ++i) {
+      if (label(screened_[i].candidate) == label(other.candidate) && finalists_[i].good()) {
+        const Assessed<Family> again = refiner_.settled(finalists_[i].model);
+        return again.good() ? std::optional(Rival<Family>{kept.trial.candidate, other.candidate, again.model})
+                            : std::nullopt;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+template <class Family>
+void Round<Family>::tell(const std::string& what, std::size_t finalist) const {
+  watch_.progress(fmt::format("round {}: fitting {} {}", number_, label(screened_[finalist].candidate), what));
+}
+
+template class Round<SimplexFamily>;
+template class Round<DirectFamily>;
+
+}  // namespace hotfire::explain

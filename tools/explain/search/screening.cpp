@@ -1,0 +1,383 @@
+#include "tools/explain/search/screening.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "tools/explain/data/spectrum.hpp"
+#include "tools/explain/fit/parallel.hpp"
+#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/terms/periodic.hpp"
+#include "tools/explain/terms/trial.hpp"
+#include "tools/explain/terms/unlisted.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// How many frequencies of a channel's spectrum are tried.
+constexpr std::size_t kFrequencies = 3;
+
+/// Names that go on to the full fit, starts of an effect with several parameters, and the lengths of the fits.
+constexpr std::size_t kSemifinalists = 6;
+/// Behind the first names, one goes on only with this share of the leader's gain, and a law only with this share of its
+/// name's best: what is missing beside the leader is looked for again when that is in the model.
+constexpr std::size_t kFirstNames = 3;
+constexpr double kHopeful = 0.1;
+/// A law with more parameters of its own is not scanned: it starts from where the laws that it contains end.
+constexpr std::size_t kMostScanned = 6;
+constexpr std::size_t kStarts = 3;
+constexpr int kShortFit = 6;
+constexpr int kFullFit = 12;
+constexpr int kFullFits = 2;
+/// How far a parameter is set off when a fit is started again, and how many of the starts are fitted.
+constexpr double kRestartFactor = 5.0;
+constexpr std::size_t kRestarts = 4;
+/// Relative change of the cost at which a candidate is ranked well enough.
+constexpr double kRankingTolerance = 1e-4;
+
+template <class Family>
+void sort_best_first(std::vector<Screened<Family>>& screened) {
+  std::erase_if(screened, [](const Screened<Family>& s) { return !s.good; });
+  std::sort(screened.begin(), screened.end(),
+            [](const Screened<Family>& a, const Screened<Family>& b) { return a.criterion < b.criterion; });
+}
+
+/// True if a law's criterion is close enough to its name's best, of either sign.
+bool is_hopeful_law(double criterion, double best) { return criterion <= best + (1.0 - kHopeful) * std::abs(best); }
+
+/// True if two candidates have one of their own parameters, those from `first` on, in common.
+template <class Family>
+bool share_a_parameter(const Screened<Family>& one, const Screened<Family>& other, std::size_t first) {
+  const auto own = [&](const Screened<Family>& s) { return std::span(s.fitted.free).subspan(first); };
+  return std::ranges::any_of(own(one), [&](const FreeParameter& parameter) {
+    return std::ranges::any_of(own(other), [&](const FreeParameter& p) { return p.key == parameter.key; });
+  });
+}
+
+}  // namespace
+
+template <class Family>
+Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Family>& current, const Scales& scales,
+                             unsigned threads)
+    : evaluator_(evaluator), current_(current), scales_(scales), threads_(threads) {
+  frozen_.u = current.u;
+  std::vector<std::size_t> all(current.free.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  differentiate<Family>(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, frozen_.jacobian);
+  evaluator.predict(current.base, current.free, current.u, threads, prediction_);
+  current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction_));
+  goodness_ = goodness(evaluator.data(), prediction_);
+  frequencies_ = strongest_frequencies(evaluator.data(), prediction_, first_used(), kFrequencies);
+
+  weight_ = weights_of(evaluator, current_.temper);
+  prior_.setZero(static_cast<Eigen::Index>(current.free.size()));
+  prior_gradient_ = prior_;
+  for (std::size_t k = 0; k < current.free.size(); ++k) {
+    prior_(static_cast<Eigen::Index>(k)) = current.free[k].prior_curvature();
+    prior_gradient_(static_cast<Eigen::Index>(k)) = current.free[k].prior_slope(current.u[k]);
+  }
+  const Eigen::MatrixXd weighted = weight_.asDiagonal() * frozen_.jacobian;
+  Eigen::MatrixXd matrix = weighted.transpose() * weighted;
+  matrix.diagonal() += prior_;
+  if (matrix.size() > 0) {
+    // A parameter that the data do not touch and that has no prior must not make the matrix singular.
+    matrix.diagonal().array() += 1e-9 * std::max(1e-30, matrix.diagonal().maxCoeff());
+  }
+  normal_.compute(matrix);
+  Eigen::VectorXd move;
+  cost_ = eliminated_cost(evaluator.residuals(prediction_), move);
+
+  Screened<Family> unaided{{}, current_, 0.0, 0.0, true};
+  for (std::size_t k = 0; k < frozen_.u.size(); ++k) {
+    unaided.fitted.u[k] += move(static_cast<Eigen::Index>(k));
+  }
+  std::array<double, kStages> reached{};
+  for (const Stage stage : {Stage::scan, Stage::short_fit, Stage::full_fit}) {
+    for (int pass = 0; pass < (stage == Stage::full_fit ? kFullFits : 1); ++pass) {
+      improve(unaided, stage);
+    }
+    reached[static_cast<std::size_t>(stage)] = unaided.criterion;
+  }
+  unaided_ = reached;
+}
+
+template <class Family>
+std::vector<std::vector<double>> Screening<Family>::sharpened_for(const std::vector<Candidate>& candidates) const {
+  const Dataset& data = evaluator_.data();
+  std::vector<std::vector<double>> sharpened(data.channels.size());
+  for (const Candidate& candidate : candidates) {
+    const std::size_t channel = channel_of_sinusoid(candidate);
+    if (is_periodic(candidate) && sharpened[channel].empty()) {
+      sharpened[channel] = sharpened_frequencies(
+          data, prediction_, channel,
+          channel == first_used() ? frequencies_ : strongest_frequencies(data, prediction_, channel, kFrequencies));
+    }
+  }
+  return sharpened;
+}
+
+template <class Family>
+std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate>& candidates, const std::string& stage,
+                                                     const Watch& watch) const {
+  std::vector<Screened<Family>> screened(candidates.size());
+  const std::vector<std::vector<double>> sharpened = sharpened_for(candidates);
+  std::atomic<std::size_t> done{0};
+  parallel_for(candidates.size(), threads_, [&](std::size_t i) {
+    if (!watch.interrupted()) {
+      screened[i] = start(candidates[i], sharpened);
+    }
+    watch.progress(fmt::format("{}: {} of {} candidates screened", stage, ++done, candidates.size()));
+  });
+  sort_best_first(screened);
+
+  std::vector<std::string> names;
+  std::vector<double> reached;
+  std::vector<std::size_t> semifinalists;
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    const Screened<Family>& one = screened[i];
+    const bool hopeful = names.size() < kFirstNames || one.criterion < kHopeful * screened.front().criterion;
+    auto name = std::find(names.begin(), names.end(), one.candidate.name);
+    if (name == names.end() && names.size() < kSemifinalists && hopeful) {
+      name = names.insert(names.end(), one.candidate.name);
+      reached.push_back(one.criterion);
+    }
+    if (name != names.end() && is_hopeful_law(one.criterion, reached[static_cast<std::size_t>(name - names.begin())])) {
+      semifinalists.push_back(i);
+    }
+  }
+  done = 0;
+  parallel_for(semifinalists.size(), threads_, [&](std::size_t i) {
+    Screened<Family>& semifinalist = screened[semifinalists[i]];
+    for (int pass = 0; pass < kFullFits && semifinalist.scanned && !watch.interrupted(); ++pass) {
+      improve(semifinalist, Stage::full_fit);
+    }
+    watch.progress(fmt::format("{}: {} of {} best candidates fitted", stage, ++done, semifinalists.size()));
+  });
+  sort_best_first(screened);
+  start_from_siblings(screened, names, watch);
+  return screened;
+}
+
+template <class Family>
+Eigen::VectorXd Screening<Family>::residuals_at_frozen(const Fitted<Family>& fitted) const {
+  std::vector<double> u = fitted.u;
+  std::copy(frozen_.u.begin(), frozen_.u.end(), u.begin());
+  Prediction prediction;
+  if (!evaluator_.predict(fitted.base, fitted.free, u, 1, prediction)) {
+    return {};
+  }
+  return evaluator_.residuals(prediction);
+}
+
+template <class Family>
+double Screening<Family>::eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const {
+  const Eigen::VectorXd weighted = residual.cwiseProduct(weight_);
+  const Eigen::VectorXd gradient = frozen_.jacobian.transpose() * weighted.cwiseProduct(weight_) + prior_gradient_;
+  move = -normal_.solve(gradient);
+  return weighted.squaredNorm() + gradient.dot(move);
+}
+
+template <class Family>
+Fitted<Family> Screening<Family>::with_candidate(const Candidate& candidate) const {
+  Fitted<Family> fitted = current_;
+  if (is_unlisted<Family>(candidate)) {
+    activate_unlisted<Family>(fitted.base, candidate, evaluator_.data(), current_);
+  } else {
+    activate<Family>(fitted.base, candidate);
+  }
+  const auto own = effect_parameters<Family>(fitted.base, candidate, scales_);
+  fitted.free.insert(fitted.free.end(), own.begin(), own.end());
+  if (is_periodic(candidate)) {
+    const auto phases = clocks(evaluator_.data());
+    fitted.free.insert(fitted.free.end(), phases.begin(), phases.end());
+  }
+  return fitted;
+}
+
+template <class Family>
+std::vector<typename Screening<Family>::Start> Screening<Family>::scan(
+    Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const {
+  std::vector<Start> starts;
+  Eigen::VectorXd move;
+  for (const auto& point : points) {
+    fitted.u = frozen_.u;
+    fitted.u.insert(fitted.u.end(), point.begin(), point.end());
+    const Eigen::VectorXd residual = residuals_at_frozen(fitted);
+    if (residual.size() == 0 || !residual.allFinite()) {
+      continue;
+    }
+    const double cost = eliminated_cost(residual, move);
+    for (std::size_t k = 0; k < frozen_.u.size(); ++k) {
+      fitted.u[k] += move(static_cast<Eigen::Index>(k));
+    }
+    starts.push_back({fitted.u, cost});
+  }
+  std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
+  return starts;
+}
+
+template <class Family>
+Screened<Family> Screening<Family>::start(const Candidate& candidate,
+                                          const std::vector<std::vector<double>>& sharpened) const {
+  const Stopwatch stopwatch;
+  Screened<Family> best;
+  best.candidate = candidate;
+  const Fitted<Family> fitted = with_candidate(candidate);
+  const std::vector<FreeParameter> own(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
+                                       fitted.free.end());
+  const auto fields = static_cast<std::size_t>(
+      std::count_if(own.begin(), own.end(), [](const FreeParameter& p) { return !p.is_ordinate && !p.is_initial_state(); }));
+  if (fields > kMostScanned) {
+    best.fitted = fitted;
+    best.fitted.u.resize(fitted.free.size(), 0.0);
+    best.good = true;
+    best.scanned = false;
+    return best;
+  }
+  // One or two parameters, or a table, have one valley; more have several.
+  const bool has_table = std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+  const bool one_valley =
+      own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+  const std::size_t valleys = one_valley ? 1 : kStarts;
+  const std::vector<Start> starts =
+      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(),
+                                                                    sharpened[channel_of_sinusoid(candidate)])
+                                          : start_points(own, frequencies_));
+  // A table starts as nothing, and a frequency has to be met. Of any other law one of the starts is better than nothing, or
+  // it is not what is missing.
+  const bool searched =
+      has_table || std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.unit == "Hz"; });
+  const bool hopeless = !searched && !starts.empty() && starts.front().cost >= cost_;
+  for (std::size_t i = 0; i < starts.size() && i < (hopeless ? 1 : valleys); ++i) {
+    Screened<Family> screened{candidate, fitted, 0.0, 0.0, true};
+    screened.fitted.u = starts[i].u;
+    improve(screened, hopeless ? Stage::scan : Stage::short_fit);
+    if (screened.good && (!best.good || screened.criterion < best.criterion)) {
+      best = std::move(screened);
+    }
+  }
+  best.seconds = stopwatch.seconds();
+  return best;
+}
+
+template <class Family>
+Screened<Family> Screening<Family>::restart(const Candidate& candidate, const std::vector<double>& own,
+                                            const Watch& watch) const {
+  const Fitted<Family> fitted = with_candidate(candidate);
+  const std::vector<FreeParameter> parameters(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
+                                              fitted.free.end());
+  std::vector<std::vector<double>> points = start_points(parameters, frequencies_);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    for (const double factor : {1.0 / kRestartFactor, kRestartFactor}) {
+      points.push_back(own);
+      points.back()[k] = parameters[k].coordinate(
+          std::clamp(parameters[k].value(own[k]) * factor, parameters[k].lower, parameters[k].upper));
+    }
+  }
+  const std::vector<Start> starts = scan(fitted, points);
+  std::vector<Screened<Family>> restarts;
+  for (std::size_t i = 0; i < starts.size() && i < kRestarts; ++i) {
+    restarts.push_back({candidate, fitted, 0.0, 0.0, true});
+    restarts.back().fitted.u = starts[i].u;
+  }
+  parallel_for(restarts.size(), threads_, [&](std::size_t i) {
+    if (!watch.interrupted()) {
+      improve(restarts[i], Stage::short_fit);
+    }
+  });
+  sort_best_first(restarts);
+  restarts.resize(std::min<std::size_t>(restarts.size(), 2));
+  parallel_for(restarts.size(), threads_, [&](std::size_t i) {
+    for (int pass = 0; pass < kFullFits && !watch.interrupted(); ++pass) {
+      improve(restarts[i], Stage::full_fit);
+    }
+  });
+  sort_best_first(restarts);
+  Screened<Family> stands{candidate, fitted, 0.0, 0.0, true};
+  stands.fitted.u = frozen_.u;
+  stands.fitted.u.insert(stands.fitted.u.end(), own.begin(), own.end());
+  improve(stands, Stage::scan);
+  const bool elsewhere =
+      !restarts.empty() && (!stands.good || restarts.front().criterion < stands.criterion - kStrongEvidence);
+  return elsewhere ? restarts.front() : Screened<Family>{candidate, fitted, 0.0, 0.0, false};
+}
+
+/// Laws of one effect share parameters and some contain others: each is fitted once more from where the best one ended.
+template <class Family>
+void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
+                                            const Watch& watch) const {
+  const std::size_t first = current_.free.size();
+  const std::vector<Screened<Family>> ended = screened;
+  parallel_for(screened.size(), threads_, [&](std::size_t i) {
+    const auto best = std::find_if(ended.begin(), ended.end(),
+                                   [&](const Screened<Family>& s) { return s.candidate.name == ended[i].candidate.name; });
+    const bool wanted = std::find(names.begin(), names.end(), ended[i].candidate.name) != names.end() &&
+                        share_a_parameter(*best, ended[i], first);
+    if (!wanted || best == ended.begin() + static_cast<std::ptrdiff_t>(i) || watch.interrupted()) {
+      return;
+    }
+    Screened<Family> again{ended[i].candidate, ended[i].fitted, 0.0, ended[i].seconds, true};
+    for (std::size_t k = first; k < again.fitted.free.size(); ++k) {
+      FreeParameter& parameter = again.fitted.free[k];
+      again.fitted.u[k] = parameter.coordinate(std::clamp(parameter.unit_size, parameter.lower, parameter.upper));
+      for (std::size_t j = first; j < best->fitted.free.size(); ++j) {
+        if (best->fitted.free[j].key == parameter.key) {
+          again.fitted.u[k] = best->fitted.u[j];
+        }
+      }
+    }
+    std::copy(best->fitted.u.begin(), best->fitted.u.begin() + static_cast<std::ptrdiff_t>(first), again.fitted.u.begin());
+    improve(again, Stage::full_fit);
+    if (again.good && (!screened[i].scanned || again.criterion < screened[i].criterion)) {
+      screened[i] = std::move(again);
+    } else {
+      screened[i].seconds = again.seconds;
+    }
+  });
+  sort_best_first(screened);
+}
+
+template <class Family>
+void Screening<Family>::improve(Screened<Family>& screened, Stage stage) const {
+  if (!screened.good) {
+    return;
+  }
+  const Stopwatch stopwatch;
+  const int iterations = stage == Stage::scan ? 0 : stage == Stage::short_fit ? kShortFit : kFullFit;
+  Fitted<Family>& fitted = screened.fitted;
+  screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, Slopes::exact, &frozen_});
+  Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
+  if (residual.size() == 0) {
+    screened.good = false;
+    return;
+  }
+  const auto count = static_cast<Eigen::Index>(frozen_.u.size());
+  residual += frozen_.jacobian * (Eigen::Map<const Eigen::VectorXd>(fitted.u.data(), count) -
+                                  Eigen::Map<const Eigen::VectorXd>(frozen_.u.data(), count));
+  fitted.temper = temper_of<Family>(evaluator_, residual);
+  screened.criterion = information_criterion(mean_squares(residual), goodness_.fitted, fitted.free.size()) -
+                       unaided_[static_cast<std::size_t>(stage)];
+  screened.seconds += stopwatch.seconds();
+}
+
+template <class Family>
+std::vector<ChannelFit> Screening<Family>::mean_squares(const Eigen::VectorXd& residual) const {
+  const std::vector<double> square = evaluator_.squares_by_channel(residual);
+  std::vector<ChannelFit> part(square.size());
+  for (const Stretch& s : evaluator_.stretches()) {
+    part[s.channel].rows += static_cast<double>(s.last - s.first);
+  }
+  for (std::size_t c = 0; c < part.size(); ++c) {
+    part[c].mean_square = part[c].rows > 0.0 ? square[c] / part[c].rows : 0.0;
+  }
+  return part;
+}
+
+template class Screening<SimplexFamily>;
+template class Screening<DirectFamily>;
+
+}  // namespace hotfire::explain

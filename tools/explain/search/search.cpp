@@ -1,0 +1,368 @@
+#include "tools/explain/search/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "tools/explain/search/channel_check.hpp"
+#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/search/round.hpp"
+#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/search/unlisted_search.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// A term of unknown law has to stay below this share of the listed effects' held-out error to take their place: it has more
+/// freedom than any of them.
+constexpr double kUnlistedAdvantage = 0.7;
+/// Listed effects that leave more than this share of the calibrated model's held-out error may well stand in for one that is
+/// in no list: a term of unknown law is looked for before another effect is, and ends the search if it lacks nothing. Names
+/// that explain so little in the end give way to a term that is only a little better.
+constexpr double kLittleExplained = 0.5;
+constexpr double kAdvantageOverLittle = 0.9;
+/// Rows no closer than this tell candidates apart [s]: the fastest that an axis does in its sensors is tens of hertz.
+constexpr double kRankingPeriod = 2e-3;
+/// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
+/// were thinned by.
+template <class Family>
+constexpr bool kRankedCoarsely = !std::is_same_v<Family, DirectFamily>;
+
+/// The state of one search.
+template <class Family>
+class Search {
+ public:
+  Search(const Dataset& data, const ModelFile& model, const SearchOptions& options)
+      : data_(data),
+        model_(model),
+        options_(options),
+        thin_(kRankedCoarsely<Family> ? thinned(data, kRankingPeriod) : data),
+        fine_(data, Resolution::fine),
+        coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine,
+                kRankedCoarsely<Family> ? Resolution::rough : Resolution::fine),
+        rough_(thin_, Resolution::rough),
+        refiner_(data, kRankedCoarsely<Family> ? rough_ : coarse_, coarse_, fine_, scales_, options.threads, options.watch) {
+  }
+
+  SearchResult<Family> run() {
+    if constexpr (std::is_same_v<Family, DirectFamily>) {
+      scales_ = scales_of(data_);
+    }
+    Fitted<Family> start;
+    start.base = std::get<PlainParameters<Family>>(model_.parameters);
+    start.free = declared_parameters<Family>(start.base, model_.tolerance);
+    start.u.assign(start.free.size(), 0.0);
+    for (const FreeParameter& state : initial_states(data_, scales_, start.u)) {
+      start.free.push_back(state);
+    }
+    start.temper.assign(data_.channels.size(), 1.0);
+    result_.declared = assess(fine_, options_.threads, start);
+    if constexpr (std::is_same_v<Family, SimplexFamily>) {
+      refuse_impossible_channels(data_, result_.declared.prediction);
+    }
+    options_.watch.progress("calibrating the declared parameters within their tolerances");
+    result_.calibrated = calibrated(start);
+    result_.explained = result_.calibrated;
+    for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
+      const int round = next_round();
+      if (lacks_nothing(data_, result_.explained) || !add_effect(round)) {
+        break;
+      }
+      take_out_superfluous(round);
+      if (left_by_listed() > kLittleExplained && is_worth_a_table() && !options_.watch.interrupted()) {
+        look_for_unlisted();
+        if (unlisted_->best && lacks_nothing(data_, unlisted_->model)) {
+          take_unlisted_if_better();
+        }
+      }
+    }
+    if (!result_.kept.empty() && !options_.watch.interrupted()) {
+      settle();
+      for (const Rival<Family>& rival : earlier_rivals_) {
+        compare_with_earlier_rival(rival);
+      }
+    }
+    if (options_.most_effects > 0 && is_worth_a_table() && !options_.watch.interrupted()) {
+      look_for_unlisted();
+      take_unlisted_if_better();
+    }
+    result_.searched = options_.most_effects > 0;
+    result_.interrupted = options_.watch.interrupted();
+    return std::move(result_);
+  }
+
+ private:
+  int next_round() const { return result_.trials.empty() ? 1 : result_.trials.back().round + 1; }
+
+  /// One round. False if no candidate is supported.
+  bool add_effect(int round) {
+    const Fitted<Family>& current = result_.explained.model;
+    std::vector<Candidate> candidates = all_candidates<Family>(data_);
+    std::erase_if(candidates, [&](const Candidate& c) {
+      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c);
+    });
+    const Evaluator<Family> evaluator = refiner_.for_screening(current);
+    const Screening<Family> screening(evaluator, current, scales_, options_.threads);
+    auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
+    Round<Family> fits(round, data_, refiner_, result_.explained, std::move(screened), options_.watch);
+    RoundResult<Family> found = fits.run();
+    result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());
+    if (!found.kept) {
+      return false;
+    }
+    if (result_.rival) {
+      earlier_rivals_.push_back(std::move(*result_.rival));
+    }
+    result_.kept.push_back(std::move(*found.kept));
+    result_.explained = std::move(found.model);
+    result_.rival = std::move(found.rival);
+    is_settled_ = found.settled;
+    polish_earlier(round);
+    return true;
+  }
+
+  /// The declared model within its tolerances: fast records are dear, so the way there is made on thinned ones.
+  Assessed<Family> calibrated(const Fitted<Family>& declared) const {
+    if (fine_.fit_rows() == coarse_.fit_rows()) {
+      return refiner_.settled(declared);
+    }
+    const Assessed<Family> near = refiner_.ranked(declared, kRanking);
+    return refiner_.settled(near.good() ? near.model : declared);
+  }
+
+  /// What was found under fine steps, and over ripples: a model may reach the noise in a ripple of its error beside the one
+  /// where nothing is left. The records in hand hardly tell, but a motion beyond them would.
+  void settle() {
+    options_.watch.progress("fitting what was found with fine steps and over ripples");
+    if (!is_settled_) {
+      take(refiner_.settled(result_.explained.model));
+    }
+    const int round = result_.trials.back().round;
+    for (Kept& kept : result_.kept) {
+      Candidate law = kept.trial.candidate;
+      Assessed<Family> simple = refiner_.by_simplest_law(result_.explained, law);
+      if (label(law) != label(kept.trial.candidate)) {
+        give_law(kept.trial.candidate, {law, std::move(simple)}, round, "leaves out only what the data leave open of");
+      }
+    }
+    Assessed<Family> beyond = refiner_.over_ripples(result_.explained);
+    if (excess_over_noise(data_, beyond.prediction) < excess_over_noise(data_, result_.explained.prediction)) {
+      take(refiner_.settled(beyond.model));
+    }
+  }
+
+  /// Another fit of what was found, if it could be simulated.
+  void take(Assessed<Family> model) {
+    if (model.good()) {
+      result_.explained = std::move(model);
+    }
+  }
+
+  /// True if more than noise is left, or less by declared parameters that stand in for something, and so much of it that a
+  /// term of unknown law could have the advantage that it needs.
+  bool is_worth_a_table() const {
+    return !reaches_noise(data_, result_.explained) &&
+           (excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise ||
+            !is_within_tolerances(result_.explained.model)) &&
+           least_held_out_ratio(result_.explained, result_.calibrated) < wanted_of_unlisted();
+  }
+
+  /// The share of the calibrated model's held-out error that a term of unknown law has to stay below.
+  double wanted_of_unlisted() const {
+    const double listed = left_by_listed();
+    const bool names_little = !result_.kept.empty() && listed > kLittleExplained;
+    return (names_little ? kAdvantageOverLittle : kUnlistedAdvantage) * listed;
+  }
+
+  /// Held-out error that the listed effects leave of the calibrated model's.
+  double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
+
+  /// Looks for a term of unknown law, at one site, instead of the listed effects: once, since it is looked for beside the
+  /// calibrated model.
+  void look_for_unlisted() {
+    if (!unlisted_) {
+      unlisted_ =
+          search_unlisted(data_, refiner_, result_.calibrated, scales_, options_.threads, options_.watch, next_round());
+      unlisted_trials_ = result_.trials.size();
+      result_.trials.insert(result_.trials.end(), unlisted_->trials.begin(), unlisted_->trials.end());
+    }
+  }
+
+  /// A term of unknown law takes the place of the listed effects where it leaves clearly less on held-out data: listed
+  /// effects that imitate it would be wrong names.
+  void take_unlisted_if_better() {
+    const double listed = left_by_listed();
+    if (!unlisted_->leaves_less_than(wanted_of_unlisted())) {
+      return;
+    }
+    Trial& best = result_.trials[unlisted_trials_ + *unlisted_->best];
+    best.decision = "kept";
+    if (!result_.kept.empty()) {
+      best.reason += fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * listed);
+    }
+    Kept kept{best, {}};
+    for (std::size_t i = 0; i < unlisted_->trials.size(); ++i) {
+      if (i != *unlisted_->best && unlisted_->trials[i].refined) {
+        kept.alternatives.push_back(unlisted_->trials[i]);
+      }
+    }
+    result_.kept = {std::move(kept)};
+    result_.rival.reset();
+    earlier_rivals_.clear();
+    result_.explained = unlisted_->model;
+    is_settled_ = true;
+  }
+
+  /// What an effect looked like while another was missing may be a local minimum now.
+  void polish_earlier(int round) {
+    for (std::size_t i = 0; i + 1 < result_.kept.size(); ++i) {
+      Assessed<Family> again = refiner_.from_other_starts(round, result_.explained, result_.kept[i].trial.candidate);
+      if (Goodness::combined(again.goodness.fitted) < Goodness::combined(result_.explained.goodness.fitted)) {
+        take(refiner_.settled(again.model));
+      }
+      take_richer_law(round, result_.kept[i].trial.candidate);
+    }
+  }
+
+  /// Gives an effect that was kept before a law with more parameters, if that is clearly better now.
+  void take_richer_law(int round, Candidate& candidate) {
+    for (OfLaw<Family>& richer : refiner_.of_richer_laws(round, result_.explained, candidate)) {
+      Trial trial;
+      compare(trial, richer.model, result_.explained, richer.model.goodness.fitted);
+      if (is_supported(trial)) {
+        richer.model = refiner_.settled(richer.model.model);
+        give_law(candidate, std::move(richer), round, "is better, with a later effect added, than");
+      }
+    }
+  }
+
+  /// Whether what explained the records as well as an effect that was kept before still does with the later ones: it may be
+  /// told from it now, either way.
+  void compare_with_earlier_rival(const Rival<Family>& rival) {
+    const auto kept =
+        std::ranges::find_if(result_.kept, [&](const Kept& k) { return k.trial.candidate.effect == rival.kept.effect; });
+    const bool is_in = std::ranges::any_of(result_.kept, [&](const Kept& k) {
+      return rival.other.effect == rival.kept.effect ? label(k.trial.candidate) == label(rival.other)
+                                                     : k.trial.candidate.effect == rival.other.effect;
+    });
+    if (kept == result_.kept.end() || is_in || options_.watch.interrupted()) {
+      return;
+    }
+    Candidate& candidate = kept->trial.candidate;
+    options_.watch.progress(fmt::format("is {} still as good as {}", label(rival.other), label(candidate)));
+    Assessed<Family> with = refiner_.in_place_of(result_.explained.model, candidate, rival.other, rival.model);
+    if (!with.good()) {
+      return;
+    }
+    const int round = result_.trials.back().round;
+    Trial trial{round, rival.other, true, 0.0, 1.0, 0.0, "dropped", ""};
+    compare(trial, with, result_.explained, with.goodness.fitted);
+    if (is_supported(trial)) {
+      give_law(candidate, {rival.other, std::move(with)}, round, "explains more, with a later effect added, than");
+      for (Trial& alternative : kept->alternatives) {
+        if (label(alternative.candidate) == label(rival.other)) {
+          std::swap(kept->trial, alternative);
+          kept->trial.decision = "kept";
+          alternative.decision = "dropped";
+          alternative.candidate = rival.kept;
+          break;
+        }
+      }
+      // What tied with the last effect was fitted beside the one that is out now.
+      result_.rival.reset();
+      return;
+    }
+    if (trial.delta_criterion < kTied) {
+      trial.decision = "tied";
+      trial.reason = "explains as much, with the later effects too, as " + label(candidate);
+      if (!result_.rival) {
+        result_.rival = Rival<Family>{candidate, rival.other, std::move(with.model)};
+      }
+    } else {
+      trial.reason = "explained as much before a later effect was added as " + label(candidate);
+    }
+    result_.trials.push_back(std::move(trial));
+  }
+
+  /// Gives an effect that was kept another law, and says why.
+  void give_law(Candidate& candidate, OfLaw<Family> other, int round, const std::string& why) {
+    if (!other.model.good()) {
+      return;
+    }
+    Trial trial{round, other.candidate, true, 0.0, 1.0, 0.0, "kept", why + " " + label(candidate)};
+    compare(trial, other.model, result_.explained, other.model.goodness.fitted);
+    result_.trials.push_back(std::move(trial));
+    candidate = other.candidate;
+    result_.explained = std::move(other.model);
+  }
+
+  /// Takes out every effect without which the model is as good, or reaches the noise, where the search would have ended:
+  /// earlier ones that the last has replaced, and the last if all it did was to lead the others, or the calibration, out of
+  /// a local minimum.
+  void take_out_superfluous(int round) {
+    const std::size_t newest = result_.kept.size() - 1;
+    for (std::size_t i = newest + 1; i-- > 0;) {
+      Trial trial{round,
+                  result_.kept[i].trial.candidate,
+                  false,
+                  0.0,
+                  1.0,
+                  0.0,
+                  "taken out",
+                  i == newest ? "the model is as good without it: it led what stays to where it fits"
+                              : "the model is as good without it since a later effect was added"};
+      options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
+      const Stopwatch stopwatch;
+      Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);
+      if (rest.good()) {
+        compare(trial, rest, result_.explained, rest.goodness.fitted);
+      }
+      trial.seconds = stopwatch.seconds();
+      if (rest.good() && (is_as_good(trial) || lacks_nothing(data_, rest))) {
+        result_.trials.push_back(trial);
+        if (i == newest) {
+          result_.rival.reset();
+        }
+        result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
+        result_.explained = std::move(rest);
+        take(refiner_.settled(result_.explained.model));
+        if (result_.kept.empty()) {
+          result_.calibrated = result_.explained;
+          unlisted_.reset();
+        }
+      }
+    }
+  }
+
+  const Dataset& data_;
+  const ModelFile& model_;
+  const SearchOptions& options_;
+  const Dataset thin_;
+  Evaluator<Family> fine_;
+  Evaluator<Family> coarse_;
+  Evaluator<Family> rough_;
+  Scales scales_;
+  Refiner<Family> refiner_;
+  SearchResult<Family> result_;
+  std::vector<Rival<Family>> earlier_rivals_;       ///< of effects that were kept before the last
+  bool is_settled_ = true;                          ///< what was found was fitted with fine steps
+  std::optional<UnlistedSearch<Family>> unlisted_;  ///< beside the calibrated model, once it was looked for
+  std::size_t unlisted_trials_ = 0;                 ///< where its trials are among all
+};
+
+}  // namespace
+
+template <class Family>
+SearchResult<Family> search(const Dataset& data, const ModelFile& model, const SearchOptions& options) {
+  return Search<Family>(data, model, options).run();
+}
+
+template SearchResult<SimplexFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
+template SearchResult<DirectFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tools/explain/experiment/next_experiment.hpp"
+#include "tools/explain/inference/profile.hpp"
+#include "tools/explain/search/screening.hpp"
+#include "tools/explain/terms/assessed.hpp"
+#include "tools/explain/terms/trial.hpp"
+
+namespace hotfire::explain {
+
+template <class Family>
+struct SearchResult {
+  Assessed<Family> declared;
+  Assessed<Family> calibrated;
+  Assessed<Family> explained;
+  std::vector<Kept> kept;
+  std::vector<Trial> trials;
+  std::optional<Rival<Family>> rival;  ///< of an effect that is kept, the last if that has one
+  Intervals profiles;                  ///< of the explained model's parameters whose error is no parabola
+  bool searched = true;                ///< effects were looked for
+  bool interrupted = false;
+};
+
+struct SearchOptions {
+  unsigned threads = 1;
+  int most_effects = 4;  ///< to add; 0: calibrate only
+  Watch watch;
+};
+
+/// Calibrates the declared model within its tolerances, then adds effects one by one while the data support them: every
+/// candidate is screened, the best are fitted jointly with everything else, and one is kept if it lowers the BIC and the
+/// error on held-out blocks. An effect that a later one makes superfluous is taken out again.
+template <class Family>
+SearchResult<Family> search(const Dataset& data, const ModelFile& model, const SearchOptions& options);
+
+extern template SearchResult<SimplexFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
+extern template SearchResult<DirectFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <string>
+
+#include "tools/explain/fit/fit.hpp"
+#include "tools/explain/fit/goodness.hpp"
+#include "tools/explain/terms/candidates.hpp"
+
+namespace hotfire::explain {
+
+/// A fitted model with what it predicts and how well.
+template <class Family>
+struct Assessed {
+  Fitted<Family> model;
+  Prediction prediction;
+  Goodness goodness;
+
+  bool good() const { return !prediction.empty(); }
+};
+
+/// How much is spent on a joint fit: `iterations` of the solver for each of up to `passes` tempers, until the cost changes
+/// by less than `tolerance`.
+struct Effort {
+  int iterations = 0;
+  int passes = 0;
+  double tolerance = 0.0;
+  Slopes slopes = Slopes::exact;
+};
+inline constexpr Effort kCheck{12, 1, 1e-4};                      ///< is an effect still needed
+inline constexpr Effort kRanking{16, 3, 1e-4};                    ///< which finalist is best
+inline constexpr Effort kOverRipples{16, 2, 1e-4, Slopes::wide};  ///< out of a minimum that is a ripple
+inline constexpr Effort kFinal{30, 3, 1e-5};                      ///< what the report says
+inline constexpr Effort kAllRows{16, 1, 1e-5};                    ///< a small move: to the rows that were held out
+
+/// A model with what it predicts under fine steps.
+template <class Family>
+Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted);
+
+/// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper stands, assessed
+/// under fine steps on every row. Not good() if the start or the end can't be simulated.
+template <class Family>
+Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
+                         Fitted<Family> fitted, const Effort& effort);
+
+/// True if every channel's residual is noise but for a part that the sensor could not show.
+template <class Family>
+bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed);
+
+/// The declared parameter that is furthest from its declaration: its key, and how many tolerances off. Zero and no key where
+/// none is free.
+struct Moved {
+  std::string key;
+  double tolerances = 0.0;
+};
+template <class Family>
+Moved farthest_from_declared(const Fitted<Family>& model);
+
+/// True if no declared parameter had to go so far from its declaration that it stands in for something.
+template <class Family>
+bool is_within_tolerances(const Fitted<Family>& model);
+
+/// True if a model reaches the noise within its tolerances: there is nothing to be looked for.
+template <class Family>
+bool lacks_nothing(const Dataset& data, const Assessed<Family>& assessed);
+
+/// Takes the free parameters of which `unwanted` is true out of a model.
+template <class Family, class F>
+void drop_parameters(Fitted<Family>& model, F&& unwanted) {
+  for (std::size_t k = model.free.size(); k-- > 0;) {
+    if (unwanted(model.free[k])) {
+      model.free.erase(model.free.begin() + static_cast<std::ptrdiff_t>(k));
+      model.u.erase(model.u.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+}
+
+/// A model without one of its effects, the other parameters where they are.
+template <class Family>
+Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate);
+
+/// A model with its declared parameters as declared, the effects where they are: a calibration that had to stand in for a
+/// missing effect is further from the truth than the declaration.
+template <class Family>
+Fitted<Family> with_declared_values(Fitted<Family> model);
+
+/// True if the declared parameters are further from their declaration than its tolerances, in the mean: a calibration of no
+/// model that is right.
+template <class Family>
+bool is_far_from_declared(const Fitted<Family>& model);
+
+/// Whichever leaves less on the rows that a fit sees; the first if the second could not be simulated.
+template <class Family>
+Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second);
+
+/// BIC of one model less that of another, on given effective samples.
+template <class Family>
+double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
+                        const std::vector<ChannelFit>& effective);
+
+/// Held-out error of one model over that of another, as `error_ratio` counts it.
+template <class Family>
+double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without);
+
+/// The least that any model's held-out ratio can be: every channel at the sensor's noise, or at what `model` leaves there if
+/// that is less.
+template <class Family>
+double least_held_out_ratio(const Assessed<Family>& model, const Assessed<Family>& without);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,297 @@
+#include "tools/explain/terms/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Least share of its declared value that a declared parameter may be moved to.
+constexpr double kLeastOfDeclared = 1e-6;
+
+/// Largest factor by which a start lies above or below a field's typical value.
+constexpr double kStartSpan = 4.0;
+/// ... and of the two further starts that stand for a small effect.
+constexpr double kWhisper = 16.0;
+
+/// Standard deviation of the logarithm of an effect's parameter about its typical value before any data: a factor of ten.
+/// Worth less than one effective sample; it keeps a parameter that the data do not determine from wandering off to a bound.
+constexpr double kWeakPrior = 2.302585;
+
+/// Standard deviation of a table's ordinate about zero before any data, in typical sizes: keeps a point that the records
+/// never reach where its neighbours leave it.
+constexpr double kOrdinatePrior = 100.0;
+
+/// Calls `f(index, effect's values)` for one effect of the list.
+template <class Parameters, class F>
+void visit_effect(Parameters& parameters, std::size_t wanted, F&& f) {
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    if (index == wanted) {
+      f.template operator()<E>(values);
+    }
+  });
+}
+
+/// Value of the van der Corput sequence in a base: the cover of [0, 1) behind a Halton sequence.
+double van_der_corput(std::size_t n, std::size_t base) {
+  double value = 0.0;
+  double part = 1.0;
+  while (n > 0) {
+    part /= static_cast<double>(base);
+    value += part * static_cast<double>(n % base);
+    n /= base;
+  }
+  return value;
+}
+
+/// Adds the ordinates of the candidate's table, if it has one with points. `index` is that of the first table's first.
+template <class Parameters>
+void append_ordinates(const Parameters& base, const Candidate& candidate, const Scales& scales, std::size_t index,
+                      std::vector<FreeParameter>& free) {
+  model::visit_effects(base, [&]<class E>(std::size_t effect, const auto& values) {
+    using Values = std::remove_cvref_t<decltype(values)>;
+    if constexpr (requires { Values::tables(); }) {
+      for (const auto& field : Values::tables()) {
+        const auto& table = values.*field.member;
+        if (effect != candidate.effect || field.y_typical <= 0.0 || (field.options >> candidate.option & 1U) == 0) {
+          continue;
+        }
+        for (int i = 0; i < table.points; ++i) {
+          FreeParameter parameter;
+          parameter.index = index + static_cast<std::size_t>(i);
+          parameter.key = "effects." + std::string(E::name) + "." + std::string(field.y_name) + "." + std::to_string(i);
+          parameter.unit = field.y_unit;
+          parameter.unit_size = field.y_typical * size_of_unit(field.y_unit, scales);
+          parameter.lower = field.y_lower;
+          parameter.upper = field.y_upper;
+          parameter.prior_deviation = kOrdinatePrior;
+          parameter.is_ordinate = true;
+          free.push_back(std::move(parameter));
+        }
+      }
+      index += (values.*Values::tables().front().member).y.size();
+    }
+  });
+}
+
+bool is_frequency(const FreeParameter& parameter) { return parameter.unit == "Hz"; }
+
+/// Coordinate of parameter k at point n of the cover, with frequencies at `frequency`. The first point is the typical value
+/// itself; ordinates start at zero.
+double start_coordinate(const FreeParameter& parameter, std::size_t k, std::size_t n, double frequency) {
+  constexpr std::array<std::size_t, 8> kPrimes{2, 3, 5, 7, 11, 13, 17, 19};
+  const double place = n == 0 ? 0.5 : van_der_corput(n, kPrimes[k % kPrimes.size()]);
+  const double factor = std::pow(kStartSpan, 2.0 * place - 1.0);
+  if (is_frequency(parameter)) {
+    return parameter.coordinate(std::clamp(frequency, parameter.lower, parameter.upper));
+  }
+  if (parameter.is_ordinate) {
+    return parameter.coordinate(n == 0 ? 0.0 : parameter.unit_size * factor);
+  }
+  if (parameter.scale == FreeParameter::Scale::linear) {
+    return n % 2 == 0 ? factor : -factor;
+  }
+  return parameter.coordinate(std::clamp(parameter.unit_size * factor, parameter.lower, parameter.upper));
+}
+
+}  // namespace
+
+template <class Family>
+std::vector<Candidate> all_candidates(const Dataset& data) {
+  std::vector<Candidate> candidates;
+  const PlainParameters<Family> neutral;
+  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto& values) {
+    if constexpr (requires { E::is_unlisted; }) {
+      return;
+    }
+    const int variants = std::max<int>(1, static_cast<int>(E::options.size()));
+    for (int option = 0; option < variants; ++option) {
+      if (model::needs_other_axis<E>(option) && !data.has_other_axis()) {
+        continue;
+      }
+      Candidate candidate{index, option, std::string(E::name), "", std::string(model::site_name(E::site))};
+      if constexpr (E::options.size() > 0) {
+        candidate.option_name = E::options[static_cast<std::size_t>(option)];
+      }
+      if constexpr (E::site == model::Site::sensor) {
+        if (!data.used[static_cast<std::size_t>(option)]) {
+          continue;
+        }
+        candidate.site += "." + candidate.option_name;
+      }
+      const auto fields = std::remove_cvref_t<decltype(values)>::fields();
+      const bool any =
+          std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return (f.options >> option & 1U) != 0; });
+      if (any) {
+        candidates.push_back(std::move(candidate));
+      }
+    }
+  });
+  return candidates;
+}
+
+template <class Family>
+std::vector<Candidate> laws_of(const Dataset& data, const Candidate& candidate) {
+  std::vector<Candidate> laws = all_candidates<Family>(data);
+  std::erase_if(laws, [&](const Candidate& law) { return law.effect != candidate.effect || law.site != candidate.site; });
+  return laws;
+}
+
+template <class Family>
+bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate) {
+  std::string_view carried;
+  visit_effect(parameters, candidate.effect, [&]<class E>(const auto&) {
+    if constexpr (requires { E::carries; }) {
+      carried = E::carries;
+    }
+  });
+  bool active = carried.empty();
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto&) {
+    active = active || (E::name == carried && parameters.effects.active[index]);
+  });
+  return active;
+}
+
+template <class Family>
+std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,
+                                               const std::map<std::string, double>& tolerance) {
+  std::vector<FreeParameter> free;
+  std::size_t index = 0;
+  model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double& value) {
+    const std::string name = std::string(key.section) + "." + std::string(field.name);
+    const auto found = tolerance.find(name);
+    if (!key.is_effect && found != tolerance.end() && value != 0.0) {
+      FreeParameter parameter;
+      parameter.index = index;
+      parameter.key = name;
+      parameter.unit = field.unit;
+      parameter.scale = FreeParameter::Scale::tolerance;
+      parameter.declared = value;
+      parameter.tolerance = found->second;
+      parameter.prior_deviation = 1.0;
+      // Moved by factors, it keeps its sign.
+      parameter.lower = value > 0.0 ? std::max(field.lower, kLeastOfDeclared * value) : field.lower;
+      parameter.upper = value < 0.0 ? std::min(field.upper, kLeastOfDeclared * value) : field.upper;
+      free.push_back(std::move(parameter));
+    }
+    ++index;
+  });
+  return free;
+}
+
+template <class Family>
+std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base, const Candidate& candidate,
+                                             const Scales& scales) {
+  std::vector<FreeParameter> free;
+  std::size_t index = 0;
+  model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
+    if (key.is_effect && key.effect_index == candidate.effect && model::is_searched(field, candidate.option)) {
+      FreeParameter parameter;
+      parameter.index = index;
+      parameter.key = "effects." + std::string(key.section) + "." + std::string(field.name);
+      parameter.unit = field.unit;
+      parameter.unit_size = field.typical * size_of_unit(field.unit, scales);
+      parameter.lower = field.lower;
+      parameter.upper = field.upper;
+      if (model::searched_in_logarithms(field)) {
+        parameter.scale = FreeParameter::Scale::logarithmic;
+        // A logarithm needs a floor; a millionth of the typical value is neutral to any sensor.
+        parameter.lower = std::max(field.lower, 1e-6 * parameter.unit_size);
+        parameter.prior_center = std::log(parameter.unit_size);
+        parameter.prior_deviation = kWeakPrior;
+      }
+      free.push_back(std::move(parameter));
+    }
+    ++index;
+  });
+  append_ordinates(base, candidate, scales, index, free);
+  return free;
+}
+
+std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& scales, std::vector<double>& u) {
+  std::vector<FreeParameter> free;
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const StartState& start = data.experiments[e].start_state;
+    if (!start.moves()) {
+      continue;
+    }
+    const auto add = [&](int state, const char* name, const char* unit, double value, double error) {
+      FreeParameter parameter;
+      parameter.key = data.experiments[e].name + name;
+      parameter.unit = unit;
+      parameter.unit_size = size_of_unit(unit, scales);
+      parameter.experiment = static_cast<int>(e);
+      parameter.state = state;
+      parameter.lower = -1e3 * parameter.unit_size;
+      parameter.upper = 1e3 * parameter.unit_size;
+      parameter.prior_center = parameter.coordinate(value);
+      parameter.prior_deviation = error / parameter.unit_size;
+      u.push_back(parameter.prior_center);
+      free.push_back(std::move(parameter));
+    };
+    add(0, ".initial_position", "position", start.position, start.position_error);
+    add(1, ".initial_velocity", "position/time", start.velocity, start.velocity_error);
+  }
+  return free;
+}
+
+std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& own,
+                                              const std::vector<double>& frequencies) {
+  std::vector<double> tried{1.0};
+  const bool has_frequency = std::any_of(own.begin(), own.end(), is_frequency);
+  if (has_frequency) {
+    // A missing mode shows in the closed loop a little beside its own frequency.
+    tried.clear();
+    for (const double frequency : frequencies) {
+      for (const double ratio : {0.8, 0.9, 0.96, 1.0, 1.04, 1.1, 1.2}) {
+        tried.push_back(frequency * ratio);
+      }
+    }
+  }
+  const bool all_ordinates = std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+  const std::size_t covers = all_ordinates ? 1 : has_frequency ? 2 : (own.size() == 1 ? 6 : 10);
+  std::vector<std::vector<double>> starts;
+  for (const double frequency : tried) {
+    for (std::size_t n = 0; n < covers; ++n) {
+      starts.emplace_back();
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        starts.back().push_back(start_coordinate(own[k], k, n, frequency));
+      }
+    }
+  }
+  if (!has_frequency && !all_ordinates && !own.empty()) {
+    // Small ones: an effect far below its typical size shows from there, where from elsewhere it only overshoots. Of some
+    // effects the small ones have large values (a rate limit).
+    for (const double factor : {1.0 / kWhisper, kWhisper}) {
+      starts.push_back(starts.front());
+      const FreeParameter& size = own.front();
+      starts.back().front() = size.scale == FreeParameter::Scale::linear
+                                  ? (factor < 1.0 ? factor : -1.0 / factor)
+                                  : size.coordinate(std::clamp(size.unit_size * factor, size.lower, size.upper));
+    }
+  }
+  return starts;
+}
+
+template <class Family>
+void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
+  visit_effect(parameters, candidate.effect, [&]<class E>(auto& values) { values.option = candidate.option; });
+  parameters.effects.active[candidate.effect] = true;
+}
+
+#define HOTFIRE_INSTANTIATE(Family)                                                                               \
+  template std::vector<Candidate> all_candidates<Family>(const Dataset&);                                         \
+  template std::vector<Candidate> laws_of<Family>(const Dataset&, const Candidate&);                              \
+  template bool has_what_it_carries<Family>(const PlainParameters<Family>&, const Candidate&);                    \
+  template std::vector<FreeParameter> declared_parameters<Family>(const PlainParameters<Family>&,                 \
+                                                                  const std::map<std::string, double>&);          \
+  template std::vector<FreeParameter> effect_parameters<Family>(const PlainParameters<Family>&, const Candidate&, \
+                                                                const Scales&);                                   \
+  template void activate<Family>(PlainParameters<Family>&, const Candidate&);
+
+HOTFIRE_INSTANTIATE(SimplexFamily)
+HOTFIRE_INSTANTIATE(DirectFamily)
+#undef HOTFIRE_INSTANTIATE
+
+}  // namespace hotfire::explain

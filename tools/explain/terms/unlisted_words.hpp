@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/explain/terms/candidates.hpp"
+
+namespace hotfire::explain {
+
+/// A fitted table: what is found of a term of unknown law.
+struct FittedTable {
+  std::string x_name;
+  std::string x_unit;
+  std::string y_name;
+  std::string y_unit;
+  std::string meaning;
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+/// What a table looks like in words: its size, whether it is odd, even or constant, rises or falls, jumps about zero.
+std::string in_words(const FittedTable& table);
+
+/// The same of a term of unknown law without a table. Empty for one that has a table.
+std::string law_in_words(const Candidate& candidate);
+
+/// What a term of unknown law depends on, as a clause: "that is told by load pressure", "of one frequency".
+std::string dependence_in_words(const Candidate& candidate);
+
+}  // namespace hotfire::explain

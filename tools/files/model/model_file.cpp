@@ -1,0 +1,114 @@
+#include "tools/files/model/model_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/files/model/model_group.hpp"
+#include "tools/files/model/model_layout.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/suggestion.hpp"
+#include "tools/files/text/toml_source.hpp"
+
+namespace hotfire {
+
+namespace {
+
+/// True if no value can stand for a parameter that is left out: it is in the record's own units and zero is not allowed.
+bool has_no_reference(const NumberKey& number, bool own_units) { return own_units && number.lower > 0.0; }
+
+void read_parts(const TomlSource& source, const ModelLayout& layout, ModelFile& model) {
+  const bool own_units = layout.channels.front().unit.empty();
+  const toml::table empty;
+  for (const KeyGroup& part : layout.parts) {
+    const toml::node* node = source.root().get(part.name);
+    const toml::table& table = node != nullptr ? source.table(*node, part.name) : empty;
+    const std::string prefix = fmt::format("{}.", part.name);
+    for (const NumberKey* number : read_group(source, table, part, prefix)) {
+      const std::string key = prefix + std::string{number->name};
+      if (has_no_reference(*number, own_units)) {
+        source.refuse_missing(
+            node != nullptr ? table : source.root(), key,
+            fmt::format("missing: topology \"{}\" needs it, in the record's own units, {}; allowed: {:g} to {:g}",
+                        layout.topology, number->unit, number->lower, number->upper));
+      }
+      model.left_out.push_back(key);
+    }
+  }
+}
+
+void read_effects(const TomlSource& source, const ModelLayout& layout) {
+  const toml::node* node = source.root().get("effects");
+  if (node == nullptr) {
+    return;
+  }
+  const toml::table& effects = source.table(*node, "effects");
+  refuse_unknown_keys(source, effects, "effects.", names_of(layout.effects));
+  for (const KeyGroup& effect : layout.effects) {
+    if (const toml::node* own = effects.get(effect.name)) {
+      const std::string key = fmt::format("effects.{}", effect.name);
+      if (effect.needs_other_axis) {
+        source.refuse_missing(source.table(*own, key), key,
+                              fmt::format("acts from the other axis of an engine, and topology \"{}\" has one axis; "
+                                          "allowed with topology \"taos\" or \"masv\"",
+                                          layout.topology));
+      }
+      read_group(source, source.table(*own, key), effect, key + ".");
+      *effect.active = true;
+    }
+  }
+}
+
+/// The table of that name, if the file has one.
+const toml::table* table_of(const TomlSource& source, std::string_view name) {
+  const toml::node* node = source.root().get(name);
+  return node != nullptr ? &source.table(*node, name) : nullptr;
+}
+
+void choose_topology(const TomlSource& source, ModelFile& model) {
+  const std::string allowed = fmt::format("allowed where one axis is asked for: \"{}\", \"{}\"",
+                                          model::Simplex<double>::topology, model::Direct<double>::topology);
+  const toml::node* node = source.root().get("topology");
+  if (node == nullptr) {
+    source.refuse_missing(source.root(), "topology", "missing; " + allowed);
+  }
+  const std::string topology = source.text(*node, "topology");
+  if (topology == model::Simplex<double>::topology) {
+    model.parameters = SimplexParameters{};
+  } else if (topology == model::Direct<double>::topology) {
+    model.parameters = DirectParameters{};
+  } else {
+    source.refuse(*node, "topology", "not a topology that this takes; " + allowed);
+  }
+}
+
+}  // namespace
+
+ModelFile load_model(const std::filesystem::path& path) {
+  const TomlSource source(path);
+  source.require_schema();
+  ModelFile model;
+  model.path = path;
+  choose_topology(source, model);
+  const ModelLayout layout = layout_of(model);
+
+  Words known{"schema", "name", "topology", "sensors", "tolerance", "effects"};
+  const Words parts = names_of(layout.parts);
+  known.insert(known.end(), parts.begin(), parts.end());
+  refuse_unknown_keys(source, source.root(), "", known);
+
+  const toml::node* name = source.root().get("name");
+  model.name = name != nullptr ? source.text(*name, "name") : path.stem().string();
+  read_parts(source, layout, model);
+  read_effects(source, layout);
+  if (const toml::table* sensors = table_of(source, "sensors")) {
+    read_noise(source, *sensors, "sensors.", layout.channels, {}, model.noise);
+  }
+  if (const toml::table* tolerance = table_of(source, "tolerance")) {
+    const std::vector<std::string> declared = declared_keys(layout);
+    model.tolerance = read_tolerances(source, *tolerance, Words(declared.begin(), declared.end()));
+  }
+  return model;
+}
+
+}  // namespace hotfire

@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+
+#include "tools/files/record/record.hpp"
+#include "tools/files/text/whole_file.hpp"
+
+namespace hotfire {
+
+namespace {
+
+void append_number(std::string& text, double value) {
+  std::array<char, 32> digits{};
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  text.append(digits.data(), end);
+}
+
+}  // namespace
+
+void write_record(const Record& record, const std::filesystem::path& path) {
+  WholeFile file(path);
+  std::string text = "time[s]";
+  for (const Channel& channel : record.channels) {
+    text += fmt::format(",{}[{}]", channel.name, channel.unit);
+  }
+  text += '\n';
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    append_number(text, record.start + static_cast<double>(row) * record.period);
+    for (const Channel& channel : record.channels) {
+      text += ',';
+      append_number(text, channel.values[row]);
+    }
+    text += '\n';
+    file.write_block(text);
+  }
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace hotfire
