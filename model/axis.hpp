@@ -75,6 +75,9 @@ class Axis {
   };
 
   enum Index { kOpening, kOpeningRate, kPressure, kWashout, kPiston, kPistonRate, kAngle, kAngleRate };
+  /// What acts on them, held over a step: piston command [m], valve command [-], flow into the extend chamber [m^3/s], force
+  /// against the piston [N], force of the load spring [N], torque against the engine [N m].
+  enum Input { kCommand, kValveCommand, kFlow, kPistonForce, kSpringForce, kEngineTorque };
 
   /// One step under way: where it starts, where it would end without inputs, and where the inputs found so far take it.
   struct Advance {
@@ -143,6 +146,10 @@ class Axis {
 
   /// K_T of the declared load spring [N/m].
   const S& stiffness() const noexcept { return stiffness_; }
+
+  /// What a unit of every input, held over a step, moves the continuous states by: a column an input, in the order of
+  /// `Input`.
+  const Eigen::Matrix<S, 8, 6>& input_response() const noexcept { return hold_.response; }
 
   /// How much a unit of mean torque against the engine slows it over a step [rad/s/(N m)].
   const S& engine_compliance() const noexcept { return engine_compliance_; }
@@ -265,8 +272,6 @@ class Axis {
   /// A step of several cycles of the oil's resonance may take away more flow than is added: a law that takes nearly all
   /// compliance from the oil would have no solution.
   static constexpr double kMostRelief = 0.95;
-
-  enum Input { kCommand, kValveCommand, kFlow, kPistonForce, kSpringForce, kEngineTorque };
 
   static Spring<S> spring_around(const Uncoupled&, const Spring<S>& own) noexcept { return own; }
   static Spring<S> spring_around(const Coupling<S>& around, Spring<S> own) noexcept {

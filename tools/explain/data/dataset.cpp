@@ -6,29 +6,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "tools/explain/data/hold_out.hpp"
 #include "tools/explain/data/statistics.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
 
 namespace {
-
-constexpr double kBlockSeconds = 4.0;
-constexpr std::size_t kFewestBlocks = 8;
-constexpr std::size_t kHoldOutEvery = 4;
-
-std::vector<Block> hold_out(std::size_t rows, double period, std::size_t shift) {
-  const auto wanted = static_cast<std::size_t>(std::lround(static_cast<double>(rows) * period / kBlockSeconds));
-  const std::size_t blocks = std::max(kFewestBlocks, wanted);
-  std::vector<Block> held;
-  for (std::size_t block = 0; block < blocks; ++block) {
-    // The third of each four, shifted from record to record: never the first block, which holds the start.
-    if ((block + shift) % kHoldOutEvery == 2 && block > 0) {
-      held.push_back({rows * block / blocks, rows * (block + 1) / blocks});
-    }
-  }
-  return held;
-}
 
 /// Shares the rows of an experiment out between fit and judgement.
 void share_out(Experiment& experiment) {
@@ -118,8 +102,8 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   data.experiments.reserve(records.size());
   for (const Record& record : records) {
     data.experiments.push_back(experiment_of(record, input, exclusions, data));
-    data.experiments.back().held_out = hold_out(record.rows, record.period, data.experiments.size() - 1);
   }
+  hold_out(data.experiments);
 
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const auto declared = model.noise.find(data.channels[c]);

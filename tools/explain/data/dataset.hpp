@@ -47,9 +47,8 @@ struct Dataset {
   bool has_other_axis() const { return !experiments.empty() && experiments.front().other.is_there(); }
 };
 
-/// Puts records into the model's channels, estimates noise where it is not declared, and holds out every fourth block of
-/// about four seconds (at least eight blocks a record), so that each kind of motion is in both parts. Over excluded rows
-/// channels are `bridged`; exclusions of other records have no meaning here.
+/// Puts records into the model's channels, estimates noise where it is not declared, and holds blocks out (`hold_out`). Over
+/// excluded rows channels are `bridged`; exclusions of other records have no meaning here.
 /// Throws FileError if a record lacks the input or has none of the model's channels, UsageError if an exclusion leaves
 /// nothing of a record.
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,

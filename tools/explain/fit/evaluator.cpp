@@ -12,92 +12,12 @@
 #include <numeric>
 
 #include "model/step_size.hpp"
+#include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/fit/parallel.hpp"
-#include "tools/simulate/run.hpp"
 
 namespace hotfire::explain {
 
 namespace {
-
-/// Where an experiment starts, as far as it is not told by its first command.
-template <class S>
-struct Start {
-  std::array<S, 3> values{S(0.0), S(0.0), S(0.0)};  ///< position, velocity, clock: FreeParameter::state
-};
-
-template <class Plant, class S>
-typename Plant::State initial_state(const Plant& plant, const Dataset& data, const Experiment& experiment,
-                                    const Start<S>& start) {
-  typename Plant::State state = [&] {
-    if constexpr (Plant::topology == "direct") {
-      return plant.moving(start.values[0], start.values[1]);
-    } else if (experiment.other.is_there()) {
-      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
-      const OtherAxis& other = experiment.other;
-      return plant.steady(S(experiment.input.front()),
-                          [&](const S& angle) { return beside(angle, other.angle.front(), 0.0, other.force.front()); });
-    } else {
-      return plant.steady(S(experiment.input.front()));
-    }
-  }();
-  state.clock = start.values[2];
-  return state;
-}
-
-/// Steps a plant through an experiment; an axis that is one of two, beside the motion of the other.
-template <class Plant, class Sink>
-bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& experiment, typename Plant::State& state,
-                    int steps, Sink&& sink) {
-  if constexpr (Plant::topology != "direct") {
-    if (experiment.other.is_there()) {
-      using S = typename Plant::Scalar;
-      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
-      const Excitation angle(experiment.other.angle, steps, Excitation::Between::interpolated);
-      const Excitation rate(experiment.other.rate, steps, Excitation::Between::interpolated);
-      const Excitation force(experiment.other.force, steps, Excitation::Between::interpolated);
-      const auto advance = [&](std::size_t row, int k) {
-        const double other_angle = angle(row, k);
-        const double other_rate = rate(row, k);
-        const double other_force = force(row, k);
-        plant.step(state, S(experiment.input[row]),
-                   [&](const S& own) { return beside(own, other_angle, other_rate, other_force); });
-      };
-      return run_rows<Plant>(experiment.rows(), state, steps, advance, sink);
-    }
-  }
-  return run(plant, experiment.input, state, steps, sink);
-}
-
-/// Constants of a run for every sampling period that occurs.
-template <class Plant, class Steps>
-std::map<double, std::unique_ptr<Plant>> plants_by_period(const Dataset& data, const typename Plant::Parameters& parameters,
-                                                          Steps&& steps) {
-  std::map<double, std::unique_ptr<Plant>> plants;
-  for (const Experiment& experiment : data.experiments) {
-    auto& plant = plants[experiment.period];
-    if (!plant) {
-      plant = std::make_unique<Plant>(parameters, experiment.period / steps(experiment));
-    }
-  }
-  return plants;
-}
-
-/// The start of an experiment: as measured and at rest, or what free parameters say.
-template <class S, class Value>
-Start<S> start_of(const Dataset& data, std::size_t experiment, std::span<const FreeParameter> free, Value&& value) {
-  Start<S> start;
-  const auto& first = data.experiments[experiment].measured.front();
-  if (!first.empty()) {
-    start.values[0] = S(first.front());
-  }
-  start.values[2] = S(data.experiments[experiment].start);
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    if (free[k].experiment == static_cast<int>(experiment)) {
-      start.values[static_cast<std::size_t>(free[k].state)] = value(k);
-    }
-  }
-  return start;
-}
 
 /// Derivatives carried by one simulation: as many as one wide register holds. More spill, and cost more each.
 constexpr std::size_t kLanes = 4;

@@ -11,6 +11,7 @@
 #include "tools/explain/inference/uncertainty.hpp"
 #include "tools/explain/report/curve.hpp"
 #include "tools/explain/report/errors_json.hpp"
+#include "tools/explain/report/located_json.hpp"
 #include "tools/explain/report/report_evidence.hpp"
 #include "tools/explain/report/report_residual.hpp"
 #include "tools/explain/report/trace.hpp"
@@ -264,6 +265,9 @@ json report_json(const ModelFile& model, const std::vector<Record>& records, con
               {"identifiability", json::array()},
               {"residual", residual_json(data, found.declared.prediction, found.explained.prediction)},
               {"search", search_json(found.trials)}};
+  if (!found.located.places.empty()) {
+    report["located"] = located_json(data, found.located);
+  }
   for (const std::string& sentence : not_told_apart(found.explained.model)) {
     report["identifiability"].push_back({{"text", sentence}});
   }

@@ -52,6 +52,34 @@ const Trial* closest_of(const std::vector<Trial>& trials, F&& is_meant) {
   return closest;
 }
 
+/// The first term of unknown law that was kept; null if there is none.
+template <class Family>
+const Kept* first_unlisted(const SearchResult<Family>& found) {
+  const auto kept = std::ranges::find_if(found.kept, [](const Kept& k) { return is_unlisted<Family>(k.trial.candidate); });
+  return kept == found.kept.end() ? nullptr : &*kept;
+}
+
+/// "a term at SITE that depends on ..., and gimbal friction at engine_torque" of everything that was kept.
+template <class Family>
+std::string terms_in_words(const SearchResult<Family>& found) {
+  std::vector<std::string> terms;
+  for (const Kept& kept : found.kept) {
+    const Candidate& candidate = kept.trial.candidate;
+    terms.push_back(is_unlisted<Family>(candidate)
+                        ? fmt::format("a term at {} {}", candidate.site, dependence_in_words(candidate))
+                        : phrase(candidate));
+  }
+  return listed(terms);
+}
+
+/// Where what is missing acts, as far as the records say.
+std::string place_in_words(const Located& located) {
+  const std::vector<std::string> sites = located.likely_sites();
+  return located.is_single
+             ? fmt::format("One unknown signal at {} explains the records down to the noise", fmt::join(sites, " or "))
+             : fmt::format("No single place explains it; the most likely ones are {}", listed(sites));
+}
+
 }  // namespace
 
 bool is_fault_of_record(const Candidate& candidate) {
@@ -61,7 +89,7 @@ bool is_fault_of_record(const Candidate& candidate) {
 
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
-  if (!found.kept.empty() && is_unlisted<Family>(found.kept.front().trial.candidate)) {
+  if (first_unlisted(found) != nullptr) {
     return "unlisted-effect";
   }
   if (reaches_noise(data, found.explained)) {
@@ -92,17 +120,16 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
         after);
   }
   if (verdict == "unlisted-effect" && !found.kept.empty()) {
-    const Candidate& candidate = found.kept.front().trial.candidate;
     return fmt::format(
-        "The records hold an effect that is in no list: a term at {} {} takes the error on held-out data "
-        "from {:.1f} to {:.2f} times the noise; the explained model holds it.",
-        candidate.site, dependence_in_words(candidate), before, after);
+        "The records hold an effect that is in no list. The explained model has {}: the error on held-out data falls from "
+        "{:.1f} to {:.2f} times the noise.",
+        terms_in_words(found), before, after);
   }
   if (verdict == "unlisted-effect") {
     return fmt::format(
-        "The records hold an effect that is in no list: the calibrated model is still {:.1f} times the noise "
-        "off on held-out data, and no candidate is supported.",
-        after);
+        "The records hold an effect that is in no list: the error of the calibrated model on held-out data is {:.1f} times "
+        "the noise, and no candidate is supported.{}",
+        after, found.located.places.empty() ? "" : " " + place_in_words(found.located) + ".");
   }
   if (verdict == "undecided") {
     return fmt::format(
@@ -126,7 +153,7 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
 
 template <class Family>
 std::string what_it_is_not(const SearchResult<Family>& found) {
-  const Trial& kept = found.kept.front().trial;
+  const Trial& kept = first_unlisted(found)->trial;
   // Both in percent of what the calibrated model leaves: only the first round is judged against that as terms of unknown
   // law are.
   const Trial* listed = closest_of(found.trials, [](const Trial& t) {

@@ -12,20 +12,12 @@
 #include "tools/explain/search/refiner.hpp"
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/stopwatch.hpp"
-#include "tools/explain/search/unlisted_search.hpp"
+#include "tools/explain/search/unlisted_stage.hpp"
 
 namespace hotfire::explain {
 
 namespace {
 
-/// A term of unknown law has to stay below this share of the listed effects' held-out error to take their place: it has more
-/// freedom than any of them.
-constexpr double kUnlistedAdvantage = 0.7;
-/// Listed effects that leave more than this share of the calibrated model's held-out error may well stand in for one that is
-/// in no list: a term of unknown law is looked for before another effect is, and ends the search if it lacks nothing. Names
-/// that explain so little in the end give way to a term that is only a little better.
-constexpr double kLittleExplained = 0.5;
-constexpr double kAdvantageOverLittle = 0.9;
 /// Rows no closer than this tell candidates apart [s]: the fastest that an axis does in its sensors is tens of hertz.
 constexpr double kRankingPeriod = 2e-3;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
@@ -46,8 +38,8 @@ class Search {
         coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine,
                 kRankedCoarsely<Family> ? Resolution::rough : Resolution::fine),
         rough_(thin_, Resolution::rough),
-        refiner_(data, kRankedCoarsely<Family> ? rough_ : coarse_, coarse_, fine_, scales_, options.threads, options.watch) {
-  }
+        refiner_(data, kRankedCoarsely<Family> ? rough_ : coarse_, coarse_, fine_, scales_, options.threads, options.watch),
+        unlisted_(data, refiner_, coarse_, scales_, options, result_) {}
 
   SearchResult<Family> run() {
     if constexpr (std::is_same_v<Family, DirectFamily>) {
@@ -69,17 +61,12 @@ class Search {
     result_.calibrated = calibrated(start);
     result_.explained = result_.calibrated;
     for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
-      const int round = next_round();
+      const int round = result_.next_round();
       if (lacks_nothing(data_, result_.explained) || !add_effect(round)) {
         break;
       }
       take_out_superfluous(round);
-      if (left_by_listed() > kLittleExplained && is_worth_a_table() && !options_.watch.interrupted()) {
-        look_for_unlisted();
-        if (unlisted_->best && lacks_nothing(data_, unlisted_->model)) {
-          take_unlisted_if_better();
-        }
-      }
+      unlisted_.replace_names_that_explain_little();
     }
     if (!result_.kept.empty() && !options_.watch.interrupted()) {
       settle();
@@ -87,9 +74,8 @@ class Search {
         compare_with_earlier_rival(rival);
       }
     }
-    if (options_.most_effects > 0 && is_worth_a_table() && !options_.watch.interrupted()) {
-      look_for_unlisted();
-      take_unlisted_if_better();
+    if (options_.most_effects > 0) {
+      unlisted_.finish();
     }
     result_.searched = options_.most_effects > 0;
     result_.interrupted = options_.watch.interrupted();
@@ -97,8 +83,6 @@ class Search {
   }
 
  private:
-  int next_round() const { return result_.trials.empty() ? 1 : result_.trials.back().round + 1; }
-
   /// One round. False if no candidate is supported.
   bool add_effect(int round) {
     const Fitted<Family>& current = result_.explained.model;
@@ -161,61 +145,6 @@ class Search {
     if (model.good()) {
       result_.explained = std::move(model);
     }
-  }
-
-  /// True if more than noise is left, or less by declared parameters that stand in for something, and so much of it that a
-  /// term of unknown law could have the advantage that it needs.
-  bool is_worth_a_table() const {
-    return !reaches_noise(data_, result_.explained) &&
-           (excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise ||
-            !is_within_tolerances(result_.explained.model)) &&
-           least_held_out_ratio(result_.explained, result_.calibrated) < wanted_of_unlisted();
-  }
-
-  /// The share of the calibrated model's held-out error that a term of unknown law has to stay below.
-  double wanted_of_unlisted() const {
-    const double listed = left_by_listed();
-    const bool names_little = !result_.kept.empty() && listed > kLittleExplained;
-    return (names_little ? kAdvantageOverLittle : kUnlistedAdvantage) * listed;
-  }
-
-  /// Held-out error that the listed effects leave of the calibrated model's.
-  double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
-
-  /// Looks for a term of unknown law, at one site, instead of the listed effects: once, since it is looked for beside the
-  /// calibrated model.
-  void look_for_unlisted() {
-    if (!unlisted_) {
-      unlisted_ =
-          search_unlisted(data_, refiner_, result_.calibrated, scales_, options_.threads, options_.watch, next_round());
-      unlisted_trials_ = result_.trials.size();
-      result_.trials.insert(result_.trials.end(), unlisted_->trials.begin(), unlisted_->trials.end());
-    }
-  }
-
-  /// A term of unknown law takes the place of the listed effects where it leaves clearly less on held-out data: listed
-  /// effects that imitate it would be wrong names.
-  void take_unlisted_if_better() {
-    const double listed = left_by_listed();
-    if (!unlisted_->leaves_less_than(wanted_of_unlisted())) {
-      return;
-    }
-    Trial& best = result_.trials[unlisted_trials_ + *unlisted_->best];
-    best.decision = "kept";
-    if (!result_.kept.empty()) {
-      best.reason += fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * listed);
-    }
-    Kept kept{best, {}};
-    for (std::size_t i = 0; i < unlisted_->trials.size(); ++i) {
-      if (i != *unlisted_->best && unlisted_->trials[i].refined) {
-        kept.alternatives.push_back(unlisted_->trials[i]);
-      }
-    }
-    result_.kept = {std::move(kept)};
-    result_.rival.reset();
-    earlier_rivals_.clear();
-    result_.explained = unlisted_->model;
-    is_settled_ = true;
   }
 
   /// What an effect looked like while another was missing may be a local minimum now.
@@ -333,7 +262,7 @@ class Search {
         take(refiner_.settled(result_.explained.model));
         if (result_.kept.empty()) {
           result_.calibrated = result_.explained;
-          unlisted_.reset();
+          unlisted_.forget();
         }
       }
     }
@@ -349,10 +278,9 @@ class Search {
   Scales scales_;
   Refiner<Family> refiner_;
   SearchResult<Family> result_;
-  std::vector<Rival<Family>> earlier_rivals_;       ///< of effects that were kept before the last
-  bool is_settled_ = true;                          ///< what was found was fitted with fine steps
-  std::optional<UnlistedSearch<Family>> unlisted_;  ///< beside the calibrated model, once it was looked for
-  std::size_t unlisted_trials_ = 0;                 ///< where its trials are among all
+  std::vector<Rival<Family>> earlier_rivals_;  ///< of effects that were kept before the last
+  bool is_settled_ = true;                     ///< what was found was fitted with fine steps
+  UnlistedStage<Family> unlisted_;
 };
 
 }  // namespace

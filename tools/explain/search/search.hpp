@@ -5,6 +5,7 @@
 
 #include "tools/explain/experiment/next_experiment.hpp"
 #include "tools/explain/inference/profile.hpp"
+#include "tools/explain/latent/locate.hpp"
 #include "tools/explain/search/screening.hpp"
 #include "tools/explain/terms/assessed.hpp"
 #include "tools/explain/terms/trial.hpp"
@@ -19,9 +20,13 @@ struct SearchResult {
   std::vector<Kept> kept;
   std::vector<Trial> trials;
   std::optional<Rival<Family>> rival;  ///< of an effect that is kept, the last if that has one
+  Located located;                     ///< where what the explained model is still missing acts; no places where nothing is
   Intervals profiles;                  ///< of the explained model's parameters whose error is no parabola
   bool searched = true;                ///< effects were looked for
   bool interrupted = false;
+
+  /// Number of the next round, under which its trials are filed.
+  int next_round() const { return trials.empty() ? 1 : trials.back().round + 1; }
 };
 
 struct SearchOptions {

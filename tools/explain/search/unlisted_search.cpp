@@ -16,11 +16,11 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Sets how a term of unknown law does against the calibrated model, and says so.
+/// Sets how a term of unknown law does against the model that it is tried beside, and says so.
 template <class Family>
-void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<Family>& calibrated) {
-  compare(trial, with, calibrated, with.goodness.fitted);
-  trial.reason = fmt::format("leaves {:.1f} % of the calibrated model's held-out error", 100.0 * trial.held_out_ratio);
+void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<Family>& beside) {
+  compare(trial, with, beside, with.goodness.fitted);
+  trial.reason = fmt::format("leaves {:.1f} % of the held-out error", 100.0 * trial.held_out_ratio);
 }
 
 /// A signal that falls by less than this share of its range where it should rise is flat, as in a dead band.
@@ -49,14 +49,17 @@ bool UnlistedSearch<Family>::leaves_less_than(double share) const {
 }
 
 template <class Family>
-UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner,
-                                       const Assessed<Family>& calibrated, const Scales& scales, unsigned threads,
-                                       const Watch& watch, int round) {
-  const Fitted<Family> around =
-      is_within_tolerances(calibrated.model) ? calibrated.model : with_declared_values(calibrated.model);
+UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& beside,
+                                       const Located& located, const Scales& scales, unsigned threads, const Watch& watch,
+                                       int round) {
+  const Fitted<Family> around = is_within_tolerances(beside.model) ? beside.model : with_declared_values(beside.model);
   const Evaluator<Family> evaluator = refiner.for_screening(around);
   const Screening<Family> screening(evaluator, around, scales, threads);
-  const auto screened = screening.run(unlisted_candidates<Family>(data), "unlisted", watch);
+  std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    return around.base.effects.active[candidate.effect] || !located.allows(candidate.site);
+  });
+  const auto screened = screening.run(candidates, "unlisted", watch);
   const std::size_t wanted = unlisted_finalists(screened);
   UnlistedSearch<Family> result;
   for (const Screened<Family>& s : screened) {
@@ -65,7 +68,7 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
       watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
       Assessed<Family> finalist = refiner.of_screened(s.fitted, around.u);
       if (finalist.good()) {
-        compare_and_say(trial, finalist, calibrated);
+        compare_and_say(trial, finalist, beside);
         if (falls_as_it_rises(finalist.model, s.candidate)) {
           trial.reason += ", but by a signal that falls where it should rise";
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
@@ -80,13 +83,13 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
     Trial& best = result.trials[*result.best];
     Assessed<Family> settled = refiner.settled(result.model.model);
     if (settled.good()) {
-      compare_and_say(best, settled, calibrated);
+      compare_and_say(best, settled, beside);
       result.model = std::move(settled);
     }
     if (is_periodic(best.candidate)) {
       Assessed<Family> common = refiner.settled(with_common_phase(data, result.model.model, best.candidate));
       if (common.good() && criterion_change(common, result.model, result.model.goodness.fitted) <= 0.0) {
-        compare_and_say(best, common, calibrated);
+        compare_and_say(best, common, beside);
         result.model = std::move(common);
       }
     }
@@ -97,7 +100,7 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
 #define HOTFIRE_INSTANTIATE(Family)                                                                                \
   template struct UnlistedSearch<Family>;                                                                          \
   template UnlistedSearch<Family> search_unlisted(const Dataset&, const Refiner<Family>&, const Assessed<Family>&, \
-                                                  const Scales&, unsigned, const Watch&, int);
+                                                  const Located&, const Scales&, unsigned, const Watch&, int);
 
 HOTFIRE_INSTANTIATE(SimplexFamily)
 HOTFIRE_INSTANTIATE(DirectFamily)

@@ -3,28 +3,29 @@
 #include <optional>
 #include <vector>
 
+#include "tools/explain/latent/locate.hpp"
 #include "tools/explain/search/refiner.hpp"
 #include "tools/explain/terms/trial.hpp"
 
 namespace hotfire::explain {
 
-/// What terms of unknown law reach, each alone beside the calibrated model.
+/// What terms of unknown law reach, each alone beside a model.
 template <class Family>
 struct UnlistedSearch {
   std::vector<Trial> trials;        ///< the best in screening first; none is kept yet
   std::optional<std::size_t> best;  ///< with the least held-out error of those that were fitted jointly
   Assessed<Family> model;           ///< with the best
 
-  /// True if the best is supported and leaves less than this share of the calibrated model's held-out error.
+  /// True if the best is supported and leaves less than this share of that model's held-out error.
   bool leaves_less_than(double share) const;
 };
 
-/// Screens every term of unknown law beside the calibrated model and fits the best jointly with everything else. `round` is
-/// what the trials are filed under.
+/// Screens every term of unknown law that `located` allows beside a model and fits the best jointly with everything else.
+/// `round` is what the trials are filed under.
 template <class Family>
-UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner,
-                                       const Assessed<Family>& calibrated, const Scales& scales, unsigned threads,
-                                       const Watch& watch, int round);
+UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& beside,
+                                       const Located& located, const Scales& scales, unsigned threads, const Watch& watch,
+                                       int round);
 
 extern template struct UnlistedSearch<SimplexFamily>;
 extern template struct UnlistedSearch<DirectFamily>;

@@ -1,0 +1,289 @@
+#include "tools/explain/latent/latent_input.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Correlation time of the signal, in time constants of the servo: slower than its transients, faster than a profile.
+constexpr double kCorrelationTime = 8.5;
+/// Deviation of the start from the simulated one, over the scales of the states: a twentieth of what full opening does.
+constexpr double kStartDeviation = 0.05;
+/// Sizes of the signal over its scale that are looked at, as logarithms: from what no sensor sees to all that the plant has.
+constexpr double kSmallest = -16.1;  // ln 1e-7
+constexpr double kLargest = 0.7;     // ln 2
+constexpr double kCoarse = 2.8;      // a grid of seven
+constexpr int kRefinements = 2;
+
+constexpr int kSignal = kFlowStates;
+constexpr int kFilterStates = kFlowStates + 1;
+using FilterMatrix = Eigen::Matrix<double, kFilterStates, kFilterStates>;
+using FilterVector = Eigen::Matrix<double, kFilterStates, 1>;
+using Means = Eigen::Matrix<double, kFilterStates, Eigen::Dynamic>;
+
+/// Continuous states that channels read.
+constexpr std::array<int, 3> kReadState{model::Simplex<double>::kPiston, model::Simplex<double>::kAngle,
+                                        model::Simplex<double>::kPressure};
+
+/// One scalar measurement of a row and what the filter made of it.
+struct Update {
+  FilterVector row;   ///< of the observation matrix
+  FilterVector gain;  ///< K
+  double innovation = 0.0;
+  double variance = 1.0;
+};
+
+/// What the smoother needs of a row.
+struct Step {
+  FilterVector mean;
+  FilterMatrix covariance;
+  std::vector<Update> updates;
+};
+
+class Filter {
+ public:
+  Filter(const LatentProblem& problem, const std::optional<LatentPlace>& place, double deviation)
+      : problem_(problem), place_(place), variance_(deviation * deviation) {}
+
+  /// Observation of channel c over its noise.
+  FilterVector observation(std::size_t channel) const {
+    FilterVector row = FilterVector::Zero();
+    const double noise = problem_.data.noise[channel];
+    row(kReadState[channel]) = problem_.scales.state(kReadState[channel]) / noise;
+    if (place_ && !place_->port && place_->channel == channel) {
+      row(kSignal) = problem_.scales.reading[channel] / noise;
+    }
+    return row;
+  }
+
+  double memory(const Experiment& experiment) const {
+    return std::exp(-experiment.period / (kCorrelationTime * problem_.scales.time));
+  }
+
+  FilterMatrix start() const {
+    FilterMatrix covariance = FilterMatrix::Zero();
+    covariance.diagonal().head<kFlowStates>().setConstant(kStartDeviation * kStartDeviation);
+    covariance(kSignal, kSignal) = variance_;
+    return covariance;
+  }
+
+  FilterMatrix transition(const RowFlow& flow, double memory) const {
+    FilterMatrix matrix = FilterMatrix::Zero();
+    matrix.topLeftCorner<kFlowStates, kFlowStates>() = flow.transition;
+    if (place_ && place_->port) {
+      matrix.topRightCorner<kFlowStates, 1>() = flow.response.col(static_cast<int>(*place_->port));
+    }
+    matrix(kSignal, kSignal) = memory;
+    return matrix;
+  }
+
+  /// Least squares of the innovations on the parameters, with the tolerances as prior: the log likelihood.
+  double likelihood(Eigen::VectorXd& move) const {
+    const Eigen::Index parameters = problem_.expected.size();
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(parameters, parameters);
+    Eigen::VectorXd right = problem_.expected;
+    double square = problem_.expected.squaredNorm();
+    double logarithms = 0.0;
+    double count = 0.0;
+    Eigen::RowVectorXd innovation(parameters + 1);
+    for (std::size_t e = 0; e < problem_.data.experiments.size(); ++e) {
+      const Experiment& experiment = problem_.data.experiments[e];
+      const double kept = memory(experiment);
+      Means means = Means::Zero(kFilterStates, parameters + 1);
+      FilterMatrix covariance = start();
+      for (std::size_t row = 0; row < experiment.rows(); ++row) {
+        for (std::size_t c = 0; c < kReadState.size(); ++c) {
+          const double left = problem_.left[e](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
+          if (std::isnan(left)) {
+            continue;
+          }
+          const FilterVector seen = observation(c);
+          const FilterVector spread = covariance * seen;
+          const double variance = 1.0 + seen.dot(spread);
+          innovation(0) = left;
+          innovation.tail(parameters) = problem_.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).transpose();
+          innovation -= seen.transpose() * means;
+          means.noalias() += (spread / variance) * innovation;
+          covariance.noalias() -= spread * spread.transpose() / variance;
+          const auto slopes = innovation.tail(parameters).transpose();
+          normal.noalias() += slopes * slopes.transpose() / variance;
+          right.noalias() += slopes * (innovation(0) / variance);
+          square += innovation(0) * innovation(0) / variance;
+          logarithms += std::log(variance);
+          count += 1.0;
+        }
+        if (row + 1 < experiment.rows()) {
+          const FilterMatrix moves = transition(problem_.flows[e][row], kept);
+          means = moves * means;
+          const FilterMatrix spread = moves * covariance;
+          covariance.noalias() = spread * moves.transpose();
+          covariance(kSignal, kSignal) += variance_ * (1.0 - kept * kept);
+          covariance = 0.5 * (covariance + covariance.transpose()).eval();
+        }
+      }
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(normal);
+    move = factor.solve(right);
+    const double determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+    return -0.5 * (square - right.dot(move) + logarithms + determinant + count * std::log(2.0 * std::numbers::pi));
+  }
+
+  /// One experiment with the parameters moved, forward.
+  std::vector<Step> forward(std::size_t e, const Eigen::VectorXd& move) const {
+    const Experiment& experiment = problem_.data.experiments[e];
+    const double kept = memory(experiment);
+    std::vector<Step> steps(experiment.rows());
+    FilterVector mean = FilterVector::Zero();
+    FilterMatrix covariance = start();
+    for (std::size_t row = 0; row < experiment.rows(); ++row) {
+      steps[row].mean = mean;
+      steps[row].covariance = covariance;
+      for (std::size_t c = 0; c < kReadState.size(); ++c) {
+        const double left = problem_.left[e](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
+        if (std::isnan(left)) {
+          continue;
+        }
+        Update update;
+        update.row = observation(c);
+        const FilterVector spread = covariance * update.row;
+        update.variance = 1.0 + update.row.dot(spread);
+        update.gain = spread / update.variance;
+        update.innovation =
+            left - problem_.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).dot(move) - update.row.dot(mean);
+        mean += update.gain * update.innovation;
+        covariance.noalias() -= spread * update.gain.transpose();
+        steps[row].updates.push_back(update);
+      }
+      if (row + 1 < experiment.rows()) {
+        const FilterMatrix moves = transition(problem_.flows[e][row], kept);
+        mean = moves * mean;
+        const FilterMatrix spread = moves * covariance;
+        covariance.noalias() = spread * moves.transpose();
+        covariance(kSignal, kSignal) += variance_ * (1.0 - kept * kept);
+        covariance = 0.5 * (covariance + covariance.transpose()).eval();
+      }
+    }
+    return steps;
+  }
+
+ private:
+  const LatentProblem& problem_;
+  const std::optional<LatentPlace> place_;
+  double variance_;
+};
+
+}  // namespace
+
+LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fitted<SimplexFamily>& around,
+                             unsigned threads) {
+  const Dataset& data = evaluator.data();
+  const auto parameters = Evaluator<SimplexFamily>::with_values(around.base, around.free, around.u);
+  LatentProblem problem{data, flow_scales(parameters), {}, {}, {}, {}};
+  std::vector<std::size_t> declared;
+  for (std::size_t k = 0; k < around.free.size(); ++k) {
+    if (around.free[k].is_declared()) {
+      declared.push_back(k);
+    }
+  }
+  Prediction prediction;
+  Eigen::MatrixXd jacobian;
+  if (!evaluator.predict(around.base, around.free, around.u, threads, prediction) ||
+      !evaluator.differentiate(around.base, around.free, around.u, declared, threads, jacobian)) {
+    return problem;
+  }
+  const auto count = static_cast<Eigen::Index>(declared.size());
+  problem.expected.resize(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    problem.expected(k) = -around.u[declared[static_cast<std::size_t>(k)]];
+  }
+  const Eigen::VectorXd residual = evaluator.residuals(prediction);
+  for (const Experiment& experiment : data.experiments) {
+    const auto rows = static_cast<Eigen::Index>(experiment.rows());
+    problem.left.push_back(Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(kReadState.size()),
+                                                     std::numeric_limits<double>::quiet_NaN()));
+    problem.sensitivity.emplace_back(kReadState.size(), Eigen::MatrixXd::Zero(count, rows));
+  }
+  for (const Stretch& s : evaluator.stretches()) {
+    for (std::size_t row = s.first; row < s.last; ++row) {
+      const auto i = static_cast<Eigen::Index>(s.offset + row - s.first);
+      const auto at = static_cast<Eigen::Index>(row);
+      problem.left[s.experiment](at, static_cast<Eigen::Index>(s.channel)) = -residual(i);
+      problem.sensitivity[s.experiment][s.channel].col(at) = jacobian.row(i).transpose();
+    }
+  }
+  problem.flows = linear_flow(data, parameters, problem.scales, threads);
+  return problem;
+}
+
+double likelihood_without(const LatentProblem& problem) {
+  Eigen::VectorXd move;
+  return Filter(problem, std::nullopt, 0.0).likelihood(move);
+}
+
+LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& place) {
+  LatentInput best;
+  double at = 0.0;
+  const auto look = [&](double logarithm) {
+    Eigen::VectorXd move;
+    const double likelihood = Filter(problem, place, std::exp(logarithm)).likelihood(move);
+    if (best.deviation == 0.0 || likelihood > best.log_likelihood) {
+      best = {likelihood, std::exp(logarithm), move, {}, {}};
+      at = logarithm;
+    }
+  };
+  for (double logarithm = kSmallest; logarithm < kLargest + 0.5; logarithm += kCoarse) {
+    look(logarithm);
+  }
+  double step = kCoarse;
+  for (int i = 0; i < kRefinements; ++i) {
+    step *= 0.4;
+    const double center = at;
+    look(center - step);
+    look(center + step);
+  }
+  return best;
+}
+
+void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput& input) {
+  const Filter filter(problem, place, input.deviation);
+  std::vector<double> square(kReadState.size(), 0.0);
+  std::vector<double> rows(kReadState.size(), 0.0);
+  for (std::size_t e = 0; e < problem.data.experiments.size(); ++e) {
+    const Experiment& experiment = problem.data.experiments[e];
+    const double kept = filter.memory(experiment);
+    const std::vector<Step> steps = filter.forward(e, input.move);
+    Eigen::VectorXd signal(static_cast<Eigen::Index>(experiment.rows()));
+    FilterVector adjoint = FilterVector::Zero();
+    for (std::size_t row = experiment.rows(); row-- > 0;) {
+      const Step& step = steps[row];
+      if (row + 1 < experiment.rows()) {
+        adjoint = filter.transition(problem.flows[e][row], kept).transpose() * adjoint;
+      }
+      for (std::size_t i = step.updates.size(); i-- > 0;) {
+        const Update& update = step.updates[i];
+        adjoint -= update.row * (update.innovation / update.variance + update.gain.dot(adjoint));
+      }
+      const FilterVector smoothed = step.mean - step.covariance * adjoint;
+      signal(static_cast<Eigen::Index>(row)) = smoothed(kSignal);
+      for (std::size_t c = 0; c < kReadState.size(); ++c) {
+        const double left = problem.left[e](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
+        if (!std::isnan(left)) {
+          const double rest = left - problem.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).dot(input.move) -
+                              filter.observation(c).dot(smoothed);
+          square[c] += rest * rest;
+          rows[c] += 1.0;
+        }
+      }
+    }
+    input.signal.push_back(std::move(signal));
+  }
+  for (std::size_t c = 0; c < square.size(); ++c) {
+    input.leaves.push_back(rows[c] > 0.0 ? square[c] / rows[c] : 0.0);
+  }
+}
+
+}  // namespace hotfire::explain

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "tools/explain/fit/fit.hpp"
+#include "tools/explain/latent/linear_flow.hpp"
+
+namespace hotfire::explain {
+
+/// Where an unknown signal acts: at a port of the plant, or added to what a sensor reads.
+struct LatentPlace {
+  std::optional<Port> port;
+  std::size_t channel = 0;  ///< of the sensor, where it is at no port
+};
+
+/// What is known before the signal is: the plant's flow, what the records leave, and how declared parameters move it.
+struct LatentProblem {
+  const Dataset& data;
+  FlowScales scales;
+  std::vector<std::vector<RowFlow>> flows;                ///< by experiment and row
+  std::vector<Eigen::MatrixXd> left;                      ///< by experiment: measured minus predicted over noise, a column a
+                                                          ///< channel; NaN where a row is not fitted
+  std::vector<std::vector<Eigen::MatrixXd>> sensitivity;  ///< by experiment and channel: a row a parameter
+  Eigen::VectorXd expected;                               ///< prior mean of the parameters' move, in tolerances
+};
+
+/// The problem about a fitted model. Empty flows if the model could not be simulated.
+LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fitted<SimplexFamily>& around,
+                             unsigned threads);
+
+/// An unknown signal w(t) at one place, as an Ornstein-Uhlenbeck process.
+struct LatentInput {
+  double log_likelihood = 0.0;  ///< of the records, parameters and signal integrated out
+  double deviation = 0.0;       ///< stationary rms of the signal over its scale, the most likely one
+  Eigen::VectorXd move;         ///< of the declared parameters [tolerances]
+  std::vector<double>
+      leaves;  ///< by channel: mean square over noise of what the smoothed signal leaves; filled by `smoothed`
+  std::vector<Eigen::VectorXd> signal;  ///< by experiment, a value a row, over its scale; filled by `smoothed`
+};
+
+/// Log likelihood of the records without any unknown signal.
+double likelihood_without(const LatentProblem& problem);
+
+/// The most likely size of a signal at `place`.
+///
+/// w' = -w / T + white noise, T a few time constants of the servo. The plant's deviation, linear along its simulation, and w
+/// are the state of a Kalman filter; records reset them. Declared parameters are constants over all records: the filter runs
+/// on their sensitivities beside the residuals, and their move follows by least squares on the innovations, with their
+/// tolerances as prior [de Jong 1991, The diffuse Kalman filter, Annals of Statistics 19].
+LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& place);
+
+/// The same with signal and what is left, by a fixed-interval smoother [Bryson and Frazier 1963].
+void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput& input);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,115 @@
+#include "tools/explain/latent/linear_flow.hpp"
+
+#include <ceres/jet.h>
+
+#include <atomic>
+#include <memory>
+
+#include "model/step_size.hpp"
+#include "tools/explain/fit/experiment_run.hpp"
+#include "tools/explain/fit/parallel.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// A lane for every state and every port.
+using FlowDual = ceres::Jet<double, kFlowStates + kPorts>;
+using PlainPlant = model::Simplex<double>;
+using DualPlant = model::Simplex<FlowDual>;
+
+/// Inputs of the model at the ports, in their order.
+constexpr std::array kPortInput{DualPlant::kValveCommand, DualPlant::kFlow, DualPlant::kPistonForce, DualPlant::kSpringForce,
+                                DualPlant::kEngineTorque};
+
+/// The plant with an input of size zero at every port, of which it carries the derivative.
+class PortedPlant : public DualPlant {
+ public:
+  PortedPlant(const Parameters& parameters, double h, const FlowScales& scales) : DualPlant(parameters, h) {
+    for (int port = 0; port < kPorts; ++port) {
+      for (int i = 0; i < kFlowStates; ++i) {
+        response_(i, port) = input_response()(i, kPortInput[static_cast<std::size_t>(port)]).a * scales.input(port);
+      }
+    }
+  }
+
+  template <class... Around>
+  void step(State& state, const FlowDual& command, const Around&... around) const noexcept {
+    DualPlant::step(state, command, around...);
+    for (int i = 0; i < kFlowStates; ++i) {
+      state.y(i).v.template tail<kPorts>() += response_.row(i).transpose();
+    }
+  }
+
+ private:
+  Eigen::Matrix<double, kFlowStates, kPorts> response_;
+};
+
+/// Reads the flow of the row that ends off the state, and starts that of the next.
+RowFlow take_flow(DualPlant::State& state, const FlowScales& scales) {
+  RowFlow flow;
+  for (int i = 0; i < kFlowStates; ++i) {
+    for (int j = 0; j < kFlowStates; ++j) {
+      flow.transition(i, j) = state.y(i).v(j) / scales.state(i);
+    }
+    for (int port = 0; port < kPorts; ++port) {
+      flow.response(i, port) = state.y(i).v(kFlowStates + port) / scales.state(i);
+    }
+    state.y(i).v.setZero();
+    state.y(i).v(i) = scales.state(i);
+  }
+  for (int i = 0; i < state.inputs.size(); ++i) {
+    state.inputs(i).v.setZero();
+  }
+  state.spring_force.v.setZero();
+  state.built_up.v.setZero();
+  return flow;
+}
+
+}  // namespace
+
+FlowScales flow_scales(const PlainPlant::Parameters& parameters) {
+  const auto& valve = parameters.servovalve;
+  const auto& actuator = parameters.actuator;
+  const double speed = valve.rated_flow / actuator.piston_area;
+  const double stroke = 1.0 / valve.position_gain;
+  const double force = actuator.piston_area * actuator.supply_pressure;
+  FlowScales scales;
+  scales.time = stroke / speed;
+  scales.state << 1.0, valve.natural_frequency, actuator.supply_pressure, actuator.supply_pressure, stroke, speed,
+      stroke / actuator.moment_arm, speed / actuator.moment_arm;
+  scales.input << 1.0, valve.rated_flow, force, force, force * actuator.moment_arm;
+  scales.reading = {stroke, stroke / actuator.moment_arm, actuator.supply_pressure};
+  return scales;
+}
+
+std::vector<std::vector<RowFlow>> linear_flow(const Dataset& data, const PlainPlant::Parameters& parameters,
+                                              const FlowScales& scales, unsigned threads) {
+  std::vector<std::vector<RowFlow>> flows(data.experiments.size());
+  std::atomic<bool> finite{true};
+  parallel_for(data.experiments.size(), threads, [&](std::size_t e) {
+    const Experiment& experiment = data.experiments[e];
+    const int fine = model::steps_per_period<PlainPlant>(parameters, experiment.period);
+    const int steps = (fine + 1) / 2;
+    const PortedPlant plant(with_scalar<DualPlant::Parameters>(parameters), experiment.period / steps, scales);
+    const auto start = start_of<FlowDual>(data, e, {}, [](std::size_t) { return FlowDual(0.0); });
+    auto state = std::make_unique<DualPlant::State>(initial_state(plant, data, experiment, start));
+    flows[e].reserve(experiment.rows());
+    const auto sink = [&](std::size_t row, const auto&) {
+      const RowFlow flow = take_flow(*state, scales);
+      if (row > 0) {
+        flows[e].push_back(flow);
+      }
+      finite = finite && flow.transition.allFinite() && flow.response.allFinite();
+    };
+    if (!run_experiment(plant, data, experiment, *state, steps, sink)) {
+      finite = false;
+    }
+  });
+  if (!finite) {
+    flows.clear();
+  }
+  return flows;
+}
+
+}  // namespace hotfire::explain

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "tools/explain/fit/evaluator.hpp"
+
+namespace hotfire::explain {
+
+/// Continuous states of a hydraulic axis, in the order of model::Axis::Index.
+inline constexpr int kFlowStates = 8;
+/// Places at which something may act on them that no combination of the others replaces: torque motor, oil, piston, load
+/// spring and engine.
+inline constexpr int kPorts = 5;
+enum class Port { torque_motor, oil, piston, spring, engine };
+
+/// From one row of a record to the next, along a simulation: deviation+ = transition deviation + response input, with the
+/// input of every port held over the row. Both without unit: states and inputs over `FlowScales`.
+struct RowFlow {
+  Eigen::Matrix<double, kFlowStates, kFlowStates> transition;
+  Eigen::Matrix<double, kFlowStates, kPorts> response;
+};
+
+/// Sizes of states and inputs, all from the declared model: supply pressure, full flow, and what full opening does.
+struct FlowScales {
+  Eigen::Matrix<double, kFlowStates, 1> state;
+  Eigen::Matrix<double, kPorts, 1> input;
+  std::array<double, 3> reading;  ///< by channel
+  double time = 0.0;              ///< time constant of the position servo [s]
+};
+
+FlowScales flow_scales(const model::Simplex<double>::Parameters& parameters);
+
+/// The flow of every experiment along its simulation under `parameters`, by dual numbers; what effects remember is held at
+/// what it is there. Empty if a state did not stay finite.
+std::vector<std::vector<RowFlow>> linear_flow(const Dataset& data, const model::Simplex<double>::Parameters& parameters,
+                                              const FlowScales& scales, unsigned threads);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/explain/latent/latent_input.hpp"
+
+namespace hotfire::explain {
+
+/// A place where an unknown signal may act, and what it explains there. Its sites cannot be told apart by any signal: a law
+/// decides between them.
+struct Place {
+  std::vector<std::string> sites;  ///< "load_spring", "structure"
+  double gain = 0.0;               ///< log likelihood with the most likely signal less that without any
+  std::vector<double> leaves;      ///< by channel: mean square over noise of what the signal leaves; of likely places only
+  bool is_likely = false;          ///< no other place explains clearly more
+};
+
+/// Where the term acts that a model is missing.
+struct Located {
+  std::vector<Place> places;  ///< the best first; empty where nothing is missing or the model could not be simulated
+  bool is_single = false;     ///< one signal at a likely place leaves noise alone
+
+  /// False if a term at `site` cannot be what is missing.
+  bool allows(const std::string& site) const;
+  /// The sites of all likely places.
+  std::vector<std::string> likely_sites() const;
+};
+
+/// Tries an unknown signal at every place beside a fitted model. It knows no law: which place explains most is told by the
+/// likelihood of the records alone.
+Located locate(const Evaluator<SimplexFamily>& evaluator, const Fitted<SimplexFamily>& around, unsigned threads);
+
+}  // namespace hotfire::explain

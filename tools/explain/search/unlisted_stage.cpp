@@ -1,0 +1,224 @@
+#include "tools/explain/search/unlisted_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/terms/unlisted.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// A term of unknown law has to stay below this share of the error that it is to explain: it has more freedom than a law.
+constexpr double kUnlistedAdvantage = 0.7;
+/// Names that leave more than this share of the calibrated model's held-out error explain little.
+constexpr double kLittleExplained = 0.5;
+/// ... and give way to a term of unknown law that is only a little better.
+constexpr double kAdvantageOverLittle = 0.9;
+/// A model that leaves less than this many times the noise is near enough to it for its names to stand.
+constexpr double kNearNoise = 3.0;
+/// A name beside a term of unknown law has to carry its weight: without it the held-out error grows by this factor.
+constexpr double kWeightOfName = 1.3;
+
+}  // namespace
+
+template <class Family>
+void UnlistedStage<Family>::replace_names_that_explain_little() {
+  if (left_by_listed() <= kLittleExplained || !is_worth_a_table() || options_.watch.interrupted()) {
+    return;
+  }
+  look_instead();
+  if (instead_->best && lacks_nothing(data_, instead_->model)) {
+    take_instead_if_better();
+  }
+}
+
+template <class Family>
+void UnlistedStage<Family>::finish() {
+  if (is_worth_a_table() && !options_.watch.interrupted()) {
+    refuse_misplaced_names();
+    look_instead();
+    take_instead_if_better();
+    add_beside();
+    drop_light_names();
+    drop_names_that_explain_little();
+  }
+  if (!options_.watch.interrupted() && excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise) {
+    result_.located = result_.kept.empty() ? located() : locate_about(result_.explained);
+  }
+}
+
+/// True if more than noise is left, or less by declared parameters that stand in for something, and so much of it that a
+/// term of unknown law could have the advantage that it needs.
+template <class Family>
+bool UnlistedStage<Family>::is_worth_a_table() const {
+  return !reaches_noise(data_, result_.explained) &&
+         (excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise ||
+          !is_within_tolerances(result_.explained.model)) &&
+         least_held_out_ratio(result_.explained, result_.calibrated) < wanted();
+}
+
+/// The share of the calibrated model's held-out error that a term of unknown law has to stay below.
+template <class Family>
+double UnlistedStage<Family>::wanted() const {
+  const double listed = left_by_listed();
+  const bool names_little = !result_.kept.empty() && listed > kLittleExplained;
+  return (names_little ? kAdvantageOverLittle : kUnlistedAdvantage) * listed;
+}
+
+template <class Family>
+Located UnlistedStage<Family>::locate_about(const Assessed<Family>& model) const {
+  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    options_.watch.progress("locating what is missing");
+    return locate(coarse_, is_within_tolerances(model.model) ? model.model : with_declared_values(model.model),
+                  options_.threads);
+  } else {
+    return {};
+  }
+}
+
+template <class Family>
+const Located& UnlistedStage<Family>::located() {
+  if (!located_) {
+    located_ = locate_about(result_.calibrated);
+  }
+  return *located_;
+}
+
+template <class Family>
+void UnlistedStage<Family>::take_out_names(const std::string& why) {
+  const int round = result_.next_round();
+  for (const Kept& kept : result_.kept) {
+    Trial trial{round, kept.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", why};
+    compare(trial, result_.calibrated, result_.explained, result_.calibrated.goodness.fitted);
+    result_.trials.push_back(std::move(trial));
+  }
+  result_.kept.clear();
+  result_.rival.reset();
+  result_.explained = result_.calibrated;
+}
+
+/// One signal at a likely place explains all that is missing: names elsewhere imitate it.
+template <class Family>
+void UnlistedStage<Family>::refuse_misplaced_names() {
+  const bool misplaced = std::ranges::any_of(
+      result_.kept, [&](const Kept& kept) { return located().is_single && !located().allows(kept.trial.candidate.site); });
+  if (misplaced) {
+    take_out_names(fmt::format("one unknown signal at {} explains the records down to the noise",
+                               fmt::join(located().likely_sites(), " or ")));
+  }
+}
+
+/// Looks for a term of unknown law instead of the listed effects: once, since it is looked for beside the calibrated model.
+template <class Family>
+void UnlistedStage<Family>::look_instead() {
+  if (!instead_) {
+    instead_ = search_unlisted(data_, refiner_, result_.calibrated, located(), scales_, options_.threads, options_.watch,
+                               result_.next_round());
+    instead_trials_ = result_.trials.size();
+    result_.trials.insert(result_.trials.end(), instead_->trials.begin(), instead_->trials.end());
+  }
+}
+
+/// A term of unknown law takes the place of the listed effects where it leaves clearly less on held-out data: listed effects
+/// that imitate it would be wrong names.
+template <class Family>
+void UnlistedStage<Family>::take_instead_if_better() {
+  const double listed = left_by_listed();
+  if (!instead_->leaves_less_than(wanted())) {
+    return;
+  }
+  if (!result_.kept.empty()) {
+    result_.trials[instead_trials_ + *instead_->best].reason +=
+        fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * listed);
+  }
+  result_.kept.clear();
+  result_.rival.reset();
+  keep(*instead_, instead_trials_);
+}
+
+template <class Family>
+void UnlistedStage<Family>::keep(const UnlistedSearch<Family>& found, std::size_t first_trial) {
+  Trial& best = result_.trials[first_trial + *found.best];
+  best.decision = "kept";
+  Kept kept{best, {}};
+  for (std::size_t i = 0; i < found.trials.size(); ++i) {
+    if (i != *found.best && found.trials[i].refined) {
+      kept.alternatives.push_back(found.trials[i]);
+    }
+  }
+  result_.kept.push_back(std::move(kept));
+  result_.explained = found.model;
+}
+
+/// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
+template <class Family>
+void UnlistedStage<Family>::add_beside() {
+  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    while (!result_.kept.empty() && static_cast<int>(result_.kept.size()) < options_.most_effects &&
+           excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise && !options_.watch.interrupted()) {
+      const UnlistedSearch<Family> beside =
+          search_unlisted(data_, refiner_, result_.explained, locate_about(result_.explained), scales_, options_.threads,
+                          options_.watch, result_.next_round());
+      const std::size_t first = result_.trials.size();
+      result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
+      if (!beside.leaves_less_than(kUnlistedAdvantage)) {
+        return;
+      }
+      result_.rival.reset();
+      keep(beside, first);
+    }
+  }
+}
+
+/// A name beside a term of unknown law that hardly leaves more without it is the term's.
+template <class Family>
+void UnlistedStage<Family>::drop_light_names() {
+  const auto unlisted = [](const Kept& kept) { return is_unlisted<Family>(kept.trial.candidate); };
+  if (std::ranges::none_of(result_.kept, unlisted)) {
+    return;
+  }
+  for (std::size_t i = result_.kept.size(); i-- > 0;) {
+    if (unlisted(result_.kept[i]) || options_.watch.interrupted()) {
+      continue;
+    }
+    Trial trial{result_.next_round(),
+                result_.kept[i].trial.candidate,
+                true,
+                0.0,
+                1.0,
+                0.0,
+                "taken out",
+                "carries little beside a term of unknown law"};
+    Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);
+    if (!rest.good()) {
+      continue;
+    }
+    compare(trial, rest, result_.explained, rest.goodness.fitted);
+    if (trial.held_out_ratio < kWeightOfName) {
+      result_.trials.push_back(std::move(trial));
+      result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
+      Assessed<Family> settled = refiner_.settled(rest.model);
+      result_.explained = settled.good() ? std::move(settled) : std::move(rest);
+    }
+  }
+}
+
+/// Names that leave most of the error, and far more than noise, are not what is missing: saying less is no error.
+template <class Family>
+void UnlistedStage<Family>::drop_names_that_explain_little() {
+  const bool names_alone = !result_.kept.empty() && std::ranges::none_of(result_.kept, [](const Kept& kept) {
+    return is_unlisted<Family>(kept.trial.candidate);
+  });
+  if (names_alone && left_by_listed() > kLittleExplained &&
+      excess_over_noise(data_, result_.explained.prediction) > kNearNoise) {
+    take_out_names(fmt::format("leaves {:.0f} % of the held-out error, far above the noise", 100.0 * left_by_listed()));
+  }
+}
+
+template class UnlistedStage<SimplexFamily>;
+template class UnlistedStage<DirectFamily>;
+
+}  // namespace hotfire::explain

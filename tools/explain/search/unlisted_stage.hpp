@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+
+#include "tools/explain/search/search.hpp"
+#include "tools/explain/search/unlisted_search.hpp"
+
+namespace hotfire::explain {
+
+/// The part of a search that knows no names: where the missing term acts, terms of unknown law there, instead of listed
+/// effects or beside them, and which names the records do not bear.
+template <class Family>
+class UnlistedStage {
+ public:
+  /// Works on `result`; all are to outlive it.
+  UnlistedStage(const Dataset& data, const Refiner<Family>& refiner, const Evaluator<Family>& coarse, const Scales& scales,
+                const SearchOptions& options, SearchResult<Family>& result)
+      : data_(data), refiner_(refiner), coarse_(coarse), scales_(scales), options_(options), result_(result) {}
+
+  /// Ends a search early: where the names so far explain little and one term of unknown law lacks nothing, it takes their
+  /// place.
+  void replace_names_that_explain_little();
+
+  /// The end of a search: names that the located place refutes are taken out; a term of unknown law takes the place of the
+  /// names or comes beside them where it leaves clearly less; names without weight are dropped; what is left is located.
+  void finish();
+
+  /// The calibrated model is another now.
+  void forget() {
+    located_.reset();
+    instead_.reset();
+  }
+
+ private:
+  bool is_worth_a_table() const;
+  double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
+  double wanted() const;
+  Located locate_about(const Assessed<Family>& model) const;
+  const Located& located();
+  void take_out_names(const std::string& why);
+  void refuse_misplaced_names();
+  void look_instead();
+  void take_instead_if_better();
+  void add_beside();
+  void drop_light_names();
+  void drop_names_that_explain_little();
+  void keep(const UnlistedSearch<Family>& found, std::size_t first_trial);
+
+  const Dataset& data_;
+  const Refiner<Family>& refiner_;
+  const Evaluator<Family>& coarse_;
+  const Scales& scales_;
+  const SearchOptions& options_;
+  SearchResult<Family>& result_;
+  std::optional<Located> located_;                 ///< about the calibrated model, once it was asked for
+  std::optional<UnlistedSearch<Family>> instead_;  ///< beside the calibrated model, once it was looked for
+  std::size_t instead_trials_ = 0;                 ///< where its trials are among all
+};
+
+extern template class UnlistedStage<SimplexFamily>;
+extern template class UnlistedStage<DirectFamily>;
+
+}  // namespace hotfire::explain
