@@ -1,6 +1,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -290,6 +291,34 @@ TEST(Command, explain_refuses_a_rigs_limits_where_it_looks_for_no_experiment_and
   LONGS_EQUAL(2, status_of(common + "--model " + model() + " --exclude other.csv@0-1"));
   expect_message(err, {"--exclude other.csv", "r.csv"});
   CHECK(!std::filesystem::exists(scratch.path("found")));
+}
+
+TEST(Command, explain_stops_looking_after_its_seconds_and_reports_the_best_by_then) {
+  // A mass that meets friction which its model does not have: a search of several seconds.
+  const std::string rig = scratch
+                              .write("mass.toml",
+                                     "schema = 1\nname = \"mass\"\ntopology = \"direct\"\n[mass]\ninertia = 1\ndamping = 1\n"
+                                     "stiffness = 100\n[tolerance]\nmass.damping = 0.5\n")
+                              .string();
+  std::string rows = "time[s],force[N],position[m]\n";
+  double position = 0.0;
+  double velocity = 0.0;
+  for (int row = 0; row < 60000; ++row) {
+    const double time = 1e-3 * row;
+    const double force = 20.0 * std::sin(3.0 * time) + 10.0 * std::sin(7.7 * time);
+    rows += std::to_string(time) + "," + std::to_string(force) + "," +
+            std::to_string(position + 1e-4 * std::sin(1e4 * row)) + "\n";
+    const double friction = 4.0 * std::tanh(velocity / 1e-3);
+    velocity += 1e-3 * (force - velocity - 100.0 * position - 300.0 * position * position * position - friction);
+    position += 1e-3 * velocity;
+  }
+  const std::string record = scratch.write("mass.csv", rows).string();
+  const std::string found = scratch.path("found").string();
+  LONGS_EQUAL(0, status_of("explain --json --seconds 1 --threads 1 --model " + rig + " --out " + found + " " + record));
+  expect_message(out, {"ended early", "--seconds"});
+  CHECK(std::filesystem::exists(scratch.path("found") / "explained.toml"));
+  LONGS_EQUAL(2, status_of("explain --seconds 0 --model " + rig + " --out " + found + " " + record));
+  expect_message(err, {"--seconds"});
 }
 
 }  // namespace hotfire

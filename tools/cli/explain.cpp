@@ -36,6 +36,7 @@ struct ExplainArguments {
   std::vector<std::string> records;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   int most_effects = 4;
+  std::optional<double> seconds;
   std::vector<std::string> excluded;
   std::vector<std::string> held_out;
   std::string lab;
@@ -220,7 +221,9 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   options.threads = arguments.threads;
   options.most_effects = arguments.most_effects;
   options.watch.progress = [&](const std::string& what) { progress.say(what); };
-  options.watch.interrupted = [] { return interrupted != 0; };
+  options.watch.interrupted = [&] {
+    return interrupted != 0 || (arguments.seconds && progress.seconds() > *arguments.seconds);
+  };
   Outcome outcome = outcome_of(model, records, options);
   outcome.report["hotfire"] = HOTFIRE_VERSION;
   outcome.report["model_sha256"] = model_digest;
@@ -262,6 +265,10 @@ void add_explain(CLI::App& program, const std::string& typed) {
   command->add_option("--most-effects", arguments->most_effects, "most effects to add; 0: calibrate only")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
+  command
+      ->add_option("--seconds", arguments->seconds,
+                   "time for the search [s]: then the best so far is reported, with what was not looked at")
+      ->check(CLI::Range(1.0, 1e6));
   command
       ->add_option("--exclude", arguments->excluded,
                    "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out; values and rows may lack there")

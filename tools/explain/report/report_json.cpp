@@ -180,7 +180,7 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
                  const std::vector<Estimate>& estimated) {
   json warnings = json::array();
   if (found.interrupted) {
-    warnings.push_back("The search was interrupted: what is reported is what was known by then.");
+    warnings.push_back("The search ended early, by Ctrl-C or --seconds: the report has what was known by then.");
   }
   warn_of_rows(data, warnings);
   warn_of_channels(found.kept, warnings);

@@ -88,7 +88,7 @@ class Search {
     const Fitted<Family>& current = result_.explained.model;
     std::vector<Candidate> candidates = all_candidates<Family>(data_);
     std::erase_if(candidates, [&](const Candidate& c) {
-      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c);
+      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c);
     });
     const Evaluator<Family> evaluator = refiner_.for_screening(current);
     const Screening<Family> screening(evaluator, current, scales_, options_.threads);
@@ -108,6 +108,13 @@ class Search {
     is_settled_ = found.settled;
     polish_earlier(round);
     return true;
+  }
+
+  /// True for an effect that was taken out twice: adding it again would go round in a circle.
+  bool goes_in_and_out(const Candidate& candidate) const {
+    return std::ranges::count_if(result_.trials, [&](const Trial& trial) {
+             return trial.decision == "taken out" && trial.candidate.effect == candidate.effect;
+           }) >= 2;
   }
 
   /// The declared model within its tolerances: fast records are dear, so the way there is made on thinned ones.
