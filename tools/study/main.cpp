@@ -11,12 +11,12 @@
 #include <stdexcept>
 
 #include "tools/files/text/error.hpp"
-#include "tools/study/candidate_fit.hpp"
-#include "tools/study/case.hpp"
-#include "tools/study/cost.hpp"
-#include "tools/study/judge.hpp"
-#include "tools/study/orders.hpp"
-#include "tools/study/tally.hpp"
+#include "tools/study/cases/case.hpp"
+#include "tools/study/cases/orders.hpp"
+#include "tools/study/tally/candidate_fit.hpp"
+#include "tools/study/tally/cost.hpp"
+#include "tools/study/tally/judge.hpp"
+#include "tools/study/tally/tally.hpp"
 
 namespace hotfire::study {
 namespace {

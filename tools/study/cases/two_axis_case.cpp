@@ -4,7 +4,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "tools/study/case_parts.hpp"
+#include "tools/study/cases/case_parts.hpp"
 
 namespace hotfire::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/study/reference_axis.hpp"
+#include "tools/study/reference/reference_axis.hpp"
 
 #include <CppUTest/TestHarness.h>
 

@@ -1,4 +1,4 @@
-#include "tools/study/condition.hpp"
+#include "tools/study/cases/condition.hpp"
 
 #include <fmt/format.h>
 

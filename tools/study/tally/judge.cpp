@@ -1,4 +1,4 @@
-#include "tools/study/judge.hpp"
+#include "tools/study/tally/judge.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/study/random.hpp"
+#include "tools/study/cases/random.hpp"
 
 namespace hotfire::study {
 

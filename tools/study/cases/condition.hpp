@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/study/profiles.hpp"
+#include "tools/study/cases/profiles.hpp"
 
 namespace hotfire::study {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/study/random.hpp"
-#include "tools/study/reference_axis.hpp"
+#include "tools/study/cases/random.hpp"
+#include "tools/study/reference/reference_axis.hpp"
 
 namespace hotfire::study {
 

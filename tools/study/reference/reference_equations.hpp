@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "tools/study/reference_axis.hpp"
+#include "tools/study/reference/reference_axis.hpp"
 
 namespace hotfire::study {
 

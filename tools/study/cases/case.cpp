@@ -1,4 +1,4 @@
-#include "tools/study/case.hpp"
+#include "tools/study/cases/case.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "tools/study/case_parts.hpp"
-#include "tools/study/recording.hpp"
+#include "tools/study/cases/case_parts.hpp"
+#include "tools/study/cases/recording.hpp"
 
 namespace hotfire::study {
 namespace {

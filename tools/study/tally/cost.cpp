@@ -1,4 +1,4 @@
-#include "tools/study/cost.hpp"
+#include "tools/study/tally/cost.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "tools/explain/explain.hpp"
 #include "tools/explain/search/stopwatch.hpp"
-#include "tools/study/judge.hpp"
+#include "tools/study/tally/judge.hpp"
 
 namespace hotfire::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/study/reference_equations.hpp"
+#include "tools/study/reference/reference_equations.hpp"
 
 #include <algorithm>
 #include <cmath>

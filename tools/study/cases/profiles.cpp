@@ -1,4 +1,4 @@
-#include "tools/study/profiles.hpp"
+#include "tools/study/cases/profiles.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/files/text/whole_file.hpp"
-#include "tools/study/case.hpp"
+#include "tools/study/cases/case.hpp"
 
 namespace hotfire::study {
 

@@ -1,4 +1,4 @@
-#include "tools/study/tally.hpp"
+#include "tools/study/tally/tally.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/study/case.hpp"
+#include "tools/study/cases/case.hpp"
 
 #include <CppUTest/TestHarness.h>
 
@@ -11,7 +11,7 @@
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
-#include "tools/study/candidate_fit.hpp"
+#include "tools/study/tally/candidate_fit.hpp"
 
 namespace hotfire::study {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/study/case.hpp"
-#include "tools/study/profiles.hpp"
+#include "tools/study/cases/case.hpp"
+#include "tools/study/cases/profiles.hpp"
 
 namespace hotfire::study {
 

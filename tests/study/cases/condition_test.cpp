@@ -1,4 +1,4 @@
-#include "tools/study/condition.hpp"
+#include "tools/study/cases/condition.hpp"
 
 #include <CppUTest/TestHarness.h>
 
@@ -9,8 +9,8 @@
 #include "tools/explain/data/dataset.hpp"
 #include "tools/explain/data/statistics.hpp"
 #include "tools/files/text/error.hpp"
-#include "tools/study/orders.hpp"
-#include "tools/study/recording.hpp"
+#include "tools/study/cases/orders.hpp"
+#include "tools/study/cases/recording.hpp"
 
 namespace hotfire::study {
 namespace {

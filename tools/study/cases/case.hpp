@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "tools/files/record/record.hpp"
-#include "tools/study/condition.hpp"
-#include "tools/study/effects.hpp"
+#include "tools/study/cases/condition.hpp"
+#include "tools/study/cases/effects.hpp"
 
 namespace hotfire::study {
 

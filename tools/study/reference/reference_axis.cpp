@@ -1,12 +1,12 @@
-#include "tools/study/reference_axis.hpp"
+#include "tools/study/reference/reference_axis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "tools/study/cvode_integrator.hpp"
-#include "tools/study/reference_equations.hpp"
+#include "tools/study/reference/cvode_integrator.hpp"
+#include "tools/study/reference/reference_equations.hpp"
 
 namespace hotfire::study {
 namespace {

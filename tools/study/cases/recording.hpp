@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tools/files/record/record.hpp"
-#include "tools/study/case.hpp"
+#include "tools/study/cases/case.hpp"
 
 namespace hotfire::study {
 

@@ -1,4 +1,4 @@
-#include "tools/study/effects.hpp"
+#include "tools/study/cases/effects.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "tools/files/text/error.hpp"
-#include "tools/study/profiles.hpp"
+#include "tools/study/cases/profiles.hpp"
 
 namespace hotfire::study {
 namespace {

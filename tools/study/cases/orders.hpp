@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/study/case.hpp"
+#include "tools/study/cases/case.hpp"
 
 namespace hotfire::study {
 

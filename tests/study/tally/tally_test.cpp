@@ -1,11 +1,11 @@
-#include "tools/study/tally.hpp"
+#include "tools/study/tally/tally.hpp"
 
 #include <CppUTest/TestHarness.h>
 
 #include <cmath>
 
-#include "tools/study/cost.hpp"
-#include "tools/study/random.hpp"
+#include "tools/study/cases/random.hpp"
+#include "tools/study/tally/cost.hpp"
 
 namespace hotfire::study {
 namespace {

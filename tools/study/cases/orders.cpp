@@ -1,4 +1,4 @@
-#include "tools/study/orders.hpp"
+#include "tools/study/cases/orders.hpp"
 
 #include <fmt/format.h>
 

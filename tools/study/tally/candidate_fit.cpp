@@ -1,4 +1,4 @@
-#include "tools/study/candidate_fit.hpp"
+#include "tools/study/tally/candidate_fit.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/files/text/error.hpp"
-#include "tools/study/judge.hpp"
+#include "tools/study/tally/judge.hpp"
 
 namespace hotfire::study {
 

@@ -1,4 +1,4 @@
-#include "tools/study/recording.hpp"
+#include "tools/study/cases/recording.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/study/case_parts.hpp"
+#include "tools/study/cases/case_parts.hpp"
 
 namespace hotfire::study {
 namespace {

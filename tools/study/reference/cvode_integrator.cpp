@@ -1,4 +1,4 @@
-#include "tools/study/cvode_integrator.hpp"
+#include "tools/study/reference/cvode_integrator.hpp"
 
 #include <cvode/cvode.h>
 #include <sunlinsol/sunlinsol_dense.h>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/study/judge.hpp"
+#include "tools/study/tally/judge.hpp"
 
 namespace hotfire::study {
 
