@@ -27,6 +27,7 @@ struct Options {
   std::vector<std::string> folders;
   unsigned threads = 1;
   bool generate_only = false;
+  bool listed = false;  ///< of `wild`: each beside a listed effect
   bool json = false;
 };
 
@@ -203,6 +204,20 @@ void add_study(CLI::App& program, const char* name, const char* what, std::uint6
   add_judging(*command, options);
 }
 
+/// Options of `wild`: those of a study but for the names.
+void add_wild(CLI::App& program, std::string& write, Options& options) {
+  CLI::App* command = program.add_subcommand("wild", "Effects drawn at random, from laws that the finder does not share");
+  options.selection.seeds = 100;
+  command->add_option("--count", options.selection.seeds, "how many draws")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100'000}))
+      ->capture_default_str();
+  command->add_option("--first-seed", options.selection.first_seed, "the seed of the first of them")->capture_default_str();
+  command->add_flag("--listed", options.listed, "each beside a listed effect drawn at random");
+  auto* keep = command->add_option("--out", options.out, "keep the cases in this folder, one folder a case");
+  command->add_option("--write", write, "only make the cases, in this folder")->excludes(keep);
+  add_judging(*command, options);
+}
+
 int run(int argc, char** argv) {
   CLI::App program("How often hotfire explain is right, on cases made by an independent simulator", "hotfire-study");
   program.require_subcommand(1);
@@ -216,6 +231,9 @@ int run(int argc, char** argv) {
   Options two_axes;
   Options hard;
   Options folders;
+  Options wild;
+  std::string write;
+  add_wild(program, write, wild);
   add_study(program, "effects", "Every listed effect, alone", 3, effects);
   add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
   add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
@@ -246,6 +264,12 @@ int run(int argc, char** argv) {
     status = study(two_axis_orders(two_axes.selection), two_axes);
   } else if (program.got_subcommand("hard")) {
     status = study(hard_orders(hard.selection), hard);
+  } else if (program.got_subcommand("wild")) {
+    if (!write.empty()) {
+      wild.out = write;
+      wild.generate_only = true;
+    }
+    status = study(wild_orders(wild.selection, wild.listed), wild);
   } else if (program.got_subcommand("null")) {
     status = study(null_orders(null.selection), null);
   } else if (program.got_subcommand("fit")) {

@@ -181,7 +181,11 @@ StudyCase make_case(const CaseOrder& order) {
   const Profile unseen = unseen_profile(Random(order.name, order.seed, 2));
   const ReferenceRows plain_rows = run(plain, unseen);
   for (const std::string& name : order.effects) {
-    add_effect(studied_effect(name), order, plain, unseen, plain_rows, made);
+    if (name == kWild) {
+      add_wild_law(order, unseen, made);
+    } else {
+      add_effect(studied_effect(name), order, plain, unseen, plain_rows, made);
+    }
   }
 
   const ReferenceRows truth = order.effects.empty() ? plain_rows : run(made.plan.axis, unseen);

@@ -15,6 +15,8 @@ namespace hotfire::study {
 
 /// An effect of an engine with two axes that is in no list: a hose that pulls across them once it is taut.
 inline constexpr std::string_view kCrossHose = "cross_hose";
+/// An effect of one axis that is drawn at random (wild_draw.hpp).
+inline constexpr std::string_view kWild = "wild";
 
 /// What a case is to be.
 struct CaseOrder {

@@ -2,16 +2,20 @@
 
 #include "tools/files/text/whole_file.hpp"
 #include "tools/study/cases/case.hpp"
+#include "tools/study/cases/wild_draw.hpp"
 
 namespace hotfire::study {
 
 namespace {
 
 /// "unlisted@SITE|SITE" for what is in no list, else the name: one word for each effect that is missing.
-nlohmann::json wanted_words(const CaseOrder& order) {
+nlohmann::json wanted_words(const StudyCase& made) {
+  const CaseOrder& order = made.order;
   nlohmann::json words = nlohmann::json::array();
   for (const std::string& name : order.effects) {
-    if (order.two_axes) {
+    if (name == kWild) {
+      words.push_back("unlisted@" + std::string(right_sites(*made.plan.axis.wild)));
+    } else if (order.two_axes) {
       words.push_back(name.starts_with(kCrossHose) ? "unlisted@engine_torque" + name.substr(name.rfind('.')) : name);
     } else {
       words.push_back(is_listed(studied_effect(name)) ? name : "unlisted@" + std::string(studied_effect(name).site));
@@ -39,7 +43,7 @@ nlohmann::json parameters_of(const ReferenceAxis& axis) {
 nlohmann::json truth_of(const StudyCase& made) {
   nlohmann::json truth{{"case", made.order.name},
                        {"seed", made.order.seed},
-                       {"effects", wanted_words(made.order)},
+                       {"effects", wanted_words(made)},
                        {"kinds", made.order.effects},
                        {"law", made.plan.law},
                        {"effect_values", made.plan.values},
@@ -50,8 +54,11 @@ nlohmann::json truth_of(const StudyCase& made) {
                        {"exclusions", made.exclusions}};
   truth["may_name"] = nlohmann::json::array();
   for (const std::string& name : made.order.effects) {
-    if (!made.order.two_axes && !studied_effect(name).contains.empty()) {
-      truth["may_name"].push_back(studied_effect(name).contains);
+    const std::string_view contained = name == kWild         ? contained_effect(*made.plan.axis.wild)
+                                       : made.order.two_axes ? ""
+                                                             : studied_effect(name).contains;
+    if (!contained.empty()) {
+      truth["may_name"].push_back(contained);
     }
   }
   truth["parameters"] = parameters_of(made.plan.axis);

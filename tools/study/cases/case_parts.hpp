@@ -36,6 +36,11 @@ double noisy(double value, const SensorGrade& grade, double factor, Random& rand
 
 double rms_of_difference(const ReferenceRows& a, const ReferenceRows& b, std::size_t channel);
 
+/// Adds a law drawn at random to a case, beside the effects that its plan has. It is the first of the case's draws that
+/// alone makes 3 to 75 times the sensor noise in the loudest channel of the unseen record, that leaves the axis stable, and
+/// whose motion a change by a thousandth does not change. Throws std::runtime_error if none of 40 does.
+void add_wild_law(const CaseOrder& order, const Profile& unseen, StudyCase& made);
+
 /// A case of two axes; otherwise as `make_case`.
 StudyCase make_two_axis_case(const CaseOrder& order);
 

@@ -117,6 +117,22 @@ std::vector<CaseOrder> hard_orders(const Selection& selection) {
   return orders;
 }
 
+std::vector<CaseOrder> wild_orders(const Selection& selection, bool beside_a_listed_one) {
+  std::vector<CaseOrder> orders;
+  for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {
+    std::vector<std::string> effects;
+    if (beside_a_listed_one) {
+      const auto listed = listed_effects();
+      Random random("listed beside wild", seed);
+      const auto at = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(listed.size())));
+      effects.emplace_back(listed[std::min(at, listed.size() - 1)].name);
+    }
+    effects.emplace_back(kWild);
+    orders.push_back({fmt::format("{}-{}", name_of(effects), seed), effects, seed});
+  }
+  return orders;
+}
+
 std::vector<CaseOrder> null_orders(const Selection& selection) {
   std::vector<CaseOrder> orders;
   for (std::uint64_t seed = selection.first_seed; seed < selection.first_seed + selection.seeds; ++seed) {

@@ -30,6 +30,10 @@ std::vector<CaseOrder> two_axis_orders(const Selection& selection);
 /// `only` names conditions. They are named "closed-loop-backlash-1".
 std::vector<CaseOrder> hard_orders(const Selection& selection);
 
+/// A law drawn at random a seed, alone or beside a listed effect drawn at random. They are named "wild-1", or
+/// "backlash+wild-1".
+std::vector<CaseOrder> wild_orders(const Selection& selection, bool beside_a_listed_one);
+
 /// Null records: noise of half to five times the usual, true parameters scattered within half to twice the tolerances.
 std::vector<CaseOrder> null_orders(const Selection& selection);
 

@@ -93,9 +93,10 @@ void cut_start(const Condition& condition, Record& record) {
 }
 
 /// Rows read at the times of the commands, the first in equilibrium.
-ReferenceRows rows_of(const ReferenceAxis& axis, const Profile& profile, double period, const Controller& controller = {}) {
+ReferenceRows rows_of(const ReferenceAxis& axis, const Profile& profile, double period, const Controller& controller = {},
+                      QuantityRows* quantities = nullptr) {
   return integrate_reference(axis, one_row_later(profile.commands), period, kSettling, kIntegratorTolerance, nullptr,
-                             controller);
+                             controller, quantities);
 }
 
 /// An axis with a controller about it that reads the engine's sensor; the record has the commands that were sent.
@@ -124,7 +125,9 @@ std::size_t channels_of(const CaseOrder& order) { return measures_load_pressure(
 
 }  // namespace
 
-ReferenceRows run(const ReferenceAxis& axis, const Profile& profile) { return rows_of(axis, profile, kSample); }
+ReferenceRows run(const ReferenceAxis& axis, const Profile& profile, QuantityRows* quantities) {
+  return rows_of(axis, profile, kSample, {}, quantities);
+}
 
 Record unseen_record(const CaseOrder& order, const Profile& profile, const ReferenceRows& rows) {
   return record_of(profile.name, kSample, profile.commands, rows, channels_of(order));

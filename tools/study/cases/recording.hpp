@@ -10,8 +10,9 @@ namespace hotfire::study {
 
 // Records of one axis: as they are, and as a rig gives them.
 
-/// An axis under a profile: rows read at the times of the commands, the first in equilibrium.
-ReferenceRows run(const ReferenceAxis& axis, const Profile& profile);
+/// An axis under a profile: rows read at the times of the commands, the first in equilibrium. What laws may be drawn over is
+/// put into `quantities`.
+ReferenceRows run(const ReferenceAxis& axis, const Profile& profile, QuantityRows* quantities = nullptr);
 
 /// The kept record, without noise and without what is a fault of a rig's channel: what explained.toml is to predict.
 Record unseen_record(const CaseOrder& order, const Profile& profile, const ReferenceRows& rows);

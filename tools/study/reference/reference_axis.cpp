@@ -15,6 +15,7 @@ namespace {
 struct Problems {
   std::vector<ReferenceProblem> axes;
   std::vector<std::size_t> first;
+  long evaluations_left = std::numeric_limits<long>::max();
 
   std::size_t size() const { return first.back() + axes.back().states.size(); }
 
@@ -29,6 +30,9 @@ struct Problems {
 
 int right_hand_side(double t, N_Vector state, N_Vector result, void* user) {
   Problems& problems = *static_cast<Problems*>(user);
+  if (--problems.evaluations_left < 0) {
+    return -1;
+  }
   const double* values = N_VGetArrayPointer(state);
   double* rates = N_VGetArrayPointer(result);
   if (problems.axes.size() == 2) {
@@ -112,7 +116,8 @@ struct Edge {
 /// Any number of axes together, each under its commands, or under what a controller makes of them.
 std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& axes,
                                      const std::vector<const std::vector<double>*>& commands, double sample, double settling,
-                                     double tolerance, long* evaluations, const Controller& controller = {}) {
+                                     double tolerance, long* evaluations, const Controller& controller = {},
+                                     QuantityRows* quantities = nullptr) {
   Problems problems;
   for (const ReferenceAxis* axis : axes) {
     if (axis->play > 0.0 && !std::isinf(axis->rate_limit)) {
@@ -122,6 +127,9 @@ std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& ax
     problems.first.push_back(problems.axes.empty() ? 0 : problems.size());
     problems.axes.push_back({*axis, states_of(*axis)});
     problems.axes.back().first_row = settling;
+  }
+  if (std::any_of(axes.begin(), axes.end(), [](const ReferenceAxis* axis) { return axis->wild != nullptr; })) {
+    problems.evaluations_left = kMostEvaluations * std::ssize(*commands.front());
   }
   Integrator integrator(problems, tolerance);
   if (settling > 0.0) {
@@ -147,15 +155,23 @@ std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& ax
       edges.push_back({std::max(0.0, offset), axis, earlier(i - late)});
     }
     std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.offset < b.offset; });
-    for (const Edge& edge : edges) {
-      if (edge.offset > 0.0) {
-        integrator.advance(start + edge.offset);
-      }
-      set_command(problems, edge.axis, integrator, edge.command);
+    auto edge = edges.cbegin();
+    for (; edge != edges.cend() && edge->offset == 0.0; ++edge) {
+      set_command(problems, edge->axis, integrator, edge->command);
+    }
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+      begin_row(problems.axes[axis], integrator.time(), integrator.state(axis));
+    }
+    for (; edge != edges.cend(); ++edge) {
+      integrator.advance(start + edge->offset);
+      set_command(problems, edge->axis, integrator, edge->command);
     }
     integrator.advance(settling + static_cast<double>(i + 1) * sample);
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      rows[axis].push_back(readings(*axes[axis], integrator.time() - settling, integrator.state(axis)));
+      rows[axis].push_back(readings(problems.axes[axis], integrator.time(), integrator.state(axis)));
+    }
+    if (quantities != nullptr) {
+      quantities->push_back(quantities_at(problems.axes.front(), integrator.time(), integrator.state(0)));
     }
   }
   if (evaluations != nullptr) {
@@ -167,8 +183,9 @@ std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& ax
 }  // namespace
 
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
-                                  double settling, double tolerance, long* evaluations, const Controller& controller) {
-  return integrate({&axis}, {&commands}, sample, settling, tolerance, evaluations, controller).front();
+                                  double settling, double tolerance, long* evaluations, const Controller& controller,
+                                  QuantityRows* quantities) {
+  return integrate({&axis}, {&commands}, sample, settling, tolerance, evaluations, controller, quantities).front();
 }
 
 std::array<ReferenceRows, 2> integrate_reference_pair(const std::array<ReferenceAxis, 2>& axes,

@@ -3,7 +3,10 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <vector>
+
+#include "tools/study/reference/wild_law.hpp"
 
 namespace hotfire::study {
 
@@ -151,6 +154,9 @@ struct ReferenceAxis {
     double hum_frequency = 0.0;       ///< [Hz]
   };
   Unlisted unlisted;
+
+  /// A law drawn at random; null: none.
+  std::shared_ptr<const WildLaw> wild;
 };
 
 /// The rows of a reference run: piston [m] and engine [rad] as their sensors read them, load pressure [Pa].
@@ -160,14 +166,21 @@ using ReferenceRows = std::vector<std::array<double, 3>>;
 /// the first row it reads zeros.
 using Controller = std::function<double(double asked, const std::array<double, 3>& reading)>;
 
+/// What laws may be drawn over, at the end of each row.
+using QuantityRows = std::vector<WildQuantities>;
+
+/// Some ten times what an axis takes without a drawn law.
+inline constexpr long kMostEvaluations = 2000;
+
 /// Piston, engine and load pressure under `commands` [rad], each held for `sample` seconds. Starts at rest under a zero
 /// command, and waits `settling` seconds before the first command. Row i is read at the *end* of the time in which command i
 /// is held. CVODE (BDF) with relative tolerance `tolerance`, started afresh at every edge of the command. What it
 /// took is added to `evaluations`, without those for CVODE's Jacobian. With a `controller` the axis runs under what that
-/// makes of the commands. Throws std::runtime_error if CVODE gives up.
+/// makes of the commands. Throws std::runtime_error if CVODE gives up, or if a drawn law makes the axis so stiff or so
+/// restless that it takes more than `kMostEvaluations` evaluations a row.
 ReferenceRows integrate_reference(const ReferenceAxis& axis, const std::vector<double>& commands, double sample,
                                   double settling, double tolerance = 1e-10, long* evaluations = nullptr,
-                                  const Controller& controller = {});
+                                  const Controller& controller = {}, QuantityRows* quantities = nullptr);
 
 /// The two axes of one engine together, coupled by `cross_stiffness`, `cross_damping` and the hose; otherwise the same. Both
 /// have as many commands.

@@ -126,21 +126,32 @@ double reading_without_lag(const ReferenceAxis::Sensor& sensor, double x) {
   return y;
 }
 
-/// Opening, flow and pressure; `d` gets their rates.
-void oil(const ReferenceAxis& a, double elapsed, const StateVector& y, StateVector& d) {
+/// What a drawn law adds at each site.
+using WildSums = std::array<double, kWildSites>;
+
+double at_site(const WildSums& sums, WildSite site) { return sums[static_cast<std::size_t>(site)]; }
+
+double valve_flow(const ReferenceAxis& a, double elapsed, const StateVector& y, double further_opening) {
   const double lapped = beyond(y[kSpool], a.deadband);
   const double opening = lapped * (1.0 + a.asymmetry * sign(lapped)) * (1.0 + a.unlisted.flow_curvature * lapped * lapped) *
-                         (1.0 + a.unlisted.gain_drift * elapsed);
-  const double p = y[kPressure];
+                             (1.0 + a.unlisted.gain_drift * elapsed) +
+                         further_opening;
   const double supply = a.supply - y[kSupplyDroop];
-  const double turbulent = a.orifice_leak * p * std::sqrt(a.supply / (std::abs(p) + 1e-3 * a.supply));
   // Rated flow is told at the declared supply pressure.
-  const double flow = a.rated_flow * opening * std::sqrt(std::max(0.0, (supply - sign(opening) * p) / a.supply));
+  return a.rated_flow * opening * std::sqrt(std::max(0.0, (supply - sign(opening) * y[kPressure]) / a.supply));
+}
+
+/// Opening, flow and pressure; `d` gets their rates.
+void oil(const ReferenceAxis& a, double elapsed, const StateVector& y, const WildSums& wild, StateVector& d) {
+  const double p = y[kPressure];
+  const double turbulent = a.orifice_leak * p * std::sqrt(a.supply / (std::abs(p) + 1e-3 * a.supply));
+  const double flow = valve_flow(a, elapsed, y, at_site(wild, WildSite::valve)) + at_site(wild, WildSite::flow);
   const double modulus =
       a.bulk_modulus * (1.0 - a.unlisted.aeration * std::exp(-std::abs(p) / a.unlisted.aeration_pressure));
   d[kPressure] = 4.0 * modulus / a.volume *
-                 (flow - a.area * y[kPistonRate] - (a.leakage + a.laminar_leak) * p - turbulent -
-                  a.unlisted.relief * beyond(p, a.unlisted.relief_from));
+                     (flow - a.area * y[kPistonRate] - (a.leakage + a.laminar_leak) * p - turbulent -
+                      a.unlisted.relief * beyond(p, a.unlisted.relief_from)) +
+                 at_site(wild, WildSite::pressure);
   d[kWashout] = a.pressure_corner * (p - y[kWashout]);
   if (a.unlisted.supply_droop > 0.0) {
     d[kSupplyDroop] = (a.unlisted.supply_droop * std::abs(flow) - y[kSupplyDroop]) / a.unlisted.supply_recovery;
@@ -172,6 +183,10 @@ std::vector<ReferenceState> states_of(const ReferenceAxis& axis) {
   add(kJoint, axis.unlisted.joint.stiffness > 0.0);
   add(kWiper, axis.unlisted.wiper_play > 0.0);
   add(kCommand, axis.unlisted.command_lag > 0.0);
+  const std::size_t remembered = axis.wild ? axis.wild->memory.states() : 0;
+  for (std::size_t i = 0; i < remembered; ++i) {
+    add(static_cast<ReferenceState>(kWild0 + i), true);
+  }
   return states;
 }
 
@@ -186,26 +201,79 @@ double torque_motor(const ReferenceAxis& axis, double command, double elapsed, c
          axis.unlisted.null_offset + axis.unlisted.null_drift * elapsed;
 }
 
+namespace {
+
+/// A limit of infinity makes the command jump at the start of the interval.
+double command_now(const ReferenceProblem& problem, double t) {
+  return std::isinf(problem.axis.rate_limit) ? problem.command : command_at(problem, t);
+}
+
+double deflection_of(const ReferenceAxis& axis, const Lever& lever, const StateVector& y) {
+  return y[kPiston] - lever.stroke - axis.mode_shape * y[kMode] - y[kCreep];
+}
+
+WildStates wild_states(const StateVector& y) { return {y[kWild0], y[kWild1], y[kWild2], y[kWild3]}; }
+
+/// What the drawn law adds at its site, and the rates of its memory.
+WildSums wild_sums(const ReferenceProblem& problem, double t, const StateVector& y, StateVector* d) {
+  WildSums sums{};
+  if (!problem.axis.wild) {
+    return sums;
+  }
+  const WildLaw& law = *problem.axis.wild;
+  const double signal = law.signal(quantities_at(problem, t, y));
+  const WildStates states = wild_states(y);
+  sums[static_cast<std::size_t>(law.site)] = wild_output(law, signal, t - problem.first_row, states, problem.wild_rows);
+  // A swing begins with the record; every other memory comes to rest before it.
+  if (d != nullptr && (t >= problem.first_row || law.memory.kind != WildMemory::Kind::swing)) {
+    const WildStates rates = memory_rates(law, memory_input(law, signal), states);
+    std::copy(rates.begin(), rates.end(), d->begin() + kWild0);
+  }
+  return sums;
+}
+
+}  // namespace
+
+WildQuantities quantities_at(const ReferenceProblem& problem, double t, const StateVector& y) {
+  const ReferenceAxis& axis = problem.axis;
+  const double elapsed = std::max(0.0, t - problem.first_row);
+  const double command = command_now(problem, t);
+  // In the order of WildArgument.
+  return {y[kPiston],
+          y[kPistonRate],
+          y[kAngle],
+          y[kAngleRate],
+          y[kPressure],
+          valve_flow(axis, elapsed, y, 0.0),
+          deflection_of(axis, lever_of(axis, y[kAngle]), y),
+          y[kSpool],
+          command,
+          axis.arm * command - y[kPiston],
+          torque_motor(axis, command, elapsed, y),
+          elapsed};
+}
+
 StateVector derivative(const ReferenceProblem& problem, double t, const StateVector& y) {
   const ReferenceAxis& a = problem.axis;
   const double elapsed = std::max(0.0, t - problem.first_row);
   StateVector d{};
+  const WildSums wild = wild_sums(problem, t, y, &d);
 
-  // A limit of infinity makes the command jump at the start of the interval.
-  const double angle = std::isinf(a.rate_limit) ? problem.command : command_at(problem, t);
+  const double angle = command_now(problem, t);
   const bool lags = a.unlisted.command_lag > 0.0;
-  const double asked = torque_motor(a, lags ? y[kCommand] : angle, elapsed, y);
+  const double asked = torque_motor(a, (lags ? y[kCommand] : angle) + at_site(wild, WildSite::command), elapsed, y) +
+                       at_site(wild, WildSite::valve_command);
   const double valve_command = clamp_to(asked, 1.0) - clamp_to(y[kPlay], a.play);
   d[kSpool] = clamp_to(y[kSpoolRate], a.unlisted.slew);
   d[kSpoolRate] = a.valve_frequency * a.valve_frequency * (valve_command - y[kSpool]) -
                   2.0 * a.valve_damping * a.valve_frequency * y[kSpoolRate];
-  oil(a, elapsed, y, d);
+  oil(a, elapsed, y, wild, d);
 
   const double v = y[kPistonRate];
   const double w = y[kAngleRate];
   const double beta = y[kAngle];
   const Lever lever = lever_of(a, beta);
-  const double deflection = y[kPiston] - lever.stroke - a.mode_shape * y[kMode] - y[kCreep];
+  const double deflection = deflection_of(a, lever, y) + at_site(wild, WildSite::load_spring);
   const Friction joint = elastic_slip(a.unlisted.joint, 1.0, v - lever.arm * w, y[kJoint]);
   const double force = spring_force(a, deflection) * (1.0 + a.unlisted.spring_drift * elapsed) +
                        a.unlisted.spring_damping * (v - lever.arm * w) + joint.force;
@@ -214,7 +282,9 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   const double damping = a.piston_damping + a.unlisted.cushion * std::abs(beyond(y[kPiston], a.unlisted.cushion_from)) +
                          a.unlisted.orifice_damping * std::abs(v);
   d[kPiston] = v;
-  d[kPistonRate] = (a.area * y[kPressure] - force - damping * v - seal.force - seal_bristle.force) / a.piston_mass;
+  d[kPistonRate] =
+      (a.area * y[kPressure] - force - damping * v - seal.force - seal_bristle.force + at_site(wild, WildSite::piston)) /
+      a.piston_mass;
 
   const double coulomb = a.coulomb.level * std::tanh(w / a.coulomb.creep);
   const Friction bristle = gimbal_friction(a, elapsed, w, beta, y[kBristle]);
@@ -224,7 +294,7 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   d[kAngle] = w;
   d[kAngleRate] = (lever.arm * force - a.damping * w - a.duct_stiffness * beta - a.duct_cubic * beta * beta * beta -
                    a.torque_offset - a.cross_stiffness * problem.other_angle - a.cross_damping * problem.other_rate - hose -
-                   coulomb - bristle.force - forcing) /
+                   coulomb - bristle.force - forcing + at_site(wild, WildSite::engine_torque)) /
                   a.inertia;
 
   const double torque_motor_rate = -a.position_gain * v - a.pressure_gain * (d[kPressure] - d[kWashout]);
@@ -252,12 +322,24 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
   return d;
 }
 
-std::array<double, 3> readings(const ReferenceAxis& axis, double elapsed, const StateVector& y) {
+void begin_row(ReferenceProblem& problem, double t, const StateVector& y) {
+  if (problem.axis.wild) {
+    const WildLaw& law = *problem.axis.wild;
+    problem.wild_rows.begin_row(law, t - problem.first_row, memory_input(law, law.signal(quantities_at(problem, t, y))));
+  }
+}
+
+std::array<double, 3> readings(const ReferenceProblem& problem, double t, const StateVector& y) {
+  const ReferenceAxis& axis = problem.axis;
   const ReferenceAxis::Unlisted& unlisted = axis.unlisted;
   const double moved = y[kPiston] - y[kWiper];
+  const double elapsed = t - problem.first_row;
   const double hum = unlisted.hum * std::sin(2.0 * std::numbers::pi * unlisted.hum_frequency * elapsed);
-  return {axis.piston_sensor.lag > 0.0 ? y[kPistonReading] : reading_without_lag(axis.piston_sensor, moved),
-          (axis.engine_sensor.lag > 0.0 ? y[kEngineReading] : reading_without_lag(axis.engine_sensor, y[kAngle])) + hum,
+  const WildSums wild = wild_sums(problem, t, y, nullptr);
+  return {(axis.piston_sensor.lag > 0.0 ? y[kPistonReading] : reading_without_lag(axis.piston_sensor, moved)) +
+              at_site(wild, WildSite::piston_sensor),
+          (axis.engine_sensor.lag > 0.0 ? y[kEngineReading] : reading_without_lag(axis.engine_sensor, y[kAngle])) + hum +
+              at_site(wild, WildSite::engine_sensor),
           y[kPressure]};
 }
 

@@ -33,14 +33,18 @@ enum ReferenceState {
   kJoint,
   kWiper,
   kCommand,
+  kWild0,  ///< of a drawn law's memory, `WildMemory::kMostStates` of them
+  kWild1,
+  kWild2,
+  kWild3,
   kStates
 };
 
 using StateVector = std::array<double, kStates>;
 
 /// What a state is measured in; tolerances are a tiny part of it.
-inline constexpr StateVector kStateScale{0.01, 1.0, 1e6, 1e6,  0.01, 0.1, 0.01, 0.1,  0.01, 1e-5, 1e-4,
-                                         1e-5, 0.1, 1.0, 0.01, 0.01, 1e6, 1e-4, 1e-5, 1e-4, 0.01};
+inline constexpr StateVector kStateScale{0.01, 1.0,  1e6,  1e6, 0.01, 0.1,  0.01, 0.1,  0.01, 1e-5, 1e-4, 1e-5, 0.1,
+                                         1.0,  0.01, 0.01, 1e6, 1e-4, 1e-5, 1e-4, 0.01, 1.0,  1.0,  1.0,  1.0};
 
 inline double clamp_to(double x, double limit) { return std::clamp(x, -limit, limit); }
 inline double sign(double x) { return (x > 0.0) - (x < 0.0); }
@@ -66,6 +70,7 @@ struct ReferenceProblem {
   double first_row = 0.0;    ///< when the record begins
   double other_angle = 0.0;  ///< of the engine about its other axis; zero for an axis alone
   double other_rate = 0.0;
+  WildRows wild_rows{};  ///< what a drawn law keeps of the rows
 };
 
 /// The command behind the rate limit.
@@ -77,7 +82,13 @@ double torque_motor(const ReferenceAxis& axis, double command, double elapsed, c
 /// The axis' equations. The states it does not have are zero in `y`, and what comes out for them is not used.
 StateVector derivative(const ReferenceProblem& problem, double t, const StateVector& y);
 
-/// What the three channels read, `elapsed` s into the record.
-std::array<double, 3> readings(const ReferenceAxis& axis, double elapsed, const StateVector& y);
+/// What laws are drawn over.
+WildQuantities quantities_at(const ReferenceProblem& problem, double t, const StateVector& y);
+
+/// Tells the axis' drawn law that a row begins.
+void begin_row(ReferenceProblem& problem, double t, const StateVector& y);
+
+/// What the three channels read.
+std::array<double, 3> readings(const ReferenceProblem& problem, double t, const StateVector& y);
 
 }  // namespace hotfire::study

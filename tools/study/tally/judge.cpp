@@ -7,12 +7,14 @@
 #include <cmath>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include "tools/explain/explain.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
+#include "tools/study/cases/case.hpp"
 
 namespace hotfire::study {
 
@@ -20,6 +22,7 @@ using Errors = std::map<std::string, double>;
 
 namespace {
 
+constexpr std::string_view kUnlisted = "unlisted@";
 constexpr std::array kScored{"piston", "engine", "piston.pitch", "engine.pitch", "piston.yaw", "engine.yaw"};
 
 /// As `errors_of`, for a model of one axis or several.
@@ -63,6 +66,30 @@ std::vector<Record> given_records(const std::filesystem::path& folder) {
   return records;
 }
 
+bool Judgement::is_unlisted() const {
+  return std::any_of(wanted.begin(), wanted.end(), [](const std::string& word) { return word.starts_with(kUnlisted); });
+}
+
+namespace {
+
+Errors::const_iterator loudest(const Errors& errors) {
+  return std::max_element(errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+}
+
+}  // namespace
+
+std::optional<double> Judgement::left() const {
+  if (after.empty() || effect.empty()) {
+    return std::nullopt;
+  }
+  const auto most = loudest(effect);
+  return after.at(most->first) / most->second;
+}
+
+std::optional<double> Judgement::over_noise() const {
+  return after.empty() ? std::nullopt : std::optional(loudest(after)->second);
+}
+
 namespace {
 
 nlohmann::json truth_of(const std::filesystem::path& folder) {
@@ -74,23 +101,53 @@ nlohmann::json truth_of(const std::filesystem::path& folder) {
   return nlohmann::json::parse(file);
 }
 
-bool is_one_of(const std::string& site, const std::string& sites) {
-  return ("|" + sites + "|").find("|" + site + "|") != std::string::npos;
+bool is_unlisted_word(const std::string& word) { return word.starts_with(kUnlisted); }
+
+std::vector<std::string> split(const std::string& sites) {
+  std::vector<std::string> words;
+  std::istringstream text(sites);
+  for (std::string word; std::getline(text, word, '|');) {
+    words.push_back(word);
+  }
+  return words;
+}
+
+/// Whether what the finder says of the site is right: the site, or a set with it that is no larger than the largest set of
+/// sites from which no prior separates it.
+bool is_placed(const std::string& said, const std::string& wanted) {
+  constexpr std::size_t kLargestSet = 4;
+  const std::vector<std::string> sites = split(said);
+  const std::vector<std::string> right = split(wanted);
+  return sites.size() <= kLargestSet && std::any_of(sites.begin(), sites.end(), [&](const std::string& site) {
+           return std::find(right.begin(), right.end(), site) != right.end();
+         });
 }
 
 void judge_unlisted(const std::set<std::string>& may_name, Judgement& judgement) {
-  const std::string sites = judgement.wanted.front().substr(std::string("unlisted@").size());
-  judgement.site_right = !judgement.found.empty();
+  std::multiset<std::string> missing;
+  std::string sites;
+  for (const std::string& word : judgement.wanted) {
+    if (is_unlisted_word(word)) {
+      sites += (sites.empty() ? "" : "|") + word.substr(kUnlisted.size());
+    } else {
+      missing.insert(word);
+    }
+  }
+  bool any = false;
+  bool all_placed = true;
   for (std::size_t i = 0; i < judgement.found.size(); ++i) {
-    const bool named = !judgement.found[i].starts_with("unlisted@");
+    if (const auto listed = missing.find(judgement.found[i]); listed != missing.end()) {
+      missing.erase(listed);
+      continue;
+    }
+    const bool named = !is_unlisted_word(judgement.found[i]);
     judgement.wrong_name = judgement.wrong_name || (named && !may_name.contains(judgement.found[i]));
-    judgement.site_right = judgement.site_right && is_one_of(judgement.found_sites[i], sites);
+    any = true;
+    all_placed = all_placed && is_placed(judgement.found_sites[i], sites);
   }
-  if (!judgement.after.empty()) {
-    const auto loudest = std::max_element(judgement.effect.begin(), judgement.effect.end(),
-                                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    judgement.halved = judgement.after.at(loudest->first) < 0.5 * loudest->second;
-  }
+  judgement.site_right = any && all_placed;
+  judgement.names_right = judgement.failure.empty() && missing.empty();
+  judgement.halved = judgement.left().value_or(1.0) < 0.5;
 }
 
 std::string joined(std::vector<std::string> words) {
@@ -113,7 +170,12 @@ std::string pair_of(const Errors& errors) {
 
 std::string ruling(const Judgement& judgement) {
   if (judgement.is_unlisted()) {
-    return fmt::format("{} {} {}", judgement.wrong_name ? "NAME" : "name", judgement.site_right ? "site" : "SITE",
+    const bool listed_too = judgement.wanted.size() > 1;
+    return fmt::format("{}{} {} {}",
+                       !listed_too             ? ""
+                       : judgement.names_right ? "listed "
+                                               : "LISTED ",
+                       judgement.wrong_name ? "NAME" : "name", judgement.site_right ? "site" : "SITE",
                        judgement.halved ? "halved" : "HALVED");
   }
   return fmt::format("{} {}", judgement.names_right ? "right" : "WRONG", judgement.below_noise ? "below" : "ABOVE");
@@ -132,6 +194,23 @@ std::map<std::string, double> noise_of(const VehicleFile& model) {
   return noise;
 }
 
+/// One entry of the report's `effects`: a name and its site, or no name and a site, or the `sites` it may be.
+void add_find(const nlohmann::json& effect, Judgement& judgement) {
+  const std::string axis = effect.contains("axis") ? "." + effect.at("axis").get<std::string>() : "";
+  std::vector<std::string> sites = effect.value("sites", std::vector<std::string>{});
+  if (sites.empty() && effect.contains("site")) {
+    sites.push_back(effect.at("site"));
+  }
+  for (std::string& site : sites) {
+    site += axis;
+  }
+  const std::string name = effect.value("name", "unlisted");
+  judgement.found_sites.push_back(fmt::format("{}", fmt::join(sites, "|")));
+  judgement.found.push_back(name == "unlisted" || name == "residual" ? kUnlisted.data() + judgement.found_sites.back()
+                                                                     : name + axis);
+  judgement.found_laws.push_back(effect.value("law", ""));
+}
+
 /// Runs the finder on a case and compares with the unseen record.
 template <class Model>
 void explain_case(const Model& declared, const std::vector<Record>& records, const Record& unseen,
@@ -148,12 +227,7 @@ void explain_case(const Model& declared, const std::vector<Record>& records, con
     const auto explanation = explain::explain(declared, records, options);
     judgement.verdict = explanation.report.at("verdict");
     for (const auto& effect : explanation.report.at("effects")) {
-      const std::string name = effect.at("name");
-      const std::string axis =
-          effect.contains("axis") ? fmt::format(".{}", effect.at("axis").template get<std::string>()) : "";
-      judgement.found_sites.push_back(effect.at("site").template get<std::string>() + axis);
-      judgement.found.push_back(name == "unlisted" ? name + "@" + judgement.found_sites.back() : name + axis);
-      judgement.found_laws.push_back(effect.value("law", ""));
+      add_find(effect, judgement);
     }
     judgement.after = scored_errors(explanation.model, unseen, noise_of(declared));
   } catch (const std::exception& error) {
@@ -171,6 +245,8 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
   judgement.name = folder.filename().string();
   judgement.wanted = truth.at("effects").get<std::vector<std::string>>();
   judgement.wanted_law = truth.value("law", "");
+  const auto kinds = truth.value("kinds", std::vector<std::string>{});
+  judgement.is_wild = std::find(kinds.begin(), kinds.end(), kWild) != kinds.end();
   judgement.effect = truth.at("effect_size").get<Errors>();
   const std::vector<Record> records = given_records(folder / "given");
   const Record unseen = load_record(folder / "kept/score_noisefree.csv");
@@ -205,16 +281,20 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
 }
 
 std::string line_of(const Judgement& judgement) {
+  const auto part_left = [](const Judgement& j) {
+    return j.is_unlisted() && j.left() ? fmt::format("left {:5.1f} % ", 100.0 * *j.left()) : std::string();
+  };
   std::vector<std::string> found;
   for (std::size_t i = 0; i < judgement.found.size(); ++i) {
     found.push_back(judgement.found[i] + (judgement.found_laws[i].empty() ? "" : ":" + judgement.found_laws[i]));
   }
   const std::string law = judgement.wanted_law.empty() ? "" : " (" + judgement.wanted_law + ")";
   std::string line = fmt::format(
-      "{:<34} {:<16} {:<18} before {:>13} effect {:>13} true {:>9} after {:>11} {:6.1f} s ({:.1f} s of processor)  {} -> {}",
+      "{:<34} {:<16} {:<18} before {:>13} effect {:>13} true {:>9} after {:>11} {}{:6.1f} s ({:.1f} s of processor)  {} -> "
+      "{}",
       judgement.name, ruling(judgement), judgement.verdict, pair_of(judgement.before), pair_of(judgement.effect),
-      pair_of(judgement.truth), pair_of(judgement.after), judgement.seconds, judgement.processor_seconds,
-      joined(judgement.wanted) + law, joined(found));
+      pair_of(judgement.truth), pair_of(judgement.after), part_left(judgement), judgement.seconds,
+      judgement.processor_seconds, joined(judgement.wanted) + law, joined(found));
   return judgement.failure.empty() ? line : line + "; failed: " + judgement.failure;
 }
 
@@ -237,8 +317,14 @@ nlohmann::json json_of(const Judgement& judgement) {
     result["wrong_name"] = judgement.wrong_name;
     result["site_right"] = judgement.site_right;
     result["halved"] = judgement.halved;
-  } else {
+    result["is_wild"] = judgement.is_wild;
+  }
+  if (!judgement.is_unlisted() || judgement.wanted.size() > 1) {
     result["names_right"] = judgement.names_right;
+  }
+  if (const auto left = judgement.left()) {
+    result["left"] = *left;
+    result["over_noise"] = *judgement.over_noise();
   }
   if (!judgement.failure.empty()) {
     result["failure"] = judgement.failure;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,12 @@ namespace hotfire::study {
 /// What the finder made of one case.
 struct Judgement {
   std::string name;
-  std::vector<std::string> wanted;      ///< names, or "unlisted@SITE|SITE"; of two axes "cross_axis.pitch"
-  std::string wanted_law;               ///< the law of what is missing, if it has laws; one of the model's or not
-  std::vector<std::string> found;       ///< names, those without a name as "unlisted@SITE"
-  std::vector<std::string> found_laws;  ///< in the order of `found`; "" for an effect without laws
-  std::vector<std::string> found_sites;
+  std::vector<std::string> wanted;       ///< names, or "unlisted@SITE|SITE"; of two axes "cross_axis.pitch"
+  std::string wanted_law;                ///< the law of what is missing, if it has laws, in words if it was drawn
+  bool is_wild = false;                  ///< whether something of it was drawn at random
+  std::vector<std::string> found;        ///< names, those without a name as "unlisted@SITE"
+  std::vector<std::string> found_laws;   ///< in the order of `found`; "" for an effect without laws
+  std::vector<std::string> found_sites;  ///< several with bars between them, where the finder says that it is one of these
   std::string verdict;
   std::map<std::string, double> before;  ///< declared model on the unseen record, rms in sensor noise, by channel
   std::map<std::string, double> effect;  ///< what the effects alone make
@@ -27,15 +29,21 @@ struct Judgement {
   std::map<std::string, double> truth;  ///< the model with the true parameters, if it has keys for them: what can be reached
   double seconds = 0.0;                 ///< that the finder took
   double processor_seconds = 0.0;       ///< the same of all threads' processor time
-  bool names_right = false;  ///< listed: all that is missing is named and nothing else; null: nothing said to be missing
+  /// All that is missing and listed is named and nothing else; beside what is unlisted: is named; null: nothing said to be
+  /// missing.
+  bool names_right = false;
   bool below_noise = false;  ///< `after` below 1 in every channel
   // Unlisted only.
-  bool wrong_name = false;  ///< a listed effect was named that is no part of the truth
-  bool site_right = false;  ///< something was found, and all of it where the effect acts
-  bool halved = false;      ///< in the channel where the effect shows most, `after` is below half of `effect`
-  std::string failure;      ///< what was thrown, if the finder gave up
-  bool is_unlisted() const { return !wanted.empty() && wanted.front().starts_with("unlisted@"); }
+  bool wrong_name = false;   ///< a listed effect was named that is no part of the truth
+  bool site_right = false;   ///< something unlisted was found, and all of that where the unlisted effect acts
+  bool halved = false;       ///< in the channel where the effect shows most, `after` is below half of `effect`
+  std::string failure;       ///< what was thrown, if the finder gave up
+  bool is_unlisted() const;  ///< whether something of what is missing is in no list
   bool is_null() const { return wanted.empty(); }
+  /// The part of what the effects make that is left in the channel where they show most; nothing if the finder gave up.
+  std::optional<double> left() const;
+  /// Largest `after` of all channels, in sensor noise.
+  std::optional<double> over_noise() const;
 };
 
 /// Explains the case in a folder (case.hpp) from its files and compares with what was kept from the finder. Errors of the

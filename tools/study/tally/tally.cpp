@@ -50,6 +50,8 @@ std::size_t count(const Judgements& some, bool (*holds)(const Judgement&)) {
 
 bool named(const Judgement& j) { return j.names_right; }
 bool quiet(const Judgement& j) { return j.below_noise; }
+bool placed_or_quiet(const Judgement& j) { return j.site_right || j.below_noise; }
+bool without_wrong_name(const Judgement& j) { return j.failure.empty() && !j.wrong_name; }
 
 /// `share_of` / `share_in` of the cases is what is asked for.
 Figure at_least(const char* name, const Judgements& some, bool (*holds)(const Judgement&), std::size_t share_of,
@@ -74,9 +76,11 @@ std::array<double, 2> exact_interval(std::size_t hits, std::size_t trials) {
 
 std::vector<Figure> figures_of(const std::vector<Judgement>& judgements) {
   std::vector<Figure> figures;
-  const Judgements unlisted = those(judgements, [](const Judgement& j) { return j.is_unlisted(); });
+  const Judgements unlisted = those(judgements, [](const Judgement& j) { return j.is_unlisted() && !j.is_wild; });
+  const Judgements wild = those(judgements, [](const Judgement& j) { return j.is_wild && j.wanted.size() == 1; });
+  const Judgements beside = those(judgements, [](const Judgement& j) { return j.is_wild && j.wanted.size() > 1; });
   const Judgements single = those(judgements, [](const Judgement& j) { return j.wanted.size() == 1 && !j.is_unlisted(); });
-  const Judgements several = those(judgements, [](const Judgement& j) { return j.wanted.size() > 1; });
+  const Judgements several = those(judgements, [](const Judgement& j) { return j.wanted.size() > 1 && !j.is_wild; });
   const Judgements nulls = nulls_of(judgements);
   if (!single.empty()) {
     figures.push_back(at_least("one effect: named right", single, named, 19, 20));
@@ -86,12 +90,23 @@ std::vector<Figure> figures_of(const std::vector<Judgement>& judgements) {
     figures.push_back(at_least("pairs: both named", several, named, 8, 10));
   }
   if (!unlisted.empty()) {
-    figures.push_back(at_least(
-        "unlisted: no wrong name", unlisted, [](const Judgement& j) { return j.failure.empty() && !j.wrong_name; }, 1, 1));
+    figures.push_back(at_least("unlisted: no wrong name", unlisted, without_wrong_name, 1, 1));
     figures.push_back(at_least(
         "unlisted: site right", unlisted, [](const Judgement& j) { return j.site_right; }, 5, 6));
     figures.push_back(at_least(
         "unlisted: error halved", unlisted, [](const Judgement& j) { return j.halved; }, 1, 1));
+  }
+  if (!wild.empty()) {
+    figures.push_back(at_least("wild: no wrong name", wild, without_wrong_name, 97, 100));
+    figures.push_back(at_least("wild: right site, or below the noise", wild, placed_or_quiet, 85, 100));
+    figures.push_back(at_least(
+        "wild: error halved", wild, [](const Judgement& j) { return j.halved; }, 85, 100));
+  }
+  if (!beside.empty()) {
+    figures.push_back(at_least("listed + wild: listed one named", beside, named, 27, 30));
+    figures.push_back(at_least(
+        "listed + wild: both", beside, [](const Judgement& j) { return named(j) && placed_or_quiet(j); }, 24, 30));
+    figures.push_back(at_least("listed + wild: no wrong name", beside, without_wrong_name, 29, 30));
   }
   if (!nulls.empty()) {
     const std::size_t wrong = nulls.size() - count(nulls, named);
@@ -107,8 +122,9 @@ bool all_met(const std::vector<Judgement>& judgements) {
 
 std::string summary_of(const std::vector<Judgement>& judgements) {
   std::string text;
-  const Judgements with_laws = those(
-      judgements, [](const Judgement& j) { return !j.wanted_law.empty() && j.names_right && j.found_laws.size() == 1; });
+  const Judgements with_laws = those(judgements, [](const Judgement& j) {
+    return !j.wanted_law.empty() && j.names_right && !j.is_unlisted() && j.found_laws.size() == 1;
+  });
   if (!with_laws.empty()) {
     text += fmt::format("{:<44} {} of {}, of those named right; not asked for\n", "one effect: its law as it was made",
                         count(with_laws, [](const Judgement& j) { return j.found_laws.front() == j.wanted_law; }),
