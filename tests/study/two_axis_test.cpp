@@ -8,7 +8,7 @@
 #include "tools/explain/explain.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/study/cases/case.hpp"
-#include "tools/study/cases/random.hpp"
+#include "tools/study/draws/random.hpp"
 
 namespace hotfire::study {
 namespace {

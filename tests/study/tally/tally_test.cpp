@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tools/study/cases/random.hpp"
+#include "tools/study/draws/random.hpp"
 #include "tools/study/tally/cost.hpp"
 
 namespace hotfire::study {

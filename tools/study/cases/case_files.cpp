@@ -2,7 +2,7 @@
 
 #include "tools/files/text/whole_file.hpp"
 #include "tools/study/cases/case.hpp"
-#include "tools/study/cases/wild_draw.hpp"
+#include "tools/study/draws/wild_draw.hpp"
 
 namespace hotfire::study {
 

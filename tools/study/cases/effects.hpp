@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/study/cases/random.hpp"
+#include "tools/study/draws/random.hpp"
 #include "tools/study/reference/reference_axis.hpp"
 
 namespace hotfire::study {

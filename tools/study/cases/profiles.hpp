@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/study/cases/random.hpp"
+#include "tools/study/draws/random.hpp"
 
 namespace hotfire::study {
 

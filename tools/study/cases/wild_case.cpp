@@ -6,7 +6,7 @@
 
 #include "tools/study/cases/case_parts.hpp"
 #include "tools/study/cases/recording.hpp"
-#include "tools/study/cases/wild_draw.hpp"
+#include "tools/study/draws/wild_draw.hpp"
 
 namespace hotfire::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/study/cases/wild_draw.hpp"
+#include "tools/study/draws/wild_draw.hpp"
 
 namespace hotfire::study {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tools/study/cases/wild_draw.hpp"
+#include "tools/study/draws/wild_draw.hpp"
 
 namespace hotfire::study {
 namespace {

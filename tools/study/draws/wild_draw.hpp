@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "tools/study/cases/random.hpp"
+#include "tools/study/draws/random.hpp"
 #include "tools/study/reference/reference_axis.hpp"
 
 namespace hotfire::study {
