@@ -16,6 +16,7 @@
 #include "tools/study/tally/candidate_fit.hpp"
 #include "tools/study/tally/cost.hpp"
 #include "tools/study/tally/judge.hpp"
+#include "tools/study/tally/similarity.hpp"
 #include "tools/study/tally/tally.hpp"
 
 namespace hotfire::study {
@@ -27,7 +28,8 @@ struct Options {
   std::vector<std::string> folders;
   unsigned threads = 1;
   bool generate_only = false;
-  bool listed = false;  ///< of `wild`: each beside a listed effect
+  bool listed = false;      ///< of `wild`: each beside a listed effect
+  bool similarity = false;  ///< each case twice, the second time on a smaller and faster rig
   bool json = false;
 };
 
@@ -66,6 +68,11 @@ class Court {
   explicit Court(const Options& options) : options_(options) { google::SetCommandLineOption("minloglevel", "3"); }
 
   void judge_case(const std::filesystem::path& folder) {
+    if (options_.similarity) {
+      pairs_.push_back(judge_similar(folder, options_.threads));
+      std::cout << (options_.json ? json_of(pairs_.back()).dump() : line_of(pairs_.back())) << std::endl;
+      return;
+    }
     judgements_.push_back(judge(folder, options_.threads));
     if (options_.json) {
       std::cout << json_of(judgements_.back()).dump() << std::endl;
@@ -75,6 +82,10 @@ class Court {
   }
 
   ExitStatus close() const {
+    if (options_.similarity) {
+      std::cout << (options_.json ? nlohmann::json{{"met", all_met(pairs_)}}.dump() + "\n" : "\n" + summary_of(pairs_));
+      return all_met(pairs_) ? ExitStatus::good : ExitStatus::bad_verdict;
+    }
     if (options_.json) {
       std::cout << summary_json(judgements_).dump() << '\n';
     } else {
@@ -86,6 +97,7 @@ class Court {
  private:
   const Options& options_;
   std::vector<Judgement> judgements_;
+  std::vector<SimilarPair> pairs_;
 };
 
 ExitStatus study(const std::vector<CaseOrder>& orders, const Options& options) {
@@ -232,6 +244,8 @@ int run(int argc, char** argv) {
   Options hard;
   Options folders;
   Options wild;
+  Options similarity;
+  similarity.similarity = true;
   std::string write;
   add_wild(program, write, wild);
   add_study(program, "effects", "Every listed effect, alone", 3, effects);
@@ -241,6 +255,8 @@ int run(int argc, char** argv) {
   add_study(program, "two-axes", "Engines with two axes that lack something on one of them, or nothing", 1, two_axes);
   add_study(program, "hard", "Hard data: slow and fast rows, one record or ten, closed loop, faults of a channel, ...", 1,
             hard);
+  add_study(program, "similarity", "Every listed effect as it is, and on a rig of 1/100 the size and ten times the speed", 1,
+            similarity);
   FitArguments candidate;
   add_fit(program, candidate);
   CostArguments cost;
@@ -270,6 +286,8 @@ int run(int argc, char** argv) {
       wild.generate_only = true;
     }
     status = study(wild_orders(wild.selection, wild.listed), wild);
+  } else if (program.got_subcommand("similarity")) {
+    status = study(effect_orders(similarity.selection), similarity);
   } else if (program.got_subcommand("null")) {
     status = study(null_orders(null.selection), null);
   } else if (program.got_subcommand("fit")) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <fstream>
 #include <set>
-#include <sstream>
 
 #include "tools/explain/explain.hpp"
 #include "tools/explain/search/stopwatch.hpp"
@@ -15,6 +14,7 @@
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/study/cases/case.hpp"
+#include "tools/study/tally/ruling.hpp"
 
 namespace hotfire::study {
 
@@ -22,7 +22,6 @@ using Errors = std::map<std::string, double>;
 
 namespace {
 
-constexpr std::string_view kUnlisted = "unlisted@";
 constexpr std::array kScored{"piston", "engine", "piston.pitch", "engine.pitch", "piston.yaw", "engine.yaw"};
 
 /// As `errors_of`, for a model of one axis or several.
@@ -66,30 +65,6 @@ std::vector<Record> given_records(const std::filesystem::path& folder) {
   return records;
 }
 
-bool Judgement::is_unlisted() const {
-  return std::any_of(wanted.begin(), wanted.end(), [](const std::string& word) { return word.starts_with(kUnlisted); });
-}
-
-namespace {
-
-Errors::const_iterator loudest(const Errors& errors) {
-  return std::max_element(errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-}
-
-}  // namespace
-
-std::optional<double> Judgement::left() const {
-  if (after.empty() || effect.empty()) {
-    return std::nullopt;
-  }
-  const auto most = loudest(effect);
-  return after.at(most->first) / most->second;
-}
-
-std::optional<double> Judgement::over_noise() const {
-  return after.empty() ? std::nullopt : std::optional(loudest(after)->second);
-}
-
 namespace {
 
 nlohmann::json truth_of(const std::filesystem::path& folder) {
@@ -99,55 +74,6 @@ nlohmann::json truth_of(const std::filesystem::path& folder) {
     throw FileError(fmt::format("{}: cannot be read; give the folder of a case, with given/ and kept/", path.string()));
   }
   return nlohmann::json::parse(file);
-}
-
-bool is_unlisted_word(const std::string& word) { return word.starts_with(kUnlisted); }
-
-std::vector<std::string> split(const std::string& sites) {
-  std::vector<std::string> words;
-  std::istringstream text(sites);
-  for (std::string word; std::getline(text, word, '|');) {
-    words.push_back(word);
-  }
-  return words;
-}
-
-/// Whether what the finder says of the site is right: the site, or a set with it that is no larger than the largest set of
-/// sites from which no prior separates it.
-bool is_placed(const std::string& said, const std::string& wanted) {
-  constexpr std::size_t kLargestSet = 4;
-  const std::vector<std::string> sites = split(said);
-  const std::vector<std::string> right = split(wanted);
-  return sites.size() <= kLargestSet && std::any_of(sites.begin(), sites.end(), [&](const std::string& site) {
-           return std::find(right.begin(), right.end(), site) != right.end();
-         });
-}
-
-void judge_unlisted(const std::set<std::string>& may_name, Judgement& judgement) {
-  std::multiset<std::string> missing;
-  std::string sites;
-  for (const std::string& word : judgement.wanted) {
-    if (is_unlisted_word(word)) {
-      sites += (sites.empty() ? "" : "|") + word.substr(kUnlisted.size());
-    } else {
-      missing.insert(word);
-    }
-  }
-  bool any = false;
-  bool all_placed = true;
-  for (std::size_t i = 0; i < judgement.found.size(); ++i) {
-    if (const auto listed = missing.find(judgement.found[i]); listed != missing.end()) {
-      missing.erase(listed);
-      continue;
-    }
-    const bool named = !is_unlisted_word(judgement.found[i]);
-    judgement.wrong_name = judgement.wrong_name || (named && !may_name.contains(judgement.found[i]));
-    any = true;
-    all_placed = all_placed && is_placed(judgement.found_sites[i], sites);
-  }
-  judgement.site_right = any && all_placed;
-  judgement.names_right = judgement.failure.empty() && missing.empty();
-  judgement.halved = judgement.left().value_or(1.0) < 0.5;
 }
 
 std::string joined(std::vector<std::string> words) {
@@ -194,23 +120,6 @@ std::map<std::string, double> noise_of(const VehicleFile& model) {
   return noise;
 }
 
-/// One entry of the report's `effects`: a name and its site, or no name and a site, or the `sites` it may be.
-void add_find(const nlohmann::json& effect, Judgement& judgement) {
-  const std::string axis = effect.contains("axis") ? "." + effect.at("axis").get<std::string>() : "";
-  std::vector<std::string> sites = effect.value("sites", std::vector<std::string>{});
-  if (sites.empty() && effect.contains("site")) {
-    sites.push_back(effect.at("site"));
-  }
-  for (std::string& site : sites) {
-    site += axis;
-  }
-  const std::string name = effect.value("name", "unlisted");
-  judgement.found_sites.push_back(fmt::format("{}", fmt::join(sites, "|")));
-  judgement.found.push_back(name == "unlisted" || name == "residual" ? kUnlisted.data() + judgement.found_sites.back()
-                                                                     : name + axis);
-  judgement.found_laws.push_back(effect.value("law", ""));
-}
-
 /// Runs the finder on a case and compares with the unseen record.
 template <class Model>
 void explain_case(const Model& declared, const std::vector<Record>& records, const Record& unseen,
@@ -239,7 +148,7 @@ void explain_case(const Model& declared, const std::vector<Record>& records, con
 
 }  // namespace
 
-Judgement judge(const std::filesystem::path& folder, unsigned threads) {
+Judgement judge(const std::filesystem::path& folder, unsigned threads, const std::optional<Similarity>& similarity) {
   const nlohmann::json truth = truth_of(folder);
   Judgement judgement;
   judgement.name = folder.filename().string();
@@ -262,7 +171,17 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
   }
 
   const auto exclusions = truth.value("exclusions", std::vector<std::string>{});
-  if (is_vehicle(declared)) {
+  if (similarity && is_vehicle(declared)) {
+    throw FileError(fmt::format("{}: two axes; give a case of one axis", declared.string()));
+  }
+  if (similarity) {
+    std::vector<Record> other;
+    for (const Record& record : records) {
+      other.push_back(similar(record, *similarity));
+    }
+    explain_case(similar(load_model(declared), *similarity), other, similar(unseen, *similarity), exclusions, threads,
+                 judgement);
+  } else if (is_vehicle(declared)) {
     explain_case(load_vehicle(declared), records, unseen, exclusions, threads, judgement);
   } else {
     explain_case(load_model(declared), records, unseen, exclusions, threads, judgement);
@@ -270,7 +189,7 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads) {
   judgement.below_noise = !judgement.after.empty() && std::all_of(judgement.after.begin(), judgement.after.end(),
                                                                   [](const auto& error) { return error.second < 1.0; });
   if (judgement.is_unlisted()) {
-    judge_unlisted(truth.value("may_name", std::set<std::string>{}), judgement);
+    rule_on_unlisted(truth.value("may_name", std::set<std::string>{}), judgement);
   } else {
     const std::multiset<std::string> wanted(judgement.wanted.begin(), judgement.wanted.end());
     const std::multiset<std::string> found(judgement.found.begin(), judgement.found.end());

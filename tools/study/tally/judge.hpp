@@ -10,6 +10,7 @@
 
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/record/record.hpp"
+#include "tools/study/cases/similar.hpp"
 
 namespace hotfire::study {
 
@@ -48,7 +49,10 @@ struct Judgement {
 
 /// Explains the case in a folder (case.hpp) from its files and compares with what was kept from the finder. Errors of the
 /// finder are part of the judgement; throws FileError if the folder is no case.
-Judgement judge(const std::filesystem::path& folder, unsigned threads);
+/// With a `similarity` the case is that of a rig of another size: model and records in memory are, the figures in sensor
+/// noise stay.
+Judgement judge(const std::filesystem::path& folder, unsigned threads,
+                const std::optional<Similarity>& similarity = std::nullopt);
 
 /// All records (.csv) of a folder, in the order of their names. Throws FileError if one is bad.
 std::vector<Record> given_records(const std::filesystem::path& folder);
