@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/step_size.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace hotfire::study {
@@ -13,8 +14,9 @@ namespace {
 Record sine_record() {
   Record record;
   record.name = "sine.csv";
-  record.period = 2e-3;
-  record.rows = 1500;
+  // One step of the model on either rig: its longest step does not go with the rig's times.
+  record.period = model::kLongestStep;
+  record.rows = 4000;
   record.channels = {{"command", "rad", std::vector<double>(record.rows)}};
   for (std::size_t i = 0; i < record.rows; ++i) {
     record.channels[0].values[i] = 0.02 * std::sin(2.0 * std::numbers::pi * 2.0 * static_cast<double>(i) * record.period);

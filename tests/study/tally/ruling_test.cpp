@@ -8,7 +8,7 @@
 namespace hotfire::study {
 namespace {
 
-Judgement judged(std::vector<std::string> wanted, const nlohmann::json& effects, double after = 1.0) {
+Judgement judged(std::vector<std::string> wanted, const std::vector<nlohmann::json>& effects, double after = 1.0) {
   Judgement judgement;
   judgement.wanted = std::move(wanted);
   judgement.is_wild = true;
@@ -24,6 +24,24 @@ Judgement judged(std::vector<std::string> wanted, const nlohmann::json& effects,
 
 nlohmann::json named(const char* name, const char* site) { return {{"name", name}, {"site", site}}; }
 
+nlohmann::json among(const std::vector<std::string>& sites) {
+  nlohmann::json effect = nlohmann::json::object();
+  effect["sites"] = sites;
+  return effect;
+}
+
+nlohmann::json without_name(const char* site) {
+  nlohmann::json effect = nlohmann::json::object();
+  effect["site"] = site;
+  return effect;
+}
+
+nlohmann::json residual() {
+  nlohmann::json effect = nlohmann::json::object();
+  effect["name"] = "residual";
+  return effect;
+}
+
 const std::string kValve = "unlisted@valve_command|valve|flow";
 
 }  // namespace
@@ -34,8 +52,8 @@ TEST(StudyRuling, OnlyTheNameOfAListedEffectThatIsNotMissingIsAWrongName) {
   CHECK_TRUE(judged({kValve}, {named("valve_deadband", "valve")}).wrong_name);
   CHECK_FALSE(judged({kValve}, {named("unlisted", "flow")}).wrong_name);
   CHECK_FALSE(judged({kValve}, {named("residual", "piston")}).wrong_name);
-  CHECK_FALSE(judged({kValve}, {{{"site", "piston"}}}).wrong_name);
-  CHECK_FALSE(judged({kValve}, {{{"name", "unlisted"}, {"sites", {"valve", "flow"}}}}).wrong_name);
+  CHECK_FALSE(judged({kValve}, {without_name("piston")}).wrong_name);
+  CHECK_FALSE(judged({kValve}, {among({"valve", "flow"})}).wrong_name);
   // A true part of the unlisted one, and the listed one beside it.
   CHECK_FALSE(judged({"unlisted@engine_torque"}, {named("gimbal_friction", "engine_torque")}).wrong_name);
   CHECK_FALSE(judged({"valve_deadband", kValve}, {named("valve_deadband", "valve")}).wrong_name);
@@ -46,10 +64,10 @@ TEST(StudyRuling, ASiteIsRightIfEverythingUnlistedIsAtOneThatIs) {
   CHECK_TRUE(judged({kValve}, {named("unlisted", "flow")}).site_right);
   CHECK_FALSE(judged({kValve}, {named("unlisted", "piston")}).site_right);
   CHECK_FALSE(judged({kValve}, {named("unlisted", "flow"), named("unlisted", "piston")}).site_right);
-  CHECK_FALSE(judged({kValve}, nlohmann::json::array()).site_right);
-  CHECK_TRUE(judged({kValve}, {{{"sites", {"piston", "flow"}}}}).site_right);
-  CHECK_FALSE(judged({kValve}, {{{"sites", {"piston", "flow", "command", "structure", "load_spring"}}}}).site_right);
-  CHECK_FALSE(judged({kValve}, {{{"name", "residual"}}}).site_right);
+  CHECK_FALSE(judged({kValve}, {}).site_right);
+  CHECK_TRUE(judged({kValve}, {among({"piston", "flow"})}).site_right);
+  CHECK_FALSE(judged({kValve}, {among({"piston", "flow", "command", "structure", "load_spring"})}).site_right);
+  CHECK_FALSE(judged({kValve}, {residual()}).site_right);
   // The listed one alone tells nothing of the other's site.
   CHECK_FALSE(judged({"valve_deadband", kValve}, {named("valve_deadband", "valve")}).site_right);
   CHECK_TRUE(judged({"valve_deadband", kValve}, {named("valve_deadband", "valve"), named("unlisted", "flow")}).site_right);

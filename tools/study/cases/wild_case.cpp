@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "tools/study/cases/case_parts.hpp"
@@ -25,7 +26,8 @@ constexpr double kMostMoved = 0.5;
 double loudest(const ReferenceRows& a, const ReferenceRows& b, double noise_factor) {
   double most = 0.0;
   for (std::size_t c = 0; c < 2; ++c) {
-    most = std::max(most, rms_of_difference(a, b, c) / (kSensorGrades[c].noise * noise_factor));
+    const double size = rms_of_difference(a, b, c) / (kSensorGrades[c].noise * noise_factor);
+    most = std::isfinite(size) ? std::max(most, size) : std::numeric_limits<double>::infinity();
   }
   return most;
 }
