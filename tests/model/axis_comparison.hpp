@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/model/plants.hpp"
-#include "tools/study/reference_axis.hpp"
+#include "tools/study/reference/reference_axis.hpp"
 
 namespace hotfire::test {
 

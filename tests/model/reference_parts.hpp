@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/study/reference_equations.hpp"
+#include "tools/study/reference/reference_equations.hpp"
 
 namespace hotfire::test {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "tests/model/reference_parts.hpp"
-#include "tools/study/cvode_integrator.hpp"
+#include "tools/study/reference/cvode_integrator.hpp"
 
 namespace hotfire::test {
 namespace {

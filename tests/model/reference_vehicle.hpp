@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "tools/study/reference_axis.hpp"
+#include "tools/study/reference/reference_axis.hpp"
 
 namespace hotfire::test {
 

@@ -7,8 +7,8 @@
 #include "tests/files/scratch.hpp"
 #include "tools/explain/explain.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
-#include "tools/study/case.hpp"
-#include "tools/study/random.hpp"
+#include "tools/study/cases/case.hpp"
+#include "tools/study/draws/random.hpp"
 
 namespace hotfire::study {
 namespace {

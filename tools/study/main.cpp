@@ -11,12 +11,13 @@
 #include <stdexcept>
 
 #include "tools/files/text/error.hpp"
-#include "tools/study/candidate_fit.hpp"
-#include "tools/study/case.hpp"
-#include "tools/study/cost.hpp"
-#include "tools/study/judge.hpp"
-#include "tools/study/orders.hpp"
-#include "tools/study/tally.hpp"
+#include "tools/study/cases/case.hpp"
+#include "tools/study/cases/orders.hpp"
+#include "tools/study/tally/candidate_fit.hpp"
+#include "tools/study/tally/cost.hpp"
+#include "tools/study/tally/judge.hpp"
+#include "tools/study/tally/similarity.hpp"
+#include "tools/study/tally/tally.hpp"
 
 namespace hotfire::study {
 namespace {
@@ -27,6 +28,8 @@ struct Options {
   std::vector<std::string> folders;
   unsigned threads = 1;
   bool generate_only = false;
+  bool listed = false;      ///< of `wild`: each beside a listed effect
+  bool similarity = false;  ///< each case twice, the second time on a smaller and faster rig
   bool json = false;
 };
 
@@ -65,6 +68,11 @@ class Court {
   explicit Court(const Options& options) : options_(options) { google::SetCommandLineOption("minloglevel", "3"); }
 
   void judge_case(const std::filesystem::path& folder) {
+    if (options_.similarity) {
+      pairs_.push_back(judge_similar(folder, options_.threads));
+      std::cout << (options_.json ? json_of(pairs_.back()).dump() : line_of(pairs_.back())) << std::endl;
+      return;
+    }
     judgements_.push_back(judge(folder, options_.threads));
     if (options_.json) {
       std::cout << json_of(judgements_.back()).dump() << std::endl;
@@ -74,6 +82,10 @@ class Court {
   }
 
   ExitStatus close() const {
+    if (options_.similarity) {
+      std::cout << (options_.json ? nlohmann::json{{"met", all_met(pairs_)}}.dump() + "\n" : "\n" + summary_of(pairs_));
+      return all_met(pairs_) ? ExitStatus::good : ExitStatus::bad_verdict;
+    }
     if (options_.json) {
       std::cout << summary_json(judgements_).dump() << '\n';
     } else {
@@ -85,6 +97,7 @@ class Court {
  private:
   const Options& options_;
   std::vector<Judgement> judgements_;
+  std::vector<SimilarPair> pairs_;
 };
 
 ExitStatus study(const std::vector<CaseOrder>& orders, const Options& options) {
@@ -203,6 +216,20 @@ void add_study(CLI::App& program, const char* name, const char* what, std::uint6
   add_judging(*command, options);
 }
 
+/// Options of `wild`: those of a study but for the names.
+void add_wild(CLI::App& program, std::string& write, Options& options) {
+  CLI::App* command = program.add_subcommand("wild", "Effects drawn at random, from laws that the finder does not share");
+  options.selection.seeds = 100;
+  command->add_option("--count", options.selection.seeds, "how many draws")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100'000}))
+      ->capture_default_str();
+  command->add_option("--first-seed", options.selection.first_seed, "the seed of the first of them")->capture_default_str();
+  command->add_flag("--listed", options.listed, "each beside a listed effect drawn at random");
+  auto* keep = command->add_option("--out", options.out, "keep the cases in this folder, one folder a case");
+  command->add_option("--write", write, "only make the cases, in this folder")->excludes(keep);
+  add_judging(*command, options);
+}
+
 int run(int argc, char** argv) {
   CLI::App program("How often hotfire explain is right, on cases made by an independent simulator", "hotfire-study");
   program.require_subcommand(1);
@@ -216,6 +243,11 @@ int run(int argc, char** argv) {
   Options two_axes;
   Options hard;
   Options folders;
+  Options wild;
+  Options similarity;
+  similarity.similarity = true;
+  std::string write;
+  add_wild(program, write, wild);
   add_study(program, "effects", "Every listed effect, alone", 3, effects);
   add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
   add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
@@ -223,6 +255,8 @@ int run(int argc, char** argv) {
   add_study(program, "two-axes", "Engines with two axes that lack something on one of them, or nothing", 1, two_axes);
   add_study(program, "hard", "Hard data: slow and fast rows, one record or ten, closed loop, faults of a channel, ...", 1,
             hard);
+  add_study(program, "similarity", "Every listed effect as it is, and on a rig of 1/100 the size and ten times the speed", 1,
+            similarity);
   FitArguments candidate;
   add_fit(program, candidate);
   CostArguments cost;
@@ -246,6 +280,14 @@ int run(int argc, char** argv) {
     status = study(two_axis_orders(two_axes.selection), two_axes);
   } else if (program.got_subcommand("hard")) {
     status = study(hard_orders(hard.selection), hard);
+  } else if (program.got_subcommand("wild")) {
+    if (!write.empty()) {
+      wild.out = write;
+      wild.generate_only = true;
+    }
+    status = study(wild_orders(wild.selection, wild.listed), wild);
+  } else if (program.got_subcommand("similarity")) {
+    status = study(effect_orders(similarity.selection), similarity);
   } else if (program.got_subcommand("null")) {
     status = study(null_orders(null.selection), null);
   } else if (program.got_subcommand("fit")) {
