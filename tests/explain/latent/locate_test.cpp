@@ -13,10 +13,8 @@ namespace {
 
 using namespace hotfire;
 using explain::Dataset;
-using explain::Evaluator;
 using explain::Fitted;
 using explain::Located;
-using explain::Resolution;
 using explain::SimplexFamily;
 
 constexpr double kPistonNoise = 8e-6;
@@ -77,15 +75,14 @@ ModelFile with_effect(std::initializer_list<double> values, int option = 0) {
   return model;
 }
 
-Located located_in(const ModelFile& truth) {
+Located located_in(const ModelFile& truth, std::size_t copies = 1) {
   const ModelFile model = declared();
-  const Dataset data = explain::make_dataset(model, {record_of(truth)});
-  const Evaluator<SimplexFamily> evaluator(data, Resolution::coarse, Resolution::rough);
+  const Dataset data = explain::make_dataset(model, std::vector<Record>(copies, record_of(truth)));
   Fitted<SimplexFamily> about;
   about.base = std::get<SimplexParameters>(model.parameters);
   about.free = explain::declared_parameters<SimplexFamily>(about.base, model.tolerance);
   about.u.assign(about.free.size(), 0.0);
-  return explain::locate(evaluator, about, 2);
+  return explain::locate(data, about, 2);
 }
 
 }  // namespace
@@ -129,4 +126,10 @@ TEST(Locate, ADeadBandActsOnTheOilWhichWithoutItsPressureNoSignalTellsFromTheVal
 TEST(Locate, AnInvisibleMissingTermIsNoPlace) {
   // A thousandth of the torque that the test above locates: below what 20 s of the sensors show.
   CHECK(located_in(with_effect<model::DuctHardening>({3e6})).places.empty());
+}
+
+TEST(Locate, LongRecordsAreThinnedAndGiveTheSamePlace) {
+  const Located located = located_in(with_effect<model::DuctHardening>({3e9}), 25);  // 250,000 rows
+  CHECK(located.allows("engine_torque"));
+  CHECK(!located.allows("load_spring"));
 }

@@ -20,6 +20,8 @@ constexpr double kTiedShare = 0.01;
 constexpr double kTiedLeaves = 1.25;
 /// Where no single signal explains the records, places of this share of the best gain stay open.
 constexpr double kOpenShare = 0.1;
+/// Rows at most: of ten minutes at the rate at which candidates are ranked, as much again for long records.
+constexpr double kMostRows = 2e5;
 /// Mean square over noise of what a signal leaves where it is not alone.
 constexpr double kLeftBySingle = 1.9;
 
@@ -59,7 +61,15 @@ std::vector<std::string> Located::likely_sites() const {
   return sites;
 }
 
-Located locate(const Evaluator<SimplexFamily>& evaluator, const Fitted<SimplexFamily>& around, unsigned threads) {
+Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads) {
+  double rows = 0.0;
+  double seconds = 0.0;
+  for (const Experiment& experiment : data.experiments) {
+    rows += static_cast<double>(experiment.rows());
+    seconds += static_cast<double>(experiment.rows()) * experiment.period;
+  }
+  const Dataset thin = rows > kMostRows ? thinned(data, seconds / kMostRows) : data;
+  const Evaluator<SimplexFamily> evaluator(thin, Resolution::coarse, Resolution::rough);
   Located located;
   const LatentProblem problem = latent_problem(evaluator, around, threads);
   if (problem.flows.empty()) {

@@ -72,7 +72,7 @@ template <class Family>
 Located UnlistedStage<Family>::locate_about(const Assessed<Family>& model) const {
   if constexpr (std::is_same_v<Family, SimplexFamily>) {
     options_.watch.progress("locating what is missing");
-    return locate(coarse_, is_within_tolerances(model.model) ? model.model : with_declared_values(model.model),
+    return locate(coarse_.data(), is_within_tolerances(model.model) ? model.model : with_declared_values(model.model),
                   options_.threads);
   } else {
     return {};

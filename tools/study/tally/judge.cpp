@@ -138,6 +138,9 @@ void explain_case(const Model& declared, const std::vector<Record>& records, con
     for (const auto& effect : explanation.report.at("effects")) {
       add_find(effect, judgement);
     }
+    if (judgement.found.empty() && explanation.report.contains("located")) {
+      add_find({{"name", "residual"}, {"sites", explanation.report.at("located").at("sites")}}, judgement);
+    }
     judgement.after = scored_errors(explanation.model, unseen, noise_of(declared));
   } catch (const std::exception& error) {
     judgement.failure = error.what();
