@@ -64,7 +64,8 @@ void append_steps(std::string& text, const Results& measured) {
   }
   const auto add = std::back_inserter(text);
   fmt::format_to(
-      add, "\n## One step\n\n| plant | time | over one axis | wanted | state and constants |\n|---|---|---|---|---|\n");
+      add,
+      "\n## One step\n\n| plant | time | relative to one axis | target | state and constants |\n|---|---|---|---|---|\n");
   const double one = axis->second.seconds;
   const auto row = [&](const std::string& name, const Measured& own, const char* wanted) {
     fmt::format_to(add, "| {} | {:.0f} ns | {:.2f} | {} | {:.1f} KiB |\n", name, 1e9 * own.seconds, own.seconds / one,
@@ -76,11 +77,13 @@ void append_steps(std::string& text, const Results& measured) {
     row(fmt::format("MASV, hot fire, {:.0f} modes", modes), own, modes == 64.0 ? "under 14, under 64 KiB" : "");
   }
   const Line line = fitted(masv);
-  fmt::format_to(add,
-                 "\nMASV is linear in its modes: {:.0f} ns + {:.2f} ns a mode, no point further than {:.1f} % from the "
-                 "line. Counts of\n"
-                 "instructions, which no other load disturbs, are checked by `ctest -R vehicle_cost`.\n",
-                 1e9 * line.constant, 1e9 * line.slope, 100.0 * line.deviation);
+  fmt::format_to(
+      add,
+      "\nThe time of MASV is linear in its number of modes: {:.0f} ns + {:.2f} ns a mode. No point is further than "
+      "{:.1f} %\n"
+      "from that line. `ctest -R vehicle_cost` checks the number of instructions, which does not depend on other "
+      "load.\n",
+      1e9 * line.constant, 1e9 * line.slope, 100.0 * line.deviation);
 }
 
 /// The fastest run of CVODE whose error is no larger; null if none is.
@@ -104,7 +107,7 @@ void append_comparison(std::string& text, const Results& measured, const std::st
   }
   const auto add = std::back_inserter(text);
   fmt::format_to(add,
-                 "\n### {}\n\n| ours, step | error | time | CVODE of no larger error: tolerance, time | ratio "
+                 "\n### {}\n\n| step of the model | error | time | CVODE with no larger error: tolerance, time | ratio "
                  "|\n|---|---|---|---|---|\n",
                  title);
   for (const auto& [parts, ours] : own) {
@@ -114,7 +117,7 @@ void append_comparison(std::string& text, const Results& measured, const std::st
       fmt::format_to(add, " 1e-{:.0f}, {:.0f} ms | {:.0f} |\n", best->first, 1e3 * best->second.seconds,
                      best->second.seconds / ours.seconds);
     } else {
-      fmt::format_to(add, " none that was tried | |\n");
+      fmt::format_to(add, " none of those that ran | |\n");
     }
   }
   fmt::format_to(add, "\n| CVODE, relative tolerance | error | time | evaluations |\n|---|---|---|---|\n");
@@ -131,18 +134,24 @@ void append_work_precision(std::string& text, const Results& measured) {
     return;
   }
   text.append(
-      "\n## Work and precision\n\nSines and steps about every angle, commands held for 1 ms, from a start that is given: "
-      "1.5 s of one axis, 1.2 s of the\n"
-      "others. Error: the largest of any piston or engine, rms over the signal's rms, against CVODE at a relative tolerance "
-      "of 1e-10 on\n"
-      "independently written equations. Wanted: a ratio of at least 20.\n\n"
-      "CVODE is BDF with a dense Jacobian by differences, and starts afresh at every command, which jumps. It is made for "
-      "equations that it\n"
-      "knows nothing of; the model's step is made for these. The reference's equations are written plainly, not for speed: "
-      "a soft spring's\n"
-      "force is found by bisection. *Evaluations* are those of the equations, without what the Jacobian takes: a step of "
-      "the model evaluates\n"
-      "them twice.\n");
+      "\n## Work and precision\n\n"
+      "The tables compare the model's step with CVODE at equal error. The ratio is the time of CVODE over the time of the "
+      "model.\n"
+      "The target is a ratio of at least 20.\n"
+      "\n"
+      "- **Test.** Sines and steps about every angle, with commands that are held for 1 ms. One axis runs for 1.5 s, the "
+      "other\n"
+      "  plants for 1.2 s. The start state is computed before the measurement.\n"
+      "- **Error.** The rms error of a piston or an engine over the rms of its signal; the table gives the largest one. "
+      "The\n"
+      "  reference is CVODE at a relative tolerance of 1e-10, on independently written equations.\n"
+      "- **CVODE.** It uses BDF with a dense Jacobian by differences. It restarts at every command, because the command "
+      "jumps. CVODE\n"
+      "  accepts any equations, whereas the model's step is made for these. The reference equations are written for clarity "
+      "and not\n"
+      "  for speed: bisection solves the force of a soft spring.\n"
+      "- **Evaluations** are those of the equations, without the ones for the Jacobian. A step of the model evaluates them "
+      "twice.\n");
   append_comparison(text, measured, "axis", "One axis, friction, soft spring, dead band");
   append_comparison(text, measured, "taos", "TAOS: two axes, hot fire with every effect, four modes");
   append_comparison(text, measured, "masv", "MASV: eight axes, hot fire with every effect, twelve modes that couple them");
@@ -169,9 +178,17 @@ void Collector::ReportRuns(const std::vector<Run>& runs) {
 
 std::string performance_page(const Results& measured) {
   std::string text =
-      "# Performance\n\nPrinted by `hotfire-benchmark --benchmark_min_time=0.2` (Google Benchmark; processor time, best of "
-      "the repetitions if there are\n"
-      "several). Times are those of one machine and change with it; ratios, taken in one run, hardly do.\n";
+      "# Performance\n\n"
+      "This page gives the cost of a step of the model, and compares its accuracy and cost with those of a general-purpose\n"
+      "integrator. Use it to choose a period, a step and a processor. TAOS is one engine with two axes. MASV is four "
+      "engines with\n"
+      "eight axes on one structure.\n"
+      "\n"
+      "`hotfire-benchmark --benchmark_min_time=0.2` prints this page. Each time is processor time, measured by Google "
+      "Benchmark. It\n"
+      "is the best one if there are several repetitions. Times depend on the machine. Ratios come from one run and hardly "
+      "depend on\n"
+      "the machine.\n";
   append_steps(text, measured);
   append_work_precision(text, measured);
   return text;
