@@ -43,16 +43,17 @@ class ControllerBus {
     std::array<bool, kMostMessages> taken{};
     bool any = false;
     for (std::size_t i = 0; i < reading_messages(settings_.layout, settings_.actuators); ++i) {
-      const hal::CanMailbox& box = bus_.mailbox(i);
-      taken[i] = box.fresh && readings_[i].take(reading_message(settings_.layout, i), box.frame, values[i]);
+      taken[i] = readings_[i].take_newest(reading_message(settings_.layout, i), bus_.arrivals(), i, values[i]).has_value();
       any = any || taken[i];
     }
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
-      const PistonPlace place = place_of_piston(settings_.layout, i);
-      const auto& of_message = values[place.message];
-      if (taken[place.message]) {
-        pistons.values[i] = 0.5 * (of_message[place.value] + of_message[place.value + 1]);
+      for (std::size_t reading = 0; reading < kRedundantReadings; ++reading) {
+        const PistonPlace place = place_of_piston(settings_.layout, i, reading);
+        if (taken[place.message]) {
+          pistons_[i][reading] = values[place.message][place.value];
+        }
       }
+      pistons.values[i] = 0.5 * (pistons_[i][0] + pistons_[i][1]);
     }
     pistons.sequence = readings_[0].sequence();
     return any;
@@ -86,13 +87,14 @@ class ControllerBus {
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
  private:
-  static constexpr std::size_t kMostMessages = 2;
+  static constexpr std::size_t kMostMessages = kMostReadingMessages;
   static constexpr double kNode = 1.0;
 
   Bus& bus_;
   Clock& clock_;
   ControllerBusSettings settings_;
   std::array<MessageFollower, kMostMessages> readings_;
+  std::array<std::array<double, kRedundantReadings>, hal::kMaxActuators> pistons_{};  ///< the newest readings [m]
   PeriodicFrame sync_;
   PeriodicFrame heartbeat_;
   std::uint64_t lost_syncs_ = 0;

@@ -15,7 +15,7 @@ void complain(const hal::Failure& failure) {
 }
 
 CanSession::CanSession(const Options& options, const can::NodeIds& ids)
-    : options_(options), socket_({options.bus, ids.subscriptions, ids.senders, options.frame_layout() == can::Layout::fd}) {}
+    : options_(options), socket_({options.bus, ids.subscriptions, ids.senders, can::is_fd(options.frame_layout())}) {}
 
 int CanSession::open() {
   if (const auto refused = socket_.open()) {

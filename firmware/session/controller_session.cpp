@@ -23,8 +23,7 @@ int run_controller(const Options& options) {
   const auto complete = [&](Session& result) {
     BusAccount account = can_session.account();
     for (std::size_t i = 0; i < can::reading_messages(layout, options.actuators); ++i) {
-      account.messages.push_back(
-          {can::reading_message(layout, i).name, bus.readings(i), can_session.socket().mailbox(i).superseded});
+      account.messages.push_back({can::reading_message(layout, i).name, bus.readings(i)});
     }
     account.unsayable = bus.unsayable();
     account.lost_syncs = bus.lost_syncs();

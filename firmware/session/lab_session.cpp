@@ -49,7 +49,7 @@ LabAccount account_of(const Lab& lab) {
 BusAccount account_of(const CanSession& can_session, const Rig& rig, can::Layout layout, std::size_t messages) {
   BusAccount account = can_session.account();
   for (std::size_t i = 0; i < messages; ++i) {
-    account.messages.push_back({can::reading_message(layout, i).name, rig.readings(i), account.frames.superseded});
+    account.messages.push_back({can::reading_message(layout, i).name, rig.readings(i)});
   }
   account.unsayable = rig.unsayable();
   return account;

@@ -85,13 +85,16 @@ constexpr OptionLine kLines[] = {
     {"--gpio", "CHIP", "lab: the chip with its lines, by path, name or label",
      [](const std::string& value, Options& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }},
     {"--layout", "L",
-     "frames on a CAN bus: classic (two actuators at most) or fd; default classic if there is\n"
-     "room in it",
+     "frames on a CAN bus: classic (two actuators at most), fd, classic-split or fd-split (both readings of a\n"
+     "piston by frames of their own); default classic if there is room in it",
      read_layout},
     {"--command-per-current", "X", "command that a servovalve current on a CAN bus stands for [rad/A]; default 10",
      [](const std::string& value, Options& o) { return read_number(value, 1e-6, 1e6, o.command_per_current); }},
     {"--command-age-ms", "X", "a command on a CAN bus that is older counts as none: no current; default 100",
      [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }},
+    {"--heartbeat-age-ms", "X",
+     "plant: a controller whose HEARTBEAT has been heard and is older gets no current, whatever it commands; default 50",
+     [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }},
     {"--bit-rate", "N", "of the CAN bus, for the check of its load; default what the interface says",
      [](const std::string& value, Options& o) { return read_number(value, 1e4, 1e6, o.bit_rate); }},
     {"--data-bit-rate", "N", "of the data of FD frames; default what the interface says",
