@@ -21,6 +21,7 @@ struct MessageAccount {
 struct BusAccount {
   std::string interface;
   can::Layout layout = can::Layout::classic;
+  bool authenticated = false;  ///< commands and readings are
   std::optional<double> load;  ///< share of the bus in the worst case; none: its bit rate is not known
   hal::CanState state = hal::CanState::good;
   hal::CanCounters frames;
@@ -34,7 +35,7 @@ struct BusAccount {
   std::uint64_t lost() const noexcept {
     std::uint64_t sum = frames.dropped + frames.foreign + frames.impostors;
     for (const MessageAccount& message : messages) {
-      sum += message.counters.damaged() + message.counters.of_two_senders();
+      sum += message.counters.damaged() + message.counters.of_two_senders() + message.counters.unauthentic;
     }
     return sum;
   }

@@ -104,13 +104,17 @@ bool encode(const Message& message, std::span<const double> values, std::uint8_t
     set_raw(signal, static_cast<std::int64_t>(code), made.data);
   }
   made.data[message.crc_bits / 8] = counter;
-  const std::uint16_t check = check_of(message, made.bytes());
-  made.data[0] = static_cast<std::uint8_t>(check);
-  if (message.crc_bits == 16) {
-    made.data[1] = static_cast<std::uint8_t>(check >> 8);
-  }
+  put_check(message, made);
   frame = made;
   return true;
+}
+
+void put_check(const Message& message, hal::CanFrame& frame) noexcept {
+  const std::uint16_t check = check_of(message, frame.bytes());
+  frame.data[0] = static_cast<std::uint8_t>(check);
+  if (message.crc_bits == 16) {
+    frame.data[1] = static_cast<std::uint8_t>(check >> 8);
+  }
 }
 
 }  // namespace hotfire::firmware::can

@@ -19,6 +19,7 @@ struct ControllerBusSettings {
   std::size_t actuators = 1;
   double command_per_current = 1.0;  ///< [rad/A]
   std::int64_t period_ns = 1'000'000;
+  Authentication* authentication = nullptr;  ///< of commands and readings, if it is asked for
 };
 
 /// The controller's side of a CAN bus. For the loop it is a `hal::PlantBus` turned round: what it receives are the pistons
@@ -35,7 +36,11 @@ class ControllerBus {
         clock_(clock),
         settings_(settings),
         sync_(sync::kMessage, settings.period_ns),
-        heartbeat_(heartbeat::kMessage, settings.period_ns) {}
+        heartbeat_(heartbeat::kMessage, settings.period_ns) {
+    for (MessageFollower& reading : readings_) {
+      reading.require(settings.authentication);
+    }
+  }
 
   bool try_receive_command(hal::Command& pistons) noexcept {
     bus_.receive(clock_.now_ns());
@@ -73,6 +78,9 @@ class ControllerBus {
                 frame)) {
       ++unsayable_;
       return false;
+    }
+    if (settings_.authentication != nullptr && message.can_be_authenticated) {
+      settings_.authentication->seal(message, frame);
     }
     const bool taken = bus_.try_send(frame) == hal::CanSend::taken;
     if (sync_.send(bus_, {}) != hal::CanSend::taken) {

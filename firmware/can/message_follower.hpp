@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "firmware/can/authentication.hpp"
 #include "firmware/can/codec.hpp"
 #include "hal/can.hpp"
 
@@ -14,12 +15,13 @@ namespace hotfire::firmware::can {
 /// What became of the frames of one message.
 struct MessageCounters {
   std::uint64_t taken = 0;
-  std::uint64_t superseded = 0;  ///< good, but a newer one was there before they were looked at
-  std::uint64_t repeated = 0;    ///< with the counter of the one before, not taken
-  std::uint64_t backward = 0;    ///< with a counter of the past, not taken
-  std::uint64_t skipped = 0;     ///< counters that never came: lost on the way
-  std::uint64_t refused = 0;     ///< wrong length, check or value, not taken
-  std::uint64_t too_many = 0;    ///< beyond what a single sender sends in the time (FrameBudget)
+  std::uint64_t superseded = 0;   ///< good, but a newer one was there before they were looked at
+  std::uint64_t repeated = 0;     ///< with the counter of the one before, not taken
+  std::uint64_t backward = 0;     ///< with a counter of the past, not taken
+  std::uint64_t skipped = 0;      ///< counters that never came: lost on the way
+  std::uint64_t refused = 0;      ///< wrong length, check or value, not taken
+  std::uint64_t too_many = 0;     ///< beyond what a single sender sends in the time (FrameBudget)
+  std::uint64_t unauthentic = 0;  ///< without the key, or replayed, not taken
 
   /// Damaged on the way, or lost there.
   std::uint64_t damaged() const noexcept { return refused + skipped; }
@@ -31,12 +33,20 @@ struct MessageCounters {
 /// one's by less than half of 256. One that is repeated, or comes late from a gateway's queue, is not taken.
 class MessageFollower {
  public:
+  /// From now on only frames that are authentic are taken, of a message that can be.
+  void require(Authentication* authentication) noexcept { authentication_ = authentication; }
+
   /// The values of a frame. False, and `values` untouched, if it is not to be taken.
   bool take(const Message& message, const hal::CanFrame& frame, std::span<double> values) noexcept {
     std::array<double, kMostSignals> read{};
     std::uint8_t counter = 0;
     if (decode(message, frame, read, counter) != Decoding::good) {
       ++counters_.refused;
+      return false;
+    }
+    if (authentication_ != nullptr && message.can_be_authenticated &&
+        !authentication_->accepts(message, frame, newest_us_)) {
+      ++counters_.unauthentic;
       return false;
     }
     if (!is_new(counter)) {
@@ -94,6 +104,8 @@ class MessageFollower {
     return true;
   }
 
+  Authentication* authentication_ = nullptr;
+  std::uint64_t newest_us_ = 0;  ///< freshness of the newest frame
   bool following_ = false;
   std::uint64_t sequence_ = 0;
   MessageCounters counters_;

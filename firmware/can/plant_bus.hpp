@@ -25,6 +25,7 @@ struct PlantBusSettings {
   std::int64_t period_ns = 1'000'000;
   std::int64_t command_age_ns = std::numeric_limits<std::int64_t>::max();    ///< a command that is older counts as none
   std::int64_t heartbeat_age_ns = std::numeric_limits<std::int64_t>::max();  ///< of the controller's last sign of life
+  Authentication* authentication = nullptr;  ///< of commands and readings, if it is asked for
 };
 
 /// The plant's side of a CAN bus (`hal::PlantBus`): takes the command of its layout, sends the readings of its actuators,
@@ -34,9 +35,9 @@ struct PlantBusSettings {
 /// A servovalve that nobody commands gets no current: when the newest command is older than its age limit, the plant is
 /// commanded zero, and the next frame is the first of a new series. The same when the controller's HEARTBEAT, once heard, is
 /// older than its limit though commands come, and for `kSecondSenderHoldNs` after a frame that a single controller does not
-/// send: of two it cannot know the right one. STATUS carries the number of that fault. What a played fault keeps from being
-/// sent is left out; in the FD layouts, whose frames are of all actuators, it is held, and the frame left out if none is
-/// left.
+/// send: of two it cannot know the right one. So too after a command that is not authentic. STATUS carries the number of
+/// that fault. What a played fault keeps from being sent is left out; in the FD layouts, whose frames are of all actuators,
+/// it is held, and the frame left out if none is left.
 template <hal::CanBus Bus, hal::Clock Clock>
 class PlantBus {
  public:
@@ -45,7 +46,9 @@ class PlantBus {
         clock_(clock),
         settings_(settings),
         status_(status::kMessage, settings.period_ns),
-        strings_(string_message(settings.layout, 0), settings.period_ns) {}
+        strings_(string_message(settings.layout, 0), settings.period_ns) {
+    commands_.require(settings.authentication);
+  }
 
   /// How long one frame of a second controller keeps the valves without current: as long as between two STATUS frames, so
   /// that one of them tells.
@@ -124,6 +127,14 @@ class PlantBus {
       rival_heard_ = true;
       rival_ns_ = now;
     }
+    if (commands().unauthentic != unauthentic_) {
+      unauthentic_ = commands().unauthentic;
+      forgery_heard_ = true;
+      forgery_ns_ = now;
+    }
+    if (forgery_heard_ && now - forgery_ns_ < kSecondSenderHoldNs) {
+      return Fault::not_authentic;
+    }
     if (rival_heard_ && now - rival_ns_ < kSecondSenderHoldNs) {
       return Fault::second_sender;
     }
@@ -159,6 +170,9 @@ class PlantBus {
     if (!encode(message, values, static_cast<std::uint8_t>(counter), frame)) {
       ++unsayable_;
       return false;
+    }
+    if (settings_.authentication != nullptr && message.can_be_authenticated) {
+      settings_.authentication->seal(message, frame);
     }
     return bus_.try_send(frame) == hal::CanSend::taken;
   }
@@ -238,6 +252,9 @@ class PlantBus {
   Fault refused_{};
   bool heartbeat_heard_ = false;
   bool rival_heard_ = false;
+  std::uint64_t unauthentic_ = 0;
+  std::int64_t forgery_ns_ = 0;
+  bool forgery_heard_ = false;
   bool commanded_ = false;
   bool stale_ = false;
   std::uint64_t stale_cycles_ = 0;

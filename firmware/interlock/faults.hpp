@@ -30,6 +30,7 @@ enum class Fault : std::uint8_t {
   second_sender = 36,
   command_not_answered = 37,
   heartbeat_lost = 38,
+  not_authentic = 39,
 };
 
 /// Every number is below this.
@@ -42,7 +43,7 @@ struct FaultText {
 };
 
 /// In the order of their numbers.
-inline constexpr std::array<FaultText, 18> kFaults{{
+inline constexpr std::array<FaultText, 19> kFaults{{
     {Fault::stale_command, "stale command", "no new command within its age limit"},
     {Fault::stale_sensor, "stale sensor", "a reading is older than its age limit"},
     {Fault::out_of_range, "out of range", "a reading is outside what its sensor can give"},
@@ -61,6 +62,7 @@ inline constexpr std::array<FaultText, 18> kFaults{{
     {Fault::second_sender, "second sender", "two nodes send the frames of one message"},
     {Fault::command_not_answered, "command not answered", "a node does not say that it has the newest commands"},
     {Fault::heartbeat_lost, "heartbeat lost", "the controller has stopped giving signs of life"},
+    {Fault::not_authentic, "not authentic", "a frame comes from who has not the key, or is a replayed one"},
 }};
 
 /// Of a fault of the list.

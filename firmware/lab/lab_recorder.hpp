@@ -31,8 +31,8 @@ inline constexpr std::array<bool ObservedRig::*, 8> kSeenBits{
 inline constexpr std::array<bool LabInputs::*, 3> kSwitchBits{&LabInputs::arm, &LabInputs::start, &LabInputs::stop};
 
 /// What it has seen of the bus beside those, from bit `kBusShift` of the flags on.
-inline constexpr std::array<bool ObservedRig::*, 2> kBusBits{&ObservedRig::second_sender,
-                                                             &ObservedRig::command_not_answered};
+inline constexpr std::array<bool ObservedRig::*, 3> kBusBits{&ObservedRig::second_sender, &ObservedRig::command_not_answered,
+                                                             &ObservedRig::not_authentic};
 inline constexpr unsigned kBusShift = 52;
 
 /// Everything `Lab::step` is given in a cycle, taken out of its recording bit for bit.

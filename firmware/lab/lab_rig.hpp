@@ -57,6 +57,14 @@ class LabRig {
   /// The recorder whose drops are a fault; null: nothing is recorded.
   void watch(const Recorder* recorder) noexcept { recorder_ = recorder; }
 
+  /// Readings have to be authentic, and commands are made so. Before the loop.
+  void authenticate(can::Authentication& authentication) noexcept {
+    authentication_ = &authentication;
+    for (can::MessageFollower& follower : followers_) {
+      follower.require(&authentication);
+    }
+  }
+
   /// From any thread: the profile is to be stopped and the program to end. `ended` becomes true when nothing is driven then,
   /// and when the profile has been run.
   void ask_to_stop_when(const std::atomic<bool>& asked) noexcept { stop_asked_ = &asked; }
@@ -168,12 +176,15 @@ class LabRig {
     const hal::CanCounters& bus = can_.counters();
     std::uint64_t damaged = bus.dropped + bus.foreign;
     std::uint64_t of_two_senders = bus.impostors;
+    std::uint64_t unauthentic = 0;
     for (std::size_t i = 0; i < messages_; ++i) {
       damaged += followers_[i].counters().damaged();
       of_two_senders += followers_[i].counters().of_two_senders();
+      unauthentic += followers_[i].counters().unauthentic;
     }
     inputs_.rig.bad_frame = damaged_.is_seen(damaged);
     inputs_.rig.second_sender = of_two_senders_.is_seen(of_two_senders);
+    inputs_.rig.not_authentic = unauthentic_.is_seen(unauthentic);
   }
 
   void take_lines() noexcept {
@@ -222,6 +233,9 @@ class LabRig {
       ++unsayable_;
       return false;
     }
+    if (authentication_ != nullptr && message.can_be_authenticated) {
+      authentication_->seal(message, frame);
+    }
     const hal::CanSend sent = can_.try_send(frame);
     const bool taken = sent == hal::CanSend::taken;
     not_taken_ = taken ? 0 : sent == hal::CanSend::queue_full ? kMostNotTaken : not_taken_ + 1;
@@ -265,6 +279,8 @@ class LabRig {
   std::array<std::int64_t, kMostMessages> arrived_ns_{};
   Growth damaged_;
   Growth of_two_senders_;
+  Growth unauthentic_;
+  can::Authentication* authentication_ = nullptr;
   std::uint64_t unsayable_ = 0;
   std::uint64_t undriven_cycles_ = 0;
   std::int64_t sent_ns_ = 0;  ///< when the last command was handed over; 0: none since driving began

@@ -17,9 +17,10 @@ std::string load_text(const BusAccount& bus) {
 
 std::string text_of(const BusAccount& bus) {
   const hal::CanCounters& frames = bus.frames;
-  std::string result = text("  bus           %s, %s layout, %s; %s\n", bus.interface.c_str(),
-                            can::kLayouts[static_cast<std::size_t>(bus.layout)].data(),
-                            hal::kCanStates[static_cast<std::size_t>(bus.state)], load_text(bus).c_str());
+  std::string result =
+      text("  bus           %s, %s layout%s, %s; %s\n", bus.interface.c_str(),
+           can::kLayouts[static_cast<std::size_t>(bus.layout)].data(), bus.authenticated ? ", authenticated" : "",
+           hal::kCanStates[static_cast<std::size_t>(bus.state)], load_text(bus).c_str());
   result += text(
       "  frames in     %llu received, %llu superseded, %llu foreign, %llu under own ids, %llu dropped by the kernel, %llu "
       "of errors\n",
@@ -30,10 +31,12 @@ std::string text_of(const BusAccount& bus) {
                  whole(bus.unsayable));
   for (const MessageAccount& message : bus.messages) {
     const can::MessageCounters& counters = message.counters;
-    result +=
-        text("  %s: %llu taken, %llu superseded, %llu lost, %llu repeated, %llu out of order, %llu too many, %llu refused\n",
-             message.name.data(), whole(counters.taken), whole(counters.superseded), whole(counters.skipped),
-             whole(counters.repeated), whole(counters.backward), whole(counters.too_many), whole(counters.refused));
+    result += text(
+        "  %s: %llu taken, %llu superseded, %llu lost, %llu repeated, %llu out of order, %llu too many, %llu refused, %llu "
+        "not authentic\n",
+        message.name.data(), whole(counters.taken), whole(counters.superseded), whole(counters.skipped),
+        whole(counters.repeated), whole(counters.backward), whole(counters.too_many), whole(counters.refused),
+        whole(counters.unauthentic));
   }
   if (bus.stale_cycles + bus.too_old > 0) {
     result += text("  stale         %llu cycles without a command that is young enough, %llu commands taken in too late\n",
@@ -47,6 +50,7 @@ void add_to(Json& json, const BusAccount& bus) {
   json.open("bus");
   json.add("interface", bus.interface);
   json.add("layout", can::kLayouts[static_cast<std::size_t>(bus.layout)]);
+  json.add("authenticated", bus.authenticated);
   json.add("state", hal::kCanStates[static_cast<std::size_t>(bus.state)]);
   if (bus.load) {
     json.add("worst_case_load", *bus.load);
@@ -75,6 +79,7 @@ void add_to(Json& json, const BusAccount& bus) {
     json.add("repeated", message.counters.repeated);
     json.add("out_of_order", message.counters.backward);
     json.add("too_many", message.counters.too_many);
+    json.add("not_authentic", message.counters.unauthentic);
     json.add("refused", message.counters.refused);
     json.close();
   }

@@ -18,7 +18,8 @@ int run_controller(const Options& options) {
     return status;
   }
   Clock clock;
-  Bus bus(can_session.socket(), clock, {layout, options.actuators, options.command_per_current, options.loop.period_ns});
+  Bus bus(can_session.socket(), clock,
+          {layout, options.actuators, options.command_per_current, options.loop.period_ns, can_session.authentication()});
   ReferenceController controller(options.source, static_cast<double>(options.loop.period_ns) * 1e-9, options.actuators);
   const auto complete = [&](Session& result) {
     BusAccount account = can_session.account();

@@ -46,7 +46,7 @@ class PlantSession {
     CanPlantBus wire(session.socket(), clock_,
                      {options_.frame_layout(), options_.actuators, Plant::channels.size(), options_.command_per_current,
                       options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6),
-                      static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6)});
+                      static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6), session.authentication()});
     const Complete complete = [&](Session& result) {
       BusAccount account = session.account();
       account.messages = {{can::command_message(options_.frame_layout()).name, wire.commands()},

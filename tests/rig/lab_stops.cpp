@@ -39,6 +39,8 @@ bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
       return in.rig.bad_frame;
     case Fault::second_sender:
       return in.rig.second_sender;
+    case Fault::not_authentic:
+      return in.rig.not_authentic;
     case Fault::command_not_answered:
       return in.rig.command_not_answered;
     case Fault::bus_off:

@@ -80,6 +80,7 @@ TEST(Faults, EachSignalOfTheRigIsItsOwnFault) {
       {Fault::bad_frame, [](ObservedRig& r) { r.bad_frame = true; }},
       {Fault::second_sender, [](ObservedRig& r) { r.second_sender = true; }},
       {Fault::command_not_answered, [](ObservedRig& r) { r.command_not_answered = true; }},
+      {Fault::not_authentic, [](ObservedRig& r) { r.not_authentic = true; }},
       {Fault::bus_off, [](ObservedRig& r) { r.bus_off = true; }},
       {Fault::bus_down, [](ObservedRig& r) { r.bus_down = true; }},
       {Fault::transmit_queue_full, [](ObservedRig& r) { r.transmit_queue_full = true; }},

@@ -76,6 +76,7 @@ TEST(Lab, EveryFaultEndsDrivingInItsCycleAndNothingMovesUntilArmedAgain) {
       {Fault::bad_frame, [](LabInputs& in) { in.rig.bad_frame = true; }},
       {Fault::second_sender, [](LabInputs& in) { in.rig.second_sender = true; }},
       {Fault::command_not_answered, [](LabInputs& in) { in.rig.command_not_answered = true; }},
+      {Fault::not_authentic, [](LabInputs& in) { in.rig.not_authentic = true; }},
       {Fault::bus_off, [](LabInputs& in) { in.rig.bus_off = true; }},
       {Fault::bus_down, [](LabInputs& in) { in.rig.bus_down = true; }},
       {Fault::transmit_queue_full, [](LabInputs& in) { in.rig.transmit_queue_full = true; }},

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "tests/firmware/lab/lab_on_wire.hpp"
+#include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::firmware {
 
@@ -254,12 +255,20 @@ TEST_GROUP(SplitReadings){};
 
 TEST(SplitReadings, NodeOfOneReadingThatFallsSilentIsStaleAndOneThatSaysSomethingElseDisagrees) {
   for (const can::Layout layout : {can::Layout::classic_split, can::Layout::fd_split}) {
-    Rivals silent(layout);
-    silent.sends = false;
-    silent.before_lab = [&] { silent.plant.try_send(silent.reading(0, static_cast<std::uint8_t>(silent.counter - 1))); };
-    silent.cycles(7);
-    CHECK(!silent.drives());
-    CHECK(silent.faults().has(Fault::stale_sensor));
+    for (std::size_t quiet = 0; quiet < can::reading_messages(layout, can::most_actuators(layout)); ++quiet) {
+      Rivals silent(layout);
+      silent.sends = false;
+      silent.before_lab = [&] {
+        for (std::size_t i = 0; i < silent.messages(); ++i) {
+          if (i != quiet) {
+            silent.plant.try_send(silent.reading(i, static_cast<std::uint8_t>(silent.counter - 1)));
+          }
+        }
+      };
+      silent.cycles(7);
+      CHECK(!silent.drives());
+      CHECK(silent.faults().has(Fault::stale_sensor));
+    }
 
     Rivals wrong(layout);
     wrong.sends = false;
@@ -271,6 +280,42 @@ TEST(SplitReadings, NodeOfOneReadingThatFallsSilentIsStaleAndOneThatSaysSomethin
     };
     wrong.cycle();
     CHECK(wrong.lab.outputs().interlock.first == Fault::readings_disagree);
+  }
+}
+
+TEST_GROUP(LabAuthentication){};
+
+TEST(LabAuthentication, ReadingWithoutTheKeyIsAFaultAndOneWithItIsNotAndNothingIsAllocated) {
+  constexpr can::AuthenticationKey kKey{1, 2, 3};
+  constexpr std::int64_t kTolerance = 1'000'000'000;
+  const can::Authentication::RealTime no_time = []() noexcept { return std::int64_t{0}; };
+  for (const can::Layout layout : {can::Layout::fd, can::Layout::fd_split}) {
+    can::Authentication of_lab(kKey, kTolerance, no_time);
+    can::Authentication of_plant(kKey, kTolerance, no_time);
+    LabOnWire world(settings_of(layout), layout);
+    world.rig.authenticate(of_lab);
+    world.sends = false;
+    world.before_lab = [&] {
+      for (std::size_t i = 0; i < can::reading_messages(layout, world.actuators); ++i) {
+        hal::CanFrame frame = world.reading(i, static_cast<std::uint8_t>(world.counter - 1));
+        of_plant.seal(can::reading_message(layout, i), frame);
+        world.plant.try_send(frame);
+      }
+    };
+    world.run();
+    {
+      const test::AllocationGuard guard;
+      world.cycles(300);
+      UNSIGNED_LONGS_EQUAL(0, guard.allocations() + guard.releases());
+    }
+    CHECK(world.lab.outputs().interlock.state == RigState::running);
+    std::uint64_t newest = 0;
+    CHECK(of_plant.accepts(can::command_message(layout), world.plant.mailbox(0).frame, newest));
+    world.before_lab = [] {};
+    world.sends = true;
+    world.cycle();
+    CHECK(!world.on(kSupply));
+    CHECK(world.lab.outputs().interlock.first == Fault::not_authentic);
   }
 }
 
