@@ -92,7 +92,7 @@ TEST(Options, KeyIsAFileOfItsDigitsThatNobodyElseMayUse) {
   STRCMP_CONTAINS("others may use it", with(digits, 0640).refused->what.c_str());
   STRCMP_CONTAINS("others may use it", with(digits, 0604).refused->what.c_str());
   for (const std::string& wrong :
-       {std::string(), digits + "0", digits.substr(1), std::string(digits).replace(0, 1, "x"), digits + "\n\n"}) {
+       {std::string(), digits + "0", digits.substr(1), std::string("x00102030405060708090a0b0c0d0e0F"), digits + "\n\n"}) {
     STRCMP_CONTAINS("not a key", with(wrong, 0600).refused->what.c_str());
   }
   STRCMP_CONTAINS("No such file", read_key(path).refused->what.c_str());
