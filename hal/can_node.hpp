@@ -31,7 +31,8 @@ class CanNode {
     for (std::size_t i = 0; i < subscribed_; ++i) {
       if (subscriptions_[i].id == frame.id) {
         if (subscriptions_[i].fd != frame.fd) {
-          break;
+          ++counters_.foreign;
+          return;
         }
         CanMailbox& box = mailboxes_[i];
         const bool overtaken = box.fresh;
