@@ -36,7 +36,9 @@ int main(int count, char** values) {
     return fail("rig_event");
   }
   if (of_process) {
-    if (kill(std::atoi(values[2]), event == "stop" ? SIGSTOP : SIGKILL) != 0) {
+    char* end = nullptr;
+    const long process = std::strtol(values[2], &end, 10);
+    if (*end != '\0' || process <= 1 || kill(static_cast<pid_t>(process), event == "stop" ? SIGSTOP : SIGKILL) != 0) {
       return fail("kill");
     }
     outb(event == "stop" ? kStopped : kKilled, kPort);
