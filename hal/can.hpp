@@ -12,6 +12,8 @@ namespace hotfire::hal {
 inline constexpr std::size_t kMaxCanData = 64;
 inline constexpr std::size_t kMaxCanSubscriptions = 32;
 inline constexpr std::size_t kMaxCanSenders = 32;
+/// Frames that one `receive` takes in.
+inline constexpr std::size_t kMaxCanArrivals = 256;
 
 /// What tells one frame of a bus from another: 11 bits, or 29 if extended.
 struct CanId {
@@ -47,6 +49,13 @@ struct CanMailbox {
   bool fresh = false;            ///< arrived by the last `receive`
 };
 
+/// A frame that a `receive` has taken in.
+struct CanArrival {
+  std::size_t subscription = 0;  ///< of which it is
+  CanFrame frame;
+  std::int64_t arrived_ns = 0;  ///< on CLOCK_MONOTONIC, by the kernel's stamp
+};
+
 /// How a bus is, best first. Bus-off and down are kept until a person's `rearm`, whatever the bus says later.
 enum class CanState : std::uint8_t { good, warning, passive, bus_off, down };
 inline constexpr std::array<const char*, 5> kCanStates{"good", "warning", "passive", "bus-off", "down"};
@@ -55,6 +64,7 @@ struct CanCounters {
   std::uint64_t received = 0;       ///< frames of a subscription
   std::uint64_t superseded = 0;     ///< of these, overtaken by a newer one before they were seen
   std::uint64_t foreign = 0;        ///< of a subscribed id, but the other format or cut short
+  std::uint64_t impostors = 0;      ///< of an id that this node sends, from another node
   std::uint64_t dropped = 0;        ///< by the kernel because `receive` was called too late
   std::uint64_t error_frames = 0;   ///< reports of the controller
   std::uint64_t sent = 0;           ///< handed to the bus
@@ -72,6 +82,8 @@ enum class CanSend : std::uint8_t { taken, pending, queue_full, unusable };
 ///
 /// - `receive(now_ns)`: takes in all that has arrived, `now_ns` being the loop's time. Once a cycle. Never blocks; bounded.
 /// - `mailbox(i)`: the newest frame of subscription `i`; the older ones are dropped and counted.
+/// - `arrivals()`: every frame of a subscription that the last `receive` took in, oldest first, so that a program can check
+///   those too that a newer one has overtaken. Of more than kMaxCanArrivals the later ones are dropped and counted.
 /// - `in_time(i, now_ns)`: there is one, and it is no older than its age limit.
 /// - `try_send(frame)`: hands the frame over now, or drops it and says why. Never blocks, never queues behind an older frame
 ///   of the same id, never retries: the next cycle has a newer one. The id is one of those named at set-up.
@@ -89,6 +101,8 @@ concept CanBus = requires(B& bus, const B& seen, const CanFrame& frame, std::siz
   noexcept->std::same_as<void>;
   { seen.mailbox(i) }
   noexcept->std::same_as<const CanMailbox&>;
+  { seen.arrivals() }
+  noexcept->std::same_as<std::span<const CanArrival>>;
   { seen.in_time(i, now_ns) }
   noexcept->std::same_as<bool>;
   { bus.try_send(frame) }

@@ -21,6 +21,7 @@ class CanNode {
 
   /// A receive begins: what was fresh is seen now.
   void begin_receive() noexcept {
+    arrived_ = 0;
     for (std::size_t i = 0; i < subscribed_; ++i) {
       mailboxes_[i].fresh = false;
     }
@@ -30,7 +31,8 @@ class CanNode {
     for (std::size_t i = 0; i < subscribed_; ++i) {
       if (subscriptions_[i].id == frame.id) {
         if (subscriptions_[i].fd != frame.fd) {
-          break;
+          ++counters_.foreign;
+          return;
         }
         CanMailbox& box = mailboxes_[i];
         const bool overtaken = box.fresh;
@@ -41,10 +43,11 @@ class CanNode {
         box.fresh = true;
         ++box.received;
         ++counters_.received;
+        keep(i, frame, arrived_ns);
         return;
       }
     }
-    ++counters_.foreign;
+    ++(sender(frame.id) < sending_ ? counters_.impostors : counters_.foreign);
   }
 
   /// The bus says that a frame of this id, sent by this node, is out.
@@ -95,11 +98,14 @@ class CanNode {
     for (CanMailbox& box : mailboxes_) {
       box = {};
     }
+    arrived_ = 0;
   }
 
   bool anything_pending() const noexcept { return std::find(pending_.begin(), pending_.end(), true) != pending_.end(); }
 
   const CanMailbox& mailbox(std::size_t i) const noexcept { return mailboxes_[i]; }
+
+  std::span<const CanArrival> arrivals() const noexcept { return std::span(arrivals_).first(arrived_); }
 
   bool in_time(std::size_t i, std::int64_t now_ns) const noexcept {
     return mailboxes_[i].received > 0 && now_ns - mailboxes_[i].arrived_ns <= subscriptions_[i].age_limit_ns;
@@ -110,6 +116,14 @@ class CanNode {
   CanCounters& counters() noexcept { return counters_; }
 
  private:
+  void keep(std::size_t subscription, const CanFrame& frame, std::int64_t arrived_ns) noexcept {
+    if (arrived_ < arrivals_.size()) {
+      arrivals_[arrived_++] = {subscription, frame, arrived_ns};
+    } else {
+      ++counters_.dropped;
+    }
+  }
+
   std::size_t sender(const CanId& id) const noexcept {
     const auto* const end = senders_.begin() + sending_;
     return static_cast<std::size_t>(std::find(senders_.begin(), end, id) - senders_.begin());
@@ -119,6 +133,8 @@ class CanNode {
   std::size_t sending_;
   std::array<CanSubscription, kMaxCanSubscriptions> subscriptions_{};
   std::array<CanMailbox, kMaxCanSubscriptions> mailboxes_{};
+  std::array<CanArrival, kMaxCanArrivals> arrivals_{};
+  std::size_t arrived_ = 0;
   std::array<CanId, kMaxCanSenders> senders_{};
   std::array<bool, kMaxCanSenders> pending_{};
   bool stopped_ = false;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,16 +15,13 @@ namespace hotfire::firmware {
 struct MessageAccount {
   std::string_view name;
   can::MessageCounters counters;
-  std::uint64_t superseded = 0;  ///< overtaken by a newer one before they were looked at
-
-  /// Lost on the way, or damaged.
-  std::uint64_t lost() const noexcept { return counters.skipped - std::min(counters.skipped, superseded); }
 };
 
 /// What a program's CAN bus has been like, for its report.
 struct BusAccount {
   std::string interface;
   can::Layout layout = can::Layout::classic;
+  bool authenticated = false;  ///< commands and readings are
   std::optional<double> load;  ///< share of the bus in the worst case; none: its bit rate is not known
   hal::CanState state = hal::CanState::good;
   hal::CanCounters frames;
@@ -37,9 +33,9 @@ struct BusAccount {
 
   /// Frames that are not as they should be: lost, damaged, repeated or out of order.
   std::uint64_t lost() const noexcept {
-    std::uint64_t sum = frames.dropped;
+    std::uint64_t sum = frames.dropped + frames.foreign + frames.impostors;
     for (const MessageAccount& message : messages) {
-      sum += message.lost() + message.counters.repeated + message.counters.backward + message.counters.refused;
+      sum += message.counters.damaged() + message.counters.of_two_senders() + message.counters.unauthentic;
     }
     return sum;
   }

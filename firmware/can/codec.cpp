@@ -7,26 +7,26 @@
 namespace hotfire::firmware::can {
 namespace {
 
-/// The bytes behind the check, then the id, low byte first (tools/files/can/can_crc.hpp has the law that the tables are made
-/// from).
+/// The bytes behind the check, then the data id, low byte first (tools/files/can/can_crc.hpp has the law that the tables are
+/// made from).
 template <class Crc>
 Crc check_of(const std::array<Crc, 256>& table, Crc start, Crc final_xor, std::span<const std::uint8_t> bytes,
-             std::uint32_t id) noexcept {
+             std::uint16_t data_id) noexcept {
   constexpr unsigned kShift = 8 * (sizeof(Crc) - 1);
   unsigned crc = start;
   const auto add = [&](std::uint8_t byte) { crc = table[((crc >> kShift) ^ byte) & 0xFF] ^ (kShift == 0 ? 0 : crc << 8); };
   for (const std::uint8_t byte : bytes) {
     add(byte);
   }
-  add(static_cast<std::uint8_t>(id));
-  add(static_cast<std::uint8_t>(id >> 8));
+  add(static_cast<std::uint8_t>(data_id));
+  add(static_cast<std::uint8_t>(data_id >> 8));
   return static_cast<Crc>(crc ^ final_xor);
 }
 
 std::uint16_t check_of(const Message& message, std::span<const std::uint8_t> data) noexcept {
   const auto behind = data.subspan(message.crc_bits / 8);
-  return message.crc_bits == 8 ? check_of(kCrc8, kCrc8Start, kCrc8FinalXor, behind, message.id)
-                               : check_of(kCrc16, kCrc16Start, kCrc16FinalXor, behind, message.id);
+  return message.crc_bits == 8 ? check_of(kCrc8, kCrc8Start, kCrc8FinalXor, behind, message.data_id)
+                               : check_of(kCrc16, kCrc16Start, kCrc16FinalXor, behind, message.data_id);
 }
 
 std::uint16_t check_in(const Message& message, std::span<const std::uint8_t> data) noexcept {
@@ -104,13 +104,17 @@ bool encode(const Message& message, std::span<const double> values, std::uint8_t
     set_raw(signal, static_cast<std::int64_t>(code), made.data);
   }
   made.data[message.crc_bits / 8] = counter;
-  const std::uint16_t check = check_of(message, made.bytes());
-  made.data[0] = static_cast<std::uint8_t>(check);
-  if (message.crc_bits == 16) {
-    made.data[1] = static_cast<std::uint8_t>(check >> 8);
-  }
+  put_check(message, made);
   frame = made;
   return true;
+}
+
+void put_check(const Message& message, hal::CanFrame& frame) noexcept {
+  const std::uint16_t check = check_of(message, frame.bytes());
+  frame.data[0] = static_cast<std::uint8_t>(check);
+  if (message.crc_bits == 16) {
+    frame.data[1] = static_cast<std::uint8_t>(check >> 8);
+  }
 }
 
 }  // namespace hotfire::firmware::can

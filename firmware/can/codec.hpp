@@ -25,6 +25,9 @@ Decoding decode(const Message& message, const hal::CanFrame& frame, std::span<do
 /// beyond its range: what cannot be said is not said wrongly. FD frames ask for the faster bit rate.
 bool encode(const Message& message, std::span<const double> values, std::uint8_t counter, hal::CanFrame& frame) noexcept;
 
+/// Puts the check of a frame in its place, after its bytes were changed.
+void put_check(const Message& message, hal::CanFrame& frame) noexcept;
+
 /// Follows the counter of a message.
 class Sequence {
  public:

@@ -19,6 +19,7 @@ struct ControllerBusSettings {
   std::size_t actuators = 1;
   double command_per_current = 1.0;  ///< [rad/A]
   std::int64_t period_ns = 1'000'000;
+  Authentication* authentication = nullptr;  ///< of commands and readings, if it is asked for
 };
 
 /// The controller's side of a CAN bus. For the loop it is a `hal::PlantBus` turned round: what it receives are the pistons
@@ -35,7 +36,11 @@ class ControllerBus {
         clock_(clock),
         settings_(settings),
         sync_(sync::kMessage, settings.period_ns),
-        heartbeat_(heartbeat::kMessage, settings.period_ns) {}
+        heartbeat_(heartbeat::kMessage, settings.period_ns) {
+    for (MessageFollower& reading : readings_) {
+      reading.require(settings.authentication);
+    }
+  }
 
   bool try_receive_command(hal::Command& pistons) noexcept {
     bus_.receive(clock_.now_ns());
@@ -43,16 +48,17 @@ class ControllerBus {
     std::array<bool, kMostMessages> taken{};
     bool any = false;
     for (std::size_t i = 0; i < reading_messages(settings_.layout, settings_.actuators); ++i) {
-      const hal::CanMailbox& box = bus_.mailbox(i);
-      taken[i] = box.fresh && readings_[i].take(reading_message(settings_.layout, i), box.frame, values[i]);
+      taken[i] = readings_[i].take_newest(reading_message(settings_.layout, i), bus_.arrivals(), i, values[i]).has_value();
       any = any || taken[i];
     }
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
-      const PistonPlace place = place_of_piston(settings_.layout, i);
-      const auto& of_message = values[place.message];
-      if (taken[place.message]) {
-        pistons.values[i] = 0.5 * (of_message[place.value] + of_message[place.value + 1]);
+      for (std::size_t reading = 0; reading < kRedundantReadings; ++reading) {
+        const PistonPlace place = place_of_piston(settings_.layout, i, reading);
+        if (taken[place.message]) {
+          pistons_[i][reading] = values[place.message][place.value];
+        }
       }
+      pistons.values[i] = 0.5 * (pistons_[i][0] + pistons_[i][1]);
     }
     pistons.sequence = readings_[0].sequence();
     return any;
@@ -73,6 +79,9 @@ class ControllerBus {
       ++unsayable_;
       return false;
     }
+    if (settings_.authentication != nullptr && message.can_be_authenticated) {
+      settings_.authentication->seal(message, frame);
+    }
     const bool taken = bus_.try_send(frame) == hal::CanSend::taken;
     if (sync_.send(bus_, {}) != hal::CanSend::taken) {
       ++lost_syncs_;
@@ -86,13 +95,14 @@ class ControllerBus {
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
  private:
-  static constexpr std::size_t kMostMessages = 2;
+  static constexpr std::size_t kMostMessages = kMostReadingMessages;
   static constexpr double kNode = 1.0;
 
   Bus& bus_;
   Clock& clock_;
   ControllerBusSettings settings_;
   std::array<MessageFollower, kMostMessages> readings_;
+  std::array<std::array<double, kRedundantReadings>, hal::kMaxActuators> pistons_{};  ///< the newest readings [m]
   PeriodicFrame sync_;
   PeriodicFrame heartbeat_;
   std::uint64_t lost_syncs_ = 0;

@@ -11,12 +11,19 @@
 
 namespace hotfire::firmware::can {
 
-/// Which frames carry commands and readings (docs/can-map.md). `classic`: one engine of two actuators. `fd`: eight.
-enum class Layout : std::uint8_t { classic, fd };
-inline constexpr std::array<std::string_view, 2> kLayouts{"classic", "fd"};
+/// Which frames carry commands and readings (docs/can-map.md). `classic`: one engine of two actuators. `fd`: eight. In a
+/// `split` one the two redundant readings of an actuator come in frames of their own, each from a node of its own, so that
+/// no single node can make them agree.
+enum class Layout : std::uint8_t { classic, fd, classic_split, fd_split };
+inline constexpr std::array<std::string_view, 4> kLayouts{"classic", "fd", "classic-split", "fd-split"};
+
+constexpr bool is_fd(Layout layout) noexcept { return layout == Layout::fd || layout == Layout::fd_split; }
+constexpr bool is_split(Layout layout) noexcept { return layout == Layout::classic_split || layout == Layout::fd_split; }
+/// Whether a reading says which command its node had when it was sent.
+constexpr bool has_echo(Layout layout) noexcept { return layout != Layout::classic; }
 
 constexpr std::size_t most_actuators(Layout layout) noexcept {
-  return layout == Layout::classic ? servovalve_command::kSignals.size() : servovalve_command_fd::kSignals.size();
+  return is_fd(layout) ? servovalve_command_fd::kSignals.size() : servovalve_command::kSignals.size();
 }
 
 /// The layout with the shortest frames that have room for so many actuators.
@@ -25,34 +32,65 @@ constexpr Layout smallest_layout(std::size_t actuators) noexcept {
 }
 
 constexpr const Message& command_message(Layout layout) noexcept {
-  return layout == Layout::classic ? servovalve_command::kMessage : servovalve_command_fd::kMessage;
+  return is_fd(layout) ? servovalve_command_fd::kMessage : servovalve_command::kMessage;
 }
+
+/// Messages that carry the readings of an actuator, at most.
+inline constexpr std::size_t kMostReadingMessages = 4;
+inline constexpr std::size_t kRedundantReadings = 2;
 
 /// Messages that carry the readings of so many actuators.
 constexpr std::size_t reading_messages(Layout layout, std::size_t actuators) noexcept {
-  return layout == Layout::classic ? actuators : 1;
+  return (is_fd(layout) ? 1 : actuators) * (is_split(layout) ? kRedundantReadings : 1);
 }
 
 constexpr const Message& reading_message(Layout layout, std::size_t which) noexcept {
-  return layout == Layout::fd ? pistons_fd::kMessage : which == 0 ? piston_1::kMessage : piston_2::kMessage;
+  constexpr std::array kClassic{&piston_1::kMessage, &piston_2::kMessage};
+  constexpr std::array kClassicSplit{&piston_1_a::kMessage, &piston_1_b::kMessage, &piston_2_a::kMessage,
+                                     &piston_2_b::kMessage};
+  constexpr std::array kFdSplit{&pistons_a_fd::kMessage, &pistons_b_fd::kMessage};
+  switch (layout) {
+    case Layout::fd:
+      return pistons_fd::kMessage;
+    case Layout::classic_split:
+      return *kClassicSplit[which];
+    case Layout::fd_split:
+      return *kFdSplit[which];
+    case Layout::classic:
+      break;
+  }
+  return *kClassic[which];
 }
 
 /// Messages that carry the readings of string potentiometers: four of one engine, or sixteen of four.
-constexpr std::size_t string_messages(Layout layout) noexcept { return layout == Layout::classic ? 2 : 1; }
+constexpr std::size_t string_messages(Layout layout) noexcept { return is_fd(layout) ? 1 : 2; }
 
 constexpr const Message& string_message(Layout layout, std::size_t which) noexcept {
-  return layout == Layout::fd ? strings_fd::kMessage : which == 0 ? strings_12::kMessage : strings_34::kMessage;
+  return is_fd(layout) ? strings_fd::kMessage : which == 0 ? strings_12::kMessage : strings_34::kMessage;
 }
 
-/// Where the two redundant readings of an actuator stand: the message, and the first of its two values.
+/// Where one of the two redundant readings of an actuator stands: the message, and its value there.
 struct PistonPlace {
   std::size_t message;
   std::size_t value;
 };
-constexpr PistonPlace place_of_piston(Layout layout, std::size_t actuator) noexcept {
-  return layout == Layout::classic ? PistonPlace{actuator, piston_1::piston_a}
-                                   : PistonPlace{0, pistons_fd::piston_1_a + 2 * actuator};
+constexpr PistonPlace place_of_piston(Layout layout, std::size_t actuator, std::size_t reading) noexcept {
+  switch (layout) {
+    case Layout::fd:
+      return {0, pistons_fd::piston_1_a + 2 * actuator + reading};
+    case Layout::classic_split:
+      return {2 * actuator + reading, piston_1_a::piston};
+    case Layout::fd_split:
+      return {reading, pistons_a_fd::piston_1 + actuator};
+    case Layout::classic:
+      break;
+  }
+  return {actuator, piston_1::piston_a + reading};
 }
+
+/// Where a reading of a layout with an echo has the counter of the newest command that its node has.
+constexpr std::size_t kEchoPlace = pistons_fd::command_counter;
+static_assert(pistons_a_fd::command_counter == kEchoPlace && piston_1_a::command_counter == kEchoPlace);
 
 constexpr hal::CanId id_of(const Message& message) noexcept { return {message.id, false}; }
 
@@ -62,9 +100,10 @@ struct NodeIds {
   std::vector<hal::CanId> senders;
 };
 
-/// Of a plant: mailbox 0 is the command.
+/// Of a plant: subscription 0 is the command, 1 the heartbeat.
 inline NodeIds plant_ids(Layout layout, std::size_t actuators, bool strings = false) {
-  NodeIds ids{{{id_of(command_message(layout)), command_message(layout).fd}}, {id_of(status::kMessage)}};
+  NodeIds ids{{{id_of(command_message(layout)), command_message(layout).fd}, {id_of(heartbeat::kMessage)}},
+              {id_of(status::kMessage)}};
   for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {
     ids.senders.push_back(id_of(reading_message(layout, i)));
   }
@@ -74,7 +113,7 @@ inline NodeIds plant_ids(Layout layout, std::size_t actuators, bool strings = fa
   return ids;
 }
 
-/// Of a controller: mailbox i is reading message i.
+/// Of a controller: subscription i is reading message i.
 inline NodeIds controller_ids(Layout layout, std::size_t actuators) {
   NodeIds ids{{}, {id_of(sync::kMessage), id_of(command_message(layout)), id_of(heartbeat::kMessage)}};
   for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {

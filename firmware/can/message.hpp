@@ -18,11 +18,14 @@ struct Signal {
   std::int64_t highest_raw;
 };
 
-/// A frame of the CAN map. It begins with a check of 8 or 16 bits and a counter of 8, which `signals` leaves out.
+/// A frame of the CAN map. It begins with a check of 8 or 16 bits and a counter of 8, and one that can be authenticated ends
+/// with freshness and authentication code (authentication.hpp); `signals` leaves all of them out.
 struct Message {
   std::string_view name;
-  std::uint32_t id;  ///< 11 bits
+  std::uint32_t id;       ///< 11 bits
+  std::uint16_t data_id;  ///< what the check covers beside the bytes of the frame: which message it is
   bool fd;
+  bool can_be_authenticated;
   std::uint8_t length;    ///< bytes
   std::uint8_t crc_bits;  ///< 8 or 16
   std::uint32_t cycle_ms;

@@ -3,33 +3,50 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "firmware/can/authentication.hpp"
 #include "firmware/can/codec.hpp"
 #include "hal/can.hpp"
 
 namespace hotfire::firmware::can {
 
-/// What became of the frames of one message. One that was overtaken by a newer one before it was looked at counts as
-/// skipped here and as superseded in its mailbox.
+/// What became of the frames of one message.
 struct MessageCounters {
   std::uint64_t taken = 0;
-  std::uint64_t repeated = 0;  ///< with the counter of the one before, not taken
-  std::uint64_t backward = 0;  ///< with a counter of the past, not taken
-  std::uint64_t skipped = 0;   ///< counters never looked at: superseded, or lost on the way
-  std::uint64_t refused = 0;   ///< wrong length, check or value, not taken
+  std::uint64_t superseded = 0;   ///< good, but a newer one was there before they were looked at
+  std::uint64_t repeated = 0;     ///< with the counter of the one before, not taken
+  std::uint64_t backward = 0;     ///< with a counter of the past, not taken
+  std::uint64_t skipped = 0;      ///< counters that never came: lost on the way
+  std::uint64_t refused = 0;      ///< wrong length, check or value, not taken
+  std::uint64_t too_many = 0;     ///< beyond what a single sender sends in the time (FrameBudget)
+  std::uint64_t unauthentic = 0;  ///< without the key, or replayed, not taken
+
+  /// Damaged on the way, or lost there.
+  std::uint64_t damaged() const noexcept { return refused + skipped; }
+  /// What one sender alone does not do.
+  std::uint64_t of_two_senders() const noexcept { return repeated + backward + too_many; }
 };
 
-/// Takes the newest frame of a message if it says something new: its counter is ahead of the last one's by less than half
-/// of 256. A frame that is repeated, or comes late from a gateway's queue, is not taken.
+/// Follows the frames of one message, every one of them: a frame is taken if it is good and its counter is ahead of the last
+/// one's by less than half of 256. One that is repeated, or comes late from a gateway's queue, is not taken.
 class MessageFollower {
  public:
+  /// From now on only frames that are authentic are taken, of a message that can be.
+  void require(Authentication* authentication) noexcept { authentication_ = authentication; }
+
   /// The values of a frame. False, and `values` untouched, if it is not to be taken.
   bool take(const Message& message, const hal::CanFrame& frame, std::span<double> values) noexcept {
     std::array<double, kMostSignals> read{};
     std::uint8_t counter = 0;
     if (decode(message, frame, read, counter) != Decoding::good) {
       ++counters_.refused;
+      return false;
+    }
+    if (authentication_ != nullptr && message.can_be_authenticated &&
+        !authentication_->accepts(message, frame, newest_us_)) {
+      ++counters_.unauthentic;
       return false;
     }
     if (!is_new(counter)) {
@@ -39,6 +56,26 @@ class MessageFollower {
     ++counters_.taken;
     return true;
   }
+
+  /// Looks at every frame of a subscription; the values are those of the newest that is to be taken. Returns when that one
+  /// arrived; none, and `values` untouched, if there is none.
+  std::optional<std::int64_t> take_newest(const Message& message, std::span<const hal::CanArrival> arrivals,
+                                          std::size_t subscription, std::span<double> values) noexcept {
+    std::optional<std::int64_t> arrived_ns;
+    for (const hal::CanArrival& arrival : arrivals) {
+      if (arrival.subscription == subscription && take(message, arrival.frame, values)) {
+        if (arrived_ns) {
+          --counters_.taken;
+          ++counters_.superseded;
+        }
+        arrived_ns = arrival.arrived_ns;
+      }
+    }
+    return arrived_ns;
+  }
+
+  /// So many frames were more than one sender sends.
+  void note_too_many(std::uint64_t frames) noexcept { counters_.too_many += frames; }
 
   /// The counter of the last frame that was taken, carried on beyond 256.
   std::uint64_t sequence() const noexcept { return sequence_; }
@@ -67,6 +104,8 @@ class MessageFollower {
     return true;
   }
 
+  Authentication* authentication_ = nullptr;
+  std::uint64_t newest_us_ = 0;  ///< freshness of the newest frame
   bool following_ = false;
   std::uint64_t sequence_ = 0;
   MessageCounters counters_;

@@ -23,7 +23,9 @@ struct PlantBusSettings {
   std::size_t channels = 1;          ///< values of a reading that each of them has; the first is its piston [m]
   double command_per_current = 1.0;  ///< [rad/A], or the plant's command unit per ampere
   std::int64_t period_ns = 1'000'000;
-  std::int64_t command_age_ns = std::numeric_limits<std::int64_t>::max();  ///< a command that is older counts as none
+  std::int64_t command_age_ns = std::numeric_limits<std::int64_t>::max();    ///< a command that is older counts as none
+  std::int64_t heartbeat_age_ns = std::numeric_limits<std::int64_t>::max();  ///< of the controller's last sign of life
+  Authentication* authentication = nullptr;  ///< of commands and readings, if it is asked for
 };
 
 /// The plant's side of a CAN bus (`hal::PlantBus`): takes the command of its layout, sends the readings of its actuators,
@@ -31,8 +33,11 @@ struct PlantBusSettings {
 /// `Bus` has the ids of `plant_ids`.
 ///
 /// A servovalve that nobody commands gets no current: when the newest command is older than its age limit, the plant is
-/// commanded zero, and the next frame is the first of a new series. What a played fault keeps from being sent is left out;
-/// in the FD layout, whose frame is of all actuators, it is held, and the frame left out if none is left.
+/// commanded zero, and the next frame is the first of a new series. The same when the controller's HEARTBEAT, once heard, is
+/// older than its limit though commands come, and for `kSecondSenderHoldNs` after a frame that a single controller does not
+/// send: of two it cannot know the right one. So too after a command that is not authentic. STATUS carries the number of
+/// that fault. What a played fault keeps from being sent is left out; in the FD layouts, whose frames are of all actuators,
+/// it is held, and the frame left out if none is left.
 template <hal::CanBus Bus, hal::Clock Clock>
 class PlantBus {
  public:
@@ -41,22 +46,36 @@ class PlantBus {
         clock_(clock),
         settings_(settings),
         status_(status::kMessage, settings.period_ns),
-        strings_(string_message(settings.layout, 0), settings.period_ns) {}
+        strings_(string_message(settings.layout, 0), settings.period_ns) {
+    commands_.require(settings.authentication);
+  }
+
+  /// How long one frame of a second controller keeps the valves without current: as long as between two STATUS frames, so
+  /// that one of them tells.
+  static constexpr std::int64_t kSecondSenderHoldNs = 1'000'000 * std::int64_t{status::kMessage.cycle_ms};
 
   bool try_receive_command(hal::Command& command) noexcept {
     const std::int64_t now = clock_.now_ns();
     bus_.receive(now);
-    const hal::CanMailbox& box = bus_.mailbox(0);
     std::array<double, hal::kMaxActuators> currents{};
-    const bool too_old = box.fresh && now - box.arrived_ns > settings_.command_age_ns;
+    const auto arrived_ns = commands_.take_newest(command_message(settings_.layout), bus_.arrivals(), kCommandBox, currents);
+    const bool too_old = arrived_ns && now - *arrived_ns > settings_.command_age_ns;
     too_old_ += too_old ? 1 : 0;
-    if (box.fresh && !too_old && commands_.take(command_message(settings_.layout), box.frame, currents)) {
+    const Fault refused = refuses_controller(now);
+    const bool first_refused = refused != Fault{} && refused_ == Fault{};
+    refused_ = refused;
+    if (refused != Fault{}) {
+      commanded_ = false;
+      stale_ = false;
+      return first_refused && clear(command);
+    }
+    if (arrived_ns && !too_old) {
       command.values.fill(0.0);
       for (std::size_t i = 0; i < settings_.actuators; ++i) {
         command.values[i] = settings_.command_per_current * currents[i];
       }
       command.sequence = commands_.sequence();
-      arrived_ns_ = box.arrived_ns;
+      arrived_ns_ = *arrived_ns;
       commanded_ = true;
       stale_ = false;
       return true;
@@ -66,12 +85,12 @@ class PlantBus {
 
   bool try_send_reading(const hal::Reading& reading) noexcept {
     if (status_.is_due()) {
-      const double superseded = static_cast<double>(bus_.counters().superseded % kCounts);
-      status_.send(
-          bus_, std::array{static_cast<double>(RigState::running), stale_ ? static_cast<double>(Fault::stale_command) : 0.0,
-                           static_cast<double>(overruns_ % kCounts), superseded});
+      const Fault fault = refused_ != Fault{} ? refused_ : stale_ ? Fault::stale_command : Fault{};
+      const double superseded = static_cast<double>(commands().superseded % kCounts);
+      status_.send(bus_, std::array{static_cast<double>(RigState::running), static_cast<double>(fault),
+                                    static_cast<double>(overruns_ % kCounts), superseded});
     }
-    const bool taken = settings_.layout == Layout::classic ? send_classic(reading) : send_fd(reading);
+    const bool taken = is_fd(settings_.layout) ? send_fd(reading) : send_classic(reading);
     if (reading.string_count > 0 && strings_.is_due()) {
       send_strings(reading);
     }
@@ -82,15 +101,49 @@ class PlantBus {
   void note_overrun() noexcept { ++overruns_; }
 
   const MessageCounters& commands() const noexcept { return commands_.counters(); }
+  const MessageCounters& heartbeats() const noexcept { return heartbeats_.counters(); }
   /// Cycles without a command that is young enough, from the first command on.
   std::uint64_t stale_cycles() const noexcept { return stale_cycles_; }
-  /// Commands that were too old when the loop came to look at them, not taken.
+  /// Commands that were too old when the loop came to look at them, not acted on.
   std::uint64_t too_old() const noexcept { return too_old_; }
   /// Frames that were not sent because a reading is beyond what its signal can carry.
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
  private:
   static constexpr std::uint64_t kCounts = 65536;
+  static constexpr std::size_t kCommandBox = 0;  ///< as in `plant_ids`
+  static constexpr std::size_t kHeartbeatBox = 1;
+
+  /// Why no command is acted on, though one may be there; none if it may be.
+  Fault refuses_controller(std::int64_t now) noexcept {
+    std::array<double, heartbeat::kSignals.size()> said{};
+    const auto heard_ns = heartbeats_.take_newest(heartbeat::kMessage, bus_.arrivals(), kHeartbeatBox, said);
+    heartbeat_heard_ = heartbeat_heard_ || heard_ns;
+    heartbeat_ns_ = heard_ns.value_or(heartbeat_ns_);
+    const std::uint64_t of_two_senders =
+        commands().of_two_senders() + heartbeats().of_two_senders() + bus_.counters().impostors;
+    if (of_two_senders != of_two_senders_) {
+      of_two_senders_ = of_two_senders;
+      rival_heard_ = true;
+      rival_ns_ = now;
+    }
+    if (commands().unauthentic != unauthentic_) {
+      unauthentic_ = commands().unauthentic;
+      forgery_heard_ = true;
+      forgery_ns_ = now;
+    }
+    if (forgery_heard_ && now - forgery_ns_ < kSecondSenderHoldNs) {
+      return Fault::not_authentic;
+    }
+    if (rival_heard_ && now - rival_ns_ < kSecondSenderHoldNs) {
+      return Fault::second_sender;
+    }
+    if (heartbeat_heard_ && now - heartbeat_ns_ > settings_.heartbeat_age_ns) {
+      heartbeats_.forget();
+      return Fault::heartbeat_lost;
+    }
+    return Fault{};
+  }
 
   bool is_first_stale_cycle(std::int64_t now) noexcept {
     if (!commanded_ || now - arrived_ns_ <= settings_.command_age_ns) {
@@ -118,31 +171,60 @@ class PlantBus {
       ++unsayable_;
       return false;
     }
+    if (settings_.authentication != nullptr && message.can_be_authenticated) {
+      settings_.authentication->seal(message, frame);
+    }
     return bus_.try_send(frame) == hal::CanSend::taken;
   }
 
+  /// What every reading message of the layout says.
+  using Values = std::array<std::array<double, pistons_fd::kSignals.size()>, kMostReadingMessages>;
+
+  Values values_of(const hal::Reading& reading) const noexcept {
+    Values values{};
+    for (std::size_t message = 0; has_echo(settings_.layout) && message < values.size(); ++message) {
+      values[message][kEchoPlace] = static_cast<double>(static_cast<std::uint8_t>(reading.command_sequence));
+    }
+    for (std::size_t i = 0; i < settings_.actuators; ++i) {
+      for (std::size_t redundant = 0; redundant < kRedundantReadings; ++redundant) {
+        const PistonPlace place = place_of_piston(settings_.layout, i, redundant);
+        values[place.message][place.value] = reading.values[i * settings_.channels];
+      }
+    }
+    return values;
+  }
+
+  bool send_message(std::size_t which, const Values& values, const hal::Reading& reading) noexcept {
+    const Message& message = reading_message(settings_.layout, which);
+    return send(message, std::span(values[which]).first(message.signals.size()), reading.sequence);
+  }
+
   bool send_classic(const hal::Reading& reading) noexcept {
+    const Values values = values_of(reading);
     bool taken = true;
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
-      const std::size_t value = i * settings_.channels;
-      if (!is_missing(reading, value)) {
-        const double piston = reading.values[value];
-        taken = send(reading_message(Layout::classic, i), std::array{piston, piston}, reading.sequence) && taken;
+      for (std::size_t redundant = 0; redundant < (is_split(settings_.layout) ? kRedundantReadings : 1); ++redundant) {
+        if (!is_missing(reading, i * settings_.channels)) {
+          taken = send_message(place_of_piston(settings_.layout, i, redundant).message, values, reading) && taken;
+        }
       }
     }
     return taken;
   }
 
   bool send_fd(const hal::Reading& reading) noexcept {
-    std::array<double, pistons_fd::kSignals.size()> values{};
-    values[pistons_fd::command_counter] = static_cast<double>(static_cast<std::uint8_t>(reading.command_sequence));
+    const Values values = values_of(reading);
     std::size_t missing = 0;
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
-      const std::size_t place = place_of_piston(Layout::fd, i).value;
-      values[place] = values[place + 1] = reading.values[i * settings_.channels];
       missing += is_missing(reading, i * settings_.channels) ? 1 : 0;
     }
-    return missing == settings_.actuators || send(pistons_fd::kMessage, values, reading.sequence);
+    bool taken = true;
+    const std::size_t messages =
+        missing == settings_.actuators ? 0 : reading_messages(settings_.layout, settings_.actuators);
+    for (std::size_t which = 0; which < messages; ++which) {
+      taken = send_message(which, values, reading) && taken;
+    }
+    return taken;
   }
 
   void send_strings(const hal::Reading& reading) noexcept {
@@ -159,10 +241,20 @@ class PlantBus {
   Clock& clock_;
   PlantBusSettings settings_;
   MessageFollower commands_;
+  MessageFollower heartbeats_;
   PeriodicFrame status_;
   PeriodicFrame strings_;  ///< says when they are due
   std::uint8_t string_counter_ = 0;
   std::int64_t arrived_ns_ = 0;
+  std::int64_t heartbeat_ns_ = 0;
+  std::int64_t rival_ns_ = 0;
+  std::uint64_t of_two_senders_ = 0;
+  Fault refused_{};
+  bool heartbeat_heard_ = false;
+  bool rival_heard_ = false;
+  std::uint64_t unauthentic_ = 0;
+  std::int64_t forgery_ns_ = 0;
+  bool forgery_heard_ = false;
   bool commanded_ = false;
   bool stale_ = false;
   std::uint64_t stale_cycles_ = 0;

@@ -37,7 +37,10 @@ struct ObservedActuator {
 /// The rest of the rig in one cycle.
 struct ObservedRig {
   std::int64_t command_age_ns = 0;
-  bool bad_frame = false;  ///< since the cycle before, as the four that follow
+  bool bad_frame = false;  ///< since the cycle before, as the seven that follow
+  bool second_sender = false;
+  bool command_not_answered = false;
+  bool not_authentic = false;
   bool transmit_queue_full = false;
   bool overrun = false;
   bool dropped_recording = false;
@@ -58,6 +61,9 @@ class FaultChecks {
     FaultSet found;
     found.add_if(!(rig.command_age_ns <= limits_.command_age_ns), Fault::stale_command);
     found.add_if(rig.bad_frame, Fault::bad_frame);
+    found.add_if(rig.second_sender, Fault::second_sender);
+    found.add_if(rig.command_not_answered, Fault::command_not_answered);
+    found.add_if(rig.not_authentic, Fault::not_authentic);
     found.add_if(rig.transmit_queue_full, Fault::transmit_queue_full);
     found.add_if(rig.overrun, Fault::overrun);
     found.add_if(rig.dropped_recording, Fault::recorder_full);

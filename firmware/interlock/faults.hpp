@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -26,7 +27,14 @@ enum class Fault : std::uint8_t {
   limit = 13,
   not_finite = 14,
   recorder_full = 15,
+  second_sender = 36,
+  command_not_answered = 37,
+  heartbeat_lost = 38,
+  not_authentic = 39,
 };
+
+/// Every number is below this.
+inline constexpr std::size_t kFaultNumbers = 64;
 
 struct FaultText {
   Fault fault;
@@ -34,12 +42,13 @@ struct FaultText {
   std::string_view meaning;  ///< one line, for a log
 };
 
-inline constexpr std::array<FaultText, 15> kFaults{{
+/// In the order of their numbers.
+inline constexpr std::array<FaultText, 19> kFaults{{
     {Fault::stale_command, "stale command", "no new command within its age limit"},
     {Fault::stale_sensor, "stale sensor", "a reading is older than its age limit"},
     {Fault::out_of_range, "out of range", "a reading is outside what its sensor can give"},
     {Fault::readings_disagree, "readings disagree", "two redundant readings are further apart than allowed"},
-    {Fault::bad_frame, "bad frame", "a frame's CRC or sequence number is wrong"},
+    {Fault::bad_frame, "bad frame", "a frame is damaged or lost"},
     {Fault::bus_off, "bus-off", "the CAN controller has switched itself off the bus"},
     {Fault::bus_down, "bus down", "the CAN interface is down"},
     {Fault::transmit_queue_full, "transmit queue full", "the bus does not take frames as fast as they are due"},
@@ -50,9 +59,16 @@ inline constexpr std::array<FaultText, 15> kFaults{{
     {Fault::limit, "limit", "a command, its rate or a position is beyond its limit"},
     {Fault::not_finite, "non-finite state", "a value is not a number, or infinite"},
     {Fault::recorder_full, "recorder full", "cycles are no longer recorded"},
+    {Fault::second_sender, "second sender", "two nodes send the frames of one message"},
+    {Fault::command_not_answered, "command not answered", "a node does not say that it has the newest commands"},
+    {Fault::heartbeat_lost, "heartbeat lost", "the controller has stopped giving signs of life"},
+    {Fault::not_authentic, "not authentic", "a frame comes from who has not the key, or is a replayed one"},
 }};
 
-constexpr const FaultText& text_of(Fault fault) noexcept { return kFaults[static_cast<std::size_t>(fault) - 1]; }
+/// Of a fault of the list.
+constexpr const FaultText& text_of(Fault fault) noexcept {
+  return *std::find_if(kFaults.begin(), kFaults.end(), [fault](const FaultText& text) { return text.fault == fault; });
+}
 
 /// Some of the faults.
 class FaultSet {
@@ -83,9 +99,9 @@ class FaultSet {
   constexpr int count() const noexcept { return std::popcount(bits_); }
 
  private:
-  static constexpr std::uint32_t bit(Fault fault) noexcept { return std::uint32_t{1} << static_cast<unsigned>(fault); }
+  static constexpr std::uint64_t bit(Fault fault) noexcept { return std::uint64_t{1} << static_cast<unsigned>(fault); }
 
-  std::uint32_t bits_ = 0;
+  std::uint64_t bits_ = 0;
 };
 
 }  // namespace hotfire::firmware

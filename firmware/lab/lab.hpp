@@ -35,7 +35,7 @@ struct LabSettings {
 struct LabInputs {
   ObservedRig rig;
   std::array<std::array<double, 2>, hal::kMaxActuators> readings{};  ///< [m]
-  std::array<std::int64_t, hal::kMaxActuators> ages_ns{};
+  std::array<std::array<std::int64_t, 2>, hal::kMaxActuators> ages_ns{};
   bool arm = false;
   bool start = false;
   bool stop = false;
@@ -89,6 +89,7 @@ class Lab {
 
   const LabOutputs& outputs() const noexcept { return outputs_; }
   std::size_t actuators() const noexcept { return settings_.actuators; }
+  const FaultLimits& limits() const noexcept { return settings_.limits; }
   /// Where the pistons are, each the mean of its readings [m].
   std::span<const double> positions() const noexcept { return std::span(positions_).first(settings_.actuators); }
   /// Adds the commands and the positions.
@@ -158,8 +159,7 @@ class Lab {
   FaultSet look(const LabInputs& inputs) noexcept {
     std::array<ObservedActuator, hal::kMaxActuators> actuators{};
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
-      actuators[i] = {
-          settings_.piston_per_command * outputs_.commands[i], inputs.readings[i], {inputs.ages_ns[i], inputs.ages_ns[i]}};
+      actuators[i] = {settings_.piston_per_command * outputs_.commands[i], inputs.readings[i], inputs.ages_ns[i]};
     }
     return checks_.look(inputs.rig, std::span(actuators).first(settings_.actuators));
   }
@@ -181,7 +181,7 @@ class Lab {
   std::uint64_t still_cycles_ = 0;
   std::uint64_t armings_ = 0;
   std::uint64_t overruns_ = 0;
-  std::array<std::uint64_t, kFaults.size() + 1> fault_counts_{};
+  std::array<std::uint64_t, kFaultNumbers> fault_counts_{};
   double time_ = 0.0;
   bool at_begin_ = false;
   bool completed_ = false;

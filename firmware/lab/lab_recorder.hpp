@@ -15,16 +15,25 @@ namespace hotfire::firmware {
 
 /// What a recording keeps of each actuator of a lab. `piston` is where it was at the end of the cycle, as in the recording
 /// of a plant; the others are of the cycle itself: the current for its servovalve, sent if anything was driven, then what
-/// the cycle was decided on: the two readings as they had come, and their age.
-enum LabChannel : std::uint8_t { kPiston, kServovalveCurrent, kPistonA, kPistonB, kPistonAge };
-inline const std::array<hal::RecordedChannel, 5> kLabChannels{
-    {{"piston", "m"}, {"servovalve_current", "A"}, {"piston_a", "m"}, {"piston_b", "m"}, {"piston_age", "s"}}};
+/// the cycle was decided on: the two readings as they had come, and the age of each.
+enum LabChannel : std::uint8_t { kPiston, kServovalveCurrent, kPistonA, kPistonB, kPistonAgeA, kPistonAgeB };
+inline const std::array<hal::RecordedChannel, 6> kLabChannels{{{"piston", "m"},
+                                                               {"servovalve_current", "A"},
+                                                               {"piston_a", "m"},
+                                                               {"piston_b", "m"},
+                                                               {"piston_age_a", "s"},
+                                                               {"piston_age_b", "s"}}};
 
 /// What a lab has seen that is a yes or no, from bit `kInputsShift` of the flags of a cycle on, in this order.
 inline constexpr std::array<bool ObservedRig::*, 8> kSeenBits{
     &ObservedRig::bad_frame,      &ObservedRig::transmit_queue_full, &ObservedRig::overrun, &ObservedRig::dropped_recording,
     &ObservedRig::emergency_stop, &ObservedRig::hydraulic_enable,    &ObservedRig::bus_off, &ObservedRig::bus_down};
 inline constexpr std::array<bool LabInputs::*, 3> kSwitchBits{&LabInputs::arm, &LabInputs::start, &LabInputs::stop};
+
+/// What it has seen of the bus beside those, from bit `kBusShift` of the flags on.
+inline constexpr std::array<bool ObservedRig::*, 3> kBusBits{&ObservedRig::second_sender, &ObservedRig::command_not_answered,
+                                                             &ObservedRig::not_authentic};
+inline constexpr unsigned kBusShift = 52;
 
 /// Everything `Lab::step` is given in a cycle, taken out of its recording bit for bit.
 inline LabInputs recorded_inputs(const hal::CycleHead& head, std::span<const double> readings) noexcept {
@@ -41,11 +50,15 @@ inline LabInputs recorded_inputs(const hal::CycleHead& head, std::span<const dou
   for (bool LabInputs::*pressed : kSwitchBits) {
     inputs.*pressed = next();
   }
+  bits = head.flags >> kBusShift;
+  for (bool ObservedRig::*seen : kBusBits) {
+    inputs.rig.*seen = next();
+  }
   inputs.rig.command_age_ns = static_cast<std::int64_t>(head.command_sequence);
   for (std::size_t i = 0; i < readings.size() / kLabChannels.size(); ++i) {
     const std::span<const double> own = readings.subspan(i * kLabChannels.size(), kLabChannels.size());
     inputs.readings[i] = {own[kPistonA], own[kPistonB]};
-    inputs.ages_ns[i] = std::llround(own[kPistonAge] * 1e9);
+    inputs.ages_ns[i] = {std::llround(own[kPistonAgeA] * 1e9), std::llround(own[kPistonAgeB] * 1e9)};
   }
   return inputs;
 }
@@ -76,7 +89,8 @@ class LabRecorder {
       own[kServovalveCurrent] = rig_.lab().outputs().currents[i];
       own[kPistonA] = rig_.inputs().readings[i][0];
       own[kPistonB] = rig_.inputs().readings[i][1];
-      own[kPistonAge] = static_cast<double>(rig_.inputs().ages_ns[i]) * 1e-9;
+      own[kPistonAgeA] = static_cast<double>(rig_.inputs().ages_ns[i][0]) * 1e-9;
+      own[kPistonAgeB] = static_cast<double>(rig_.inputs().ages_ns[i][1]) * 1e-9;
     }
   }
 
@@ -95,6 +109,10 @@ class LabRecorder {
     }
     for (bool LabInputs::*pressed : kSwitchBits) {
       bits |= (rig_.inputs().*pressed ? std::uint64_t{1} : 0) << place++;
+    }
+    place = kBusShift;
+    for (bool ObservedRig::*seen : kBusBits) {
+      bits |= (rig_.inputs().rig.*seen ? std::uint64_t{1} : 0) << place++;
     }
     return bits;
   }

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <span>
 
+#include "firmware/can/command_echo.hpp"
+#include "firmware/can/frame_budget.hpp"
 #include "firmware/can/layout.hpp"
 #include "firmware/can/message_follower.hpp"
 #include "firmware/can/periodic_frame.hpp"
@@ -27,6 +29,10 @@ enum LabOutput : std::uint8_t { kSupply, kHeartbeat, kFault };
 /// faults, sets the lines, and then sends the currents of that cycle if anything may be driven. `Can` has the ids of
 /// `can::controller_ids`.
 ///
+/// Every frame of a cycle is checked, not only the newest: one that is damaged, lost, dropped by the kernel or of another
+/// format is a bad frame; a counter twice or of the past, more frames than are due, or a frame under an id of the lab's own
+/// is a second sender.
+///
 /// When driving ends, a command that is still before the bus one cycle later is taken back with `stop`, so that it does not
 /// leave when the bus can be used again. After bus-off, down or that, the first press of the arm button takes the bus into
 /// use again, with what is heard from then on, and the next one arms.
@@ -40,11 +46,24 @@ class LabRig {
         clock_(clock),
         layout_(layout),
         messages_(can::reading_messages(layout, lab.actuators())),
+        echo_(messages_),
         sync_(can::sync::kMessage, period_ns),
-        heartbeat_(can::heartbeat::kMessage, period_ns) {}
+        heartbeat_(can::heartbeat::kMessage, period_ns) {
+    for (std::size_t i = 0; i < messages_; ++i) {
+      budgets_[i] = {can::reading_message(layout, i), period_ns};
+    }
+  }
 
   /// The recorder whose drops are a fault; null: nothing is recorded.
   void watch(const Recorder* recorder) noexcept { recorder_ = recorder; }
+
+  /// Readings have to be authentic, and commands are made so. Before the loop.
+  void authenticate(can::Authentication& authentication) noexcept {
+    authentication_ = &authentication;
+    for (can::MessageFollower& follower : followers_) {
+      follower.require(&authentication);
+    }
+  }
 
   /// From any thread: the profile is to be stopped and the program to end. `ended` becomes true when nothing is driven then,
   /// and when the profile has been run.
@@ -59,6 +78,7 @@ class LabRig {
     take_lines();
     const bool driven = lab_.outputs().interlock.drive;
     inputs_.rig.command_age_ns = driven && sent_ns_ != 0 ? now - sent_ns_ : 0;
+    inputs_.rig.command_not_answered = driven && can::has_echo(layout_) && echo_.age_ns(now) > lab_.limits().command_age_ns;
     inputs_.rig.overrun = overran_;
     inputs_.rig.transmit_queue_full = driven && not_taken_ >= kMostNotTaken;
     inputs_.rig.dropped_recording = recorder_ != nullptr && recorder_->dropping();
@@ -81,6 +101,7 @@ class LabRig {
     sync_.send(can_, {});
     if (!interlock.drive) {
       take_back();
+      echo_.forget();
       not_taken_ = 0;
       sent_ns_ = 0;
       ended_.store(inputs_.stop || lab_.completed(), std::memory_order_relaxed);
@@ -103,45 +124,67 @@ class LabRig {
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
  private:
-  static constexpr std::size_t kMostMessages = 2;
+  static constexpr std::size_t kMostMessages = can::kMostReadingMessages;
   static constexpr double kNode = 1.0;
   /// A driver that confirms a frame a little late is no fault; one that does so twice in a row is.
   static constexpr unsigned kMostNotTaken = 2;
+
+  /// A count of what should not be.
+  class Growth {
+   public:
+    /// Whether it has grown since the last call.
+    bool is_seen(std::uint64_t count) noexcept {
+      const bool grown = count != before_;
+      before_ = count;
+      return grown;
+    }
+
+   private:
+    std::uint64_t before_ = 0;
+  };
 
   bool take_readings(std::int64_t now) noexcept {
     std::array<std::array<double, can::pistons_fd::kSignals.size()>, kMostMessages> values{};
     std::array<bool, kMostMessages> taken{};
     bool all = true;
-    bool bad = false;
     for (std::size_t i = 0; i < messages_; ++i) {
-      const hal::CanMailbox& box = can_.mailbox(i);
-      taken[i] = box.fresh && followers_[i].take(can::reading_message(layout_, i), box.frame, values[i]);
-      arrived_ns_[i] = taken[i] ? box.arrived_ns : arrived_ns_[i];
-      bad = bad || (box.fresh && !taken[i]);
+      const auto arrived_ns = followers_[i].take_newest(can::reading_message(layout_, i), can_.arrivals(), i, values[i]);
+      taken[i] = arrived_ns.has_value();
+      arrived_ns_[i] = arrived_ns.value_or(arrived_ns_[i]);
+      if (taken[i] && can::has_echo(layout_)) {
+        echo_.note_echo(i, static_cast<std::uint8_t>(values[i][can::kEchoPlace]));
+      }
+      const auto came = std::count_if(can_.arrivals().begin(), can_.arrivals().end(),
+                                      [i](const hal::CanArrival& arrival) { return arrival.subscription == i; });
+      followers_[i].note_too_many(budgets_[i].excess(static_cast<std::uint64_t>(came), now));
       all = all && taken[i];
     }
-    inputs_.rig.bad_frame = bad || lost_since_last_cycle();
+    judge_frames();
     for (std::size_t i = 0; i < lab_.actuators(); ++i) {
-      const can::PistonPlace place = can::place_of_piston(layout_, i);
-      if (taken[place.message]) {
-        inputs_.readings[i] = {values[place.message][place.value], values[place.message][place.value + 1]};
+      for (std::size_t reading = 0; reading < can::kRedundantReadings; ++reading) {
+        const can::PistonPlace place = can::place_of_piston(layout_, i, reading);
+        if (taken[place.message]) {
+          inputs_.readings[i][reading] = values[place.message][place.value];
+        }
+        inputs_.ages_ns[i][reading] = arrived_ns_[place.message] == 0 ? kNever : now - arrived_ns_[place.message];
       }
-      inputs_.ages_ns[i] = arrived_ns_[place.message] == 0 ? kNever : now - arrived_ns_[place.message];
     }
     return all;
   }
 
-  /// Whether the counters say that more frames are missing than were overtaken by newer ones.
-  bool lost_since_last_cycle() noexcept {
-    std::uint64_t skipped = 0;
+  void judge_frames() noexcept {
+    const hal::CanCounters& bus = can_.counters();
+    std::uint64_t damaged = bus.dropped + bus.foreign;
+    std::uint64_t of_two_senders = bus.impostors;
+    std::uint64_t unauthentic = 0;
     for (std::size_t i = 0; i < messages_; ++i) {
-      skipped += followers_[i].counters().skipped;
+      damaged += followers_[i].counters().damaged();
+      of_two_senders += followers_[i].counters().of_two_senders();
+      unauthentic += followers_[i].counters().unauthentic;
     }
-    const std::uint64_t superseded = can_.counters().superseded;
-    const bool lost = skipped - skipped_before_ > superseded - superseded_before_;
-    skipped_before_ = skipped;
-    superseded_before_ = superseded;
-    return lost;
+    inputs_.rig.bad_frame = damaged_.is_seen(damaged);
+    inputs_.rig.second_sender = of_two_senders_.is_seen(of_two_senders);
+    inputs_.rig.not_authentic = unauthentic_.is_seen(unauthentic);
   }
 
   void take_lines() noexcept {
@@ -168,8 +211,9 @@ class LabRig {
     if (can_.rearm()) {
       taken_back_ = false;
       arrived_ns_.fill(0);
-      for (can::MessageFollower& follower : followers_) {
-        follower.forget();
+      for (std::size_t i = 0; i < messages_; ++i) {
+        followers_[i].forget();
+        budgets_[i].forget();
       }
     }
     return true;
@@ -184,15 +228,22 @@ class LabRig {
   bool send_currents() noexcept {
     const can::Message& message = can::command_message(layout_);
     hal::CanFrame frame;
-    if (!can::encode(message, std::span(lab_.outputs().currents).first(message.signals.size()), counter_++, frame)) {
+    const std::uint8_t counter = counter_++;
+    if (!can::encode(message, std::span(lab_.outputs().currents).first(message.signals.size()), counter, frame)) {
       ++unsayable_;
       return false;
+    }
+    if (authentication_ != nullptr && message.can_be_authenticated) {
+      authentication_->seal(message, frame);
     }
     const hal::CanSend sent = can_.try_send(frame);
     const bool taken = sent == hal::CanSend::taken;
     not_taken_ = taken ? 0 : sent == hal::CanSend::queue_full ? kMostNotTaken : not_taken_ + 1;
     drove_ = drove_ || taken;
-    sent_ns_ = taken ? clock_.now_ns() : sent_ns_;
+    if (taken) {
+      sent_ns_ = clock_.now_ns();
+      echo_.note_sent(counter, sent_ns_);
+    }
     undriven_cycles_ = 0;
     return taken;
   }
@@ -216,6 +267,7 @@ class LabRig {
   Clock& clock_;
   can::Layout layout_;
   std::size_t messages_;
+  can::CommandEcho echo_;
   can::PeriodicFrame sync_;
   can::PeriodicFrame heartbeat_;
   const Recorder* recorder_ = nullptr;
@@ -223,9 +275,12 @@ class LabRig {
   std::atomic<bool> ended_{false};
   LabInputs inputs_;
   std::array<can::MessageFollower, kMostMessages> followers_;
+  std::array<can::FrameBudget, kMostMessages> budgets_;
   std::array<std::int64_t, kMostMessages> arrived_ns_{};
-  std::uint64_t skipped_before_ = 0;
-  std::uint64_t superseded_before_ = 0;
+  Growth damaged_;
+  Growth of_two_senders_;
+  Growth unauthentic_;
+  can::Authentication* authentication_ = nullptr;
   std::uint64_t unsayable_ = 0;
   std::uint64_t undriven_cycles_ = 0;
   std::int64_t sent_ns_ = 0;  ///< when the last command was handed over; 0: none since driving began

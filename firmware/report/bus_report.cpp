@@ -17,21 +17,26 @@ std::string load_text(const BusAccount& bus) {
 
 std::string text_of(const BusAccount& bus) {
   const hal::CanCounters& frames = bus.frames;
-  std::string result = text("  bus           %s, %s layout, %s; %s\n", bus.interface.c_str(),
-                            can::kLayouts[static_cast<std::size_t>(bus.layout)].data(),
-                            hal::kCanStates[static_cast<std::size_t>(bus.state)], load_text(bus).c_str());
-  result +=
-      text("  frames in     %llu received, %llu superseded, %llu foreign, %llu dropped by the kernel, %llu of errors\n",
-           whole(frames.received), whole(frames.superseded), whole(frames.foreign), whole(frames.dropped),
-           whole(frames.error_frames));
+  std::string result =
+      text("  bus           %s, %s layout%s, %s; %s\n", bus.interface.c_str(),
+           can::kLayouts[static_cast<std::size_t>(bus.layout)].data(), bus.authenticated ? ", authenticated" : "",
+           hal::kCanStates[static_cast<std::size_t>(bus.state)], load_text(bus).c_str());
+  result += text(
+      "  frames in     %llu received, %llu superseded, %llu foreign, %llu under own ids, %llu dropped by the kernel, %llu "
+      "of errors\n",
+      whole(frames.received), whole(frames.superseded), whole(frames.foreign), whole(frames.impostors),
+      whole(frames.dropped), whole(frames.error_frames));
   result += text("  frames out    %llu sent; not sent: %llu pending, %llu queue full, %llu bus unusable, %llu unsayable\n",
                  whole(frames.sent), whole(frames.pending), whole(frames.queue_full), whole(frames.unusable),
                  whole(bus.unsayable));
   for (const MessageAccount& message : bus.messages) {
     const can::MessageCounters& counters = message.counters;
-    result += text("  %s: %llu taken, %llu superseded, %llu lost, %llu repeated, %llu out of order, %llu refused\n",
-                   message.name.data(), whole(counters.taken), whole(message.superseded), whole(message.lost()),
-                   whole(counters.repeated), whole(counters.backward), whole(counters.refused));
+    result += text(
+        "  %s: %llu taken, %llu superseded, %llu lost, %llu repeated, %llu out of order, %llu too many, %llu refused, %llu "
+        "not authentic\n",
+        message.name.data(), whole(counters.taken), whole(counters.superseded), whole(counters.skipped),
+        whole(counters.repeated), whole(counters.backward), whole(counters.too_many), whole(counters.refused),
+        whole(counters.unauthentic));
   }
   if (bus.stale_cycles + bus.too_old > 0) {
     result += text("  stale         %llu cycles without a command that is young enough, %llu commands taken in too late\n",
@@ -45,6 +50,7 @@ void add_to(Json& json, const BusAccount& bus) {
   json.open("bus");
   json.add("interface", bus.interface);
   json.add("layout", can::kLayouts[static_cast<std::size_t>(bus.layout)]);
+  json.add("authenticated", bus.authenticated);
   json.add("state", hal::kCanStates[static_cast<std::size_t>(bus.state)]);
   if (bus.load) {
     json.add("worst_case_load", *bus.load);
@@ -53,6 +59,7 @@ void add_to(Json& json, const BusAccount& bus) {
   json.add("received", frames.received);
   json.add("superseded", frames.superseded);
   json.add("foreign", frames.foreign);
+  json.add("impostors", frames.impostors);
   json.add("dropped", frames.dropped);
   json.add("error_frames", frames.error_frames);
   json.add("sent", frames.sent);
@@ -67,10 +74,12 @@ void add_to(Json& json, const BusAccount& bus) {
   for (const MessageAccount& message : bus.messages) {
     json.open(message.name);
     json.add("taken", message.counters.taken);
-    json.add("superseded", message.superseded);
-    json.add("lost", message.lost());
+    json.add("superseded", message.counters.superseded);
+    json.add("lost", message.counters.skipped);
     json.add("repeated", message.counters.repeated);
     json.add("out_of_order", message.counters.backward);
+    json.add("too_many", message.counters.too_many);
+    json.add("not_authentic", message.counters.unauthentic);
     json.add("refused", message.counters.refused);
     json.close();
   }

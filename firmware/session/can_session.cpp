@@ -4,6 +4,7 @@
 
 #include "firmware/can/bus_load.hpp"
 #include "firmware/service/status.hpp"
+#include "firmware/session/key_file.hpp"
 #include "firmware/text/text.hpp"
 #include "hal/linux/can_bit_rates.hpp"
 #include "hal/linux/posix_clock.hpp"
@@ -15,9 +16,13 @@ void complain(const hal::Failure& failure) {
 }
 
 CanSession::CanSession(const Options& options, const can::NodeIds& ids)
-    : options_(options), socket_({options.bus, ids.subscriptions, ids.senders, options.frame_layout() == can::Layout::fd}) {}
+    : options_(options), socket_({options.bus, ids.subscriptions, ids.senders, can::is_fd(options.frame_layout())}) {}
 
 int CanSession::open() {
+  if (const auto refused = refuse_key()) {
+    complain(*refused);
+    return kWrongUse;
+  }
   if (const auto refused = socket_.open()) {
     complain(*refused);
     return kHardware;
@@ -27,6 +32,20 @@ int CanSession::open() {
     return kWrongUse;
   }
   return kGood;
+}
+
+std::optional<hal::Failure> CanSession::refuse_key() {
+  if (options_.key.empty()) {
+    return std::nullopt;
+  }
+  if (!can::is_fd(options_.frame_layout())) {
+    return hal::Failure{"--key: the frames of the classic layouts have no room for a code", "--layout fd, or fd-split"};
+  }
+  const ReadKey read = read_key(options_.key);
+  if (!read.refused) {
+    authentication_.emplace(read.key, static_cast<std::int64_t>(options_.freshness_ms * 1e6), &hal::real_time_ns);
+  }
+  return read.refused;
 }
 
 std::optional<hal::Failure> CanSession::refuse_load() {
@@ -66,6 +85,7 @@ BusAccount CanSession::account() const {
   account.interface = options_.bus;
   account.layout = options_.frame_layout();
   account.load = load_;
+  account.authenticated = authentication_.has_value();
   account.state = socket_.state();
   account.frames = socket_.counters();
   return account;

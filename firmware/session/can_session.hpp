@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "firmware/can/authentication.hpp"
 #include "firmware/can/bus_account.hpp"
 #include "firmware/can/layout.hpp"
 #include "firmware/session/options.hpp"
@@ -26,16 +27,20 @@ class CanSession {
   void leave();
 
   hal::SocketCan& socket() noexcept { return socket_; }
+  /// Of the key that the options name; null if they name none. Once `open` has found it good.
+  can::Authentication* authentication() noexcept { return authentication_ ? &*authentication_ : nullptr; }
 
   /// Its account so far, without messages.
   BusAccount account() const;
 
  private:
   std::optional<hal::Failure> refuse_load();
+  std::optional<hal::Failure> refuse_key();
 
   const Options& options_;
   hal::SocketCan socket_;
   std::optional<double> load_;
+  std::optional<can::Authentication> authentication_;
 };
 
 /// Prints what is refused, and how a person mends it, to standard error.

@@ -18,13 +18,13 @@ int run_controller(const Options& options) {
     return status;
   }
   Clock clock;
-  Bus bus(can_session.socket(), clock, {layout, options.actuators, options.command_per_current, options.loop.period_ns});
+  Bus bus(can_session.socket(), clock,
+          {layout, options.actuators, options.command_per_current, options.loop.period_ns, can_session.authentication()});
   ReferenceController controller(options.source, static_cast<double>(options.loop.period_ns) * 1e-9, options.actuators);
   const auto complete = [&](Session& result) {
     BusAccount account = can_session.account();
     for (std::size_t i = 0; i < can::reading_messages(layout, options.actuators); ++i) {
-      account.messages.push_back(
-          {can::reading_message(layout, i).name, bus.readings(i), can_session.socket().mailbox(i).superseded});
+      account.messages.push_back({can::reading_message(layout, i).name, bus.readings(i)});
     }
     account.unsayable = bus.unsayable();
     account.lost_syncs = bus.lost_syncs();

@@ -49,7 +49,7 @@ LabAccount account_of(const Lab& lab) {
 BusAccount account_of(const CanSession& can_session, const Rig& rig, can::Layout layout, std::size_t messages) {
   BusAccount account = can_session.account();
   for (std::size_t i = 0; i < messages; ++i) {
-    account.messages.push_back({can::reading_message(layout, i).name, rig.readings(i), account.frames.superseded});
+    account.messages.push_back({can::reading_message(layout, i).name, rig.readings(i)});
   }
   account.unsayable = rig.unsayable();
   return account;
@@ -69,6 +69,12 @@ int run_lab(const Options& given) {
   options.actuators = image.settings->actuators;
   const can::Layout layout = options.frame_layout();
   Lab lab(std::move(*image.settings), period);
+  if (options.actuators > can::most_actuators(layout)) {
+    complain({text("--layout %s has no room for the %zu actuators of the profile",
+                   can::kLayouts[static_cast<std::size_t>(layout)].data(), options.actuators),
+              "--layout fd, or fd-split"});
+    return kWrongUse;
+  }
   CanSession can_session(options, can::controller_ids(layout, options.actuators));
   if (const int status = can_session.open(); status != kGood) {
     return status;
@@ -80,6 +86,9 @@ int run_lab(const Options& given) {
   }
   Clock clock;
   Rig rig(lab, can_session.socket(), gpio, clock, layout, options.loop.period_ns);
+  if (can::Authentication* const authentication = can_session.authentication()) {
+    rig.authenticate(*authentication);
+  }
   std::unique_ptr<RecordingSession> recording;
   std::unique_ptr<LabRecorder<Rig>> recorder;
   if (!options.recording.empty()) {

@@ -135,7 +135,11 @@ std::string conflict_in(const Options& options) {
     return "--sync can needs the CAN bus that SYNC is on: --bus can0";
   }
   if (options.on_can() && options.actuators > can::most_actuators(layout)) {
-    return "--layout classic has room for " + std::to_string(can::most_actuators(layout)) + " actuators: leave it out";
+    return "--layout " + std::string(can::kLayouts[static_cast<std::size_t>(layout)]) + " has room for " +
+           std::to_string(can::most_actuators(layout)) + " actuators: leave it out, or take fd-split for classic-split";
+  }
+  if (!options.key.empty() && !(options.on_can() && (options.mode == Mode::lab || can::is_fd(layout)))) {
+    return "--key needs frames with room for a code: --bus can0 --layout fd, or fd-split";
   }
   if (!options.recording.empty() && options.image.empty()) {
     return "--record needs a model, which becomes part of the recording: --model FILE, or --image FILE";

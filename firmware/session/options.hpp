@@ -27,6 +27,9 @@ struct Options {
   std::optional<can::Layout> layout;
   double command_per_current = 10.0;  ///< [rad/A]
   double command_age_ms = 100.0;
+  double heartbeat_age_ms = 50.0;
+  std::string key;  ///< path of the key of commands and readings; empty: they are not authenticated
+  double freshness_ms = 1000.0;
   double bit_rate = 0.0;  ///< [bit/s]; 0: what the interface says
   double data_bit_rate = 0.0;
   std::optional<std::uint64_t> max_lost;

@@ -45,11 +45,12 @@ class PlantSession {
     }
     CanPlantBus wire(session.socket(), clock_,
                      {options_.frame_layout(), options_.actuators, Plant::channels.size(), options_.command_per_current,
-                      options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6)});
+                      options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6),
+                      static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6), session.authentication()});
     const Complete complete = [&](Session& result) {
       BusAccount account = session.account();
-      account.messages = {
-          {can::command_message(options_.frame_layout()).name, wire.commands(), session.socket().mailbox(0).superseded}};
+      account.messages = {{can::command_message(options_.frame_layout()).name, wire.commands()},
+                          {can::heartbeat::kMessage.name, wire.heartbeats()}};
       account.stale_cycles = wire.stale_cycles();
       account.too_old = wire.too_old();
       account.unsayable = wire.unsayable();

@@ -22,8 +22,8 @@ struct LabAccount {
   RigState state = RigState::safe;  ///< when the loop ended
   bool completed = false;           ///< the profile was run to its end
   std::uint64_t armings = 0;
-  std::array<std::uint64_t, kFaults.size()> times_first{};  ///< how often a fault was the first that ended driving
-  Fault first = Fault{};                                    ///< of those since the last arming; 0: none
+  std::array<std::uint64_t, kFaultNumbers> times_first{};  ///< how often a fault was the first that ended driving
+  Fault first = Fault{};                                   ///< of those since the last arming; 0: none
 };
 
 /// All that is known when a loop has ended.

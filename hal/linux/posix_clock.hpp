@@ -29,4 +29,11 @@ class PosixClock {
 
 static_assert(Clock<PosixClock>);
 
+/// CLOCK_REALTIME [ns]: the time of day, which is set by others and which two machines can share.
+inline std::int64_t real_time_ns() noexcept {
+  timespec time{};
+  clock_gettime(CLOCK_REALTIME, &time);
+  return static_cast<std::int64_t>(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
+}
+
 }  // namespace hotfire::hal

@@ -20,7 +20,7 @@ namespace {
 /// A classic frame costs its receiver at least 768 bytes of socket buffer, so that no more than kMostWaiting can wait in
 /// kReceiveBuffer. The kernel doubles what is asked for.
 constexpr int kReceiveBuffer = 192 * 1024;
-constexpr std::size_t kMostWaiting = 256;
+constexpr std::size_t kMostWaiting = kMaxCanArrivals;
 static_assert(kReceiveBuffer / 768 <= kMostWaiting);
 
 constexpr can_err_mask_t kErrorClasses = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
@@ -95,11 +95,10 @@ bool SocketCan::set_filters() noexcept {
 
 std::optional<Failure> SocketCan::configure() noexcept {
   const int on = 1;
-  const int fd = settings_.fd ? 1 : 0;
   const int half = kReceiveBuffer / 2;
   if (!set_filters() || !set_option(socket_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kErrorClasses) ||
       !set_option(socket_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on) ||
-      !set_option(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, fd) || !set_option(socket_, SOL_SOCKET, SO_RXQ_OVFL, on) ||
+      !set_option(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on) || !set_option(socket_, SOL_SOCKET, SO_RXQ_OVFL, on) ||
       !set_option(socket_, SOL_SOCKET, SO_TIMESTAMPNS, on) || !set_option(socket_, SOL_SOCKET, SO_RCVBUF, half)) {
     return failed_call("a CAN socket cannot be set up: setsockopt", errno, "a kernel of Linux 5.10 or newer is needed");
   }

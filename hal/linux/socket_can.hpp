@@ -29,7 +29,7 @@ class SocketCan {
     std::string interface;                       ///< "can0"
     std::vector<CanSubscription> subscriptions;  ///< kMaxCanSubscriptions at most
     std::vector<CanId> senders;                  ///< ids that are sent, kMaxCanSenders at most
-    bool fd = false;                             ///< FD frames may be sent and received
+    bool fd = false;                             ///< FD frames are sent; received they are in any case
   };
 
   explicit SocketCan(Settings settings);
@@ -43,6 +43,7 @@ class SocketCan {
   void receive(std::int64_t now_ns) noexcept;
   CanSend try_send(const CanFrame& frame) noexcept;
   const CanMailbox& mailbox(std::size_t i) const noexcept { return node_.mailbox(i); }
+  std::span<const CanArrival> arrivals() const noexcept { return node_.arrivals(); }
   bool in_time(std::size_t i, std::int64_t now_ns) const noexcept { return node_.in_time(i, now_ns); }
   CanState state() const noexcept { return node_.state(); }
   bool anything_pending() const noexcept { return node_.anything_pending(); }

@@ -67,6 +67,7 @@ class CanWire {
     }
 
     const CanMailbox& mailbox(std::size_t i) const noexcept { return node_.mailbox(i); }
+    std::span<const CanArrival> arrivals() const noexcept { return node_.arrivals(); }
     bool in_time(std::size_t i, std::int64_t now_ns) const noexcept { return node_.in_time(i, now_ns); }
     CanState state() const noexcept { return node_.state(); }
     bool anything_pending() const noexcept { return node_.anything_pending(); }

@@ -126,8 +126,23 @@ void SensorNode::take(const hal::CanFrame& frame) {
 void SensorNode::answer() {
   hal::CanFrame frame;
   const double first = position_ + offset;
-  can::encode(can::piston_1::kMessage, std::array{first, first + second_offset}, counter_++, frame);
+  can::encode(can::piston_1::kMessage, std::array{first, first + second_offset}, counter_, frame);
   frame.data[3] ^= mode == Mode::damaged ? 1 : 0;
+  send(frame);
+  if (mode == Mode::doubled) {
+    can::encode(can::piston_1::kMessage, std::array{0.0, 0.0}, counter_, frame);
+    send(frame);
+  }
+  ++counter_;
+}
+
+void SensorNode::send_command() const {
+  hal::CanFrame frame;
+  can::encode(can::servovalve_command::kMessage, std::array{0.0, 0.0}, 0, frame);
+  send(frame);
+}
+
+void SensorNode::send(const hal::CanFrame& frame) const {
   can_frame sent{};
   sent.can_id = frame.id.value;
   sent.len = frame.length;

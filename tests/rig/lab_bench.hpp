@@ -25,10 +25,11 @@ void bank_down();
 void wait_until(const std::string& what, const std::function<bool()>& is_so);
 
 /// What is on the bus beside the lab: an actuator that goes where it is told, with its two potentiometers, which answer
-/// SYNC; it keeps count of the commands, and can be made to go wrong.
+/// SYNC; it keeps count of the commands, and can be made to go wrong: `doubled` is a second node that says after every
+/// reading, with its counter, that the piston stands at 0.
 class SensorNode {
  public:
-  enum class Mode : std::uint8_t { good, silent, damaged, jammed };
+  enum class Mode : std::uint8_t { good, silent, damaged, jammed, doubled };
 
   SensorNode();
   ~SensorNode();
@@ -37,6 +38,8 @@ class SensorNode {
 
   /// Hands a report of the controller to everyone on the bus, as a driver does.
   void report_bus_off() const;
+  /// A command that the lab has not sent.
+  void send_command() const;
 
   std::atomic<Mode> mode{Mode::good};
   std::atomic<double> offset{0.0};         ///< of both readings [m]
@@ -51,6 +54,7 @@ class SensorNode {
   void serve();
   void take(const hal::CanFrame& frame);
   void answer();
+  void send(const hal::CanFrame& frame) const;
 
   int socket_;
   std::atomic<bool> ended_{false};

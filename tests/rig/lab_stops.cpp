@@ -2,6 +2,7 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware/lab/lab_recorder.hpp"
@@ -29,13 +30,19 @@ bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
     case Fault::stale_command:
       return in.rig.command_age_ns > age_limit_ns;
     case Fault::stale_sensor:
-      return in.ages_ns[0] > age_limit_ns;
+      return std::max(in.ages_ns[0][0], in.ages_ns[0][1]) > age_limit_ns;
     case Fault::out_of_range:
       return std::abs(first) > 0.15;
     case Fault::readings_disagree:
       return std::abs(first - second) > 0.001;
     case Fault::bad_frame:
       return in.rig.bad_frame;
+    case Fault::second_sender:
+      return in.rig.second_sender;
+    case Fault::not_authentic:
+      return in.rig.not_authentic;
+    case Fault::command_not_answered:
+      return in.rig.command_not_answered;
     case Fault::bus_off:
       return in.rig.bus_off;
     case Fault::bus_down:
@@ -54,7 +61,8 @@ bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
       return in.rig.dropped_recording;
     case Fault::position_error:
       return std::abs(given.command - 0.5 * (first + second)) > 0.005;
-    case Fault::not_finite:  // is never handed on
+    case Fault::not_finite:      // is never handed on
+    case Fault::heartbeat_lost:  // is a plant's
       break;
   }
   return false;
@@ -70,7 +78,7 @@ LabRecord read_lab_record(const std::string& path, const LabLimits& limits) {
   hal::RecordingReader reader(path);
   STRCMP_EQUAL("", reader.error().c_str());
   hal::RecordedCycle cycle;
-  std::array<std::uint64_t, firmware::kFaults.size() + 1> shown_since{};
+  std::array<std::uint64_t, firmware::kFaultNumbers> shown_since{};
   Stop now;
   while (reader.next(cycle)) {
     const auto state = static_cast<RigState>((cycle.head.flags >> Head::kStateShift) & 0xff);

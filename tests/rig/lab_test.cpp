@@ -180,12 +180,14 @@ TEST(Lab, FaultOfAReadingLeavesItSafeUntilArmedAgain) {
   goes_safe(mode(SensorNode::Mode::silent), mode(SensorNode::Mode::good));
   goes_safe(mode(SensorNode::Mode::damaged), mode(SensorNode::Mode::good));
   goes_safe(mode(SensorNode::Mode::jammed), mode(SensorNode::Mode::good));
+  goes_safe(mode(SensorNode::Mode::doubled), mode(SensorNode::Mode::good));
+  goes_safe([&] { node->send_command(); }, [] {});
   const auto offset = [&](double set) { return [this, set] { node->offset = set; }; };
   goes_safe(offset(0.2), offset(0.0));
   goes_safe(offset(0.1), offset(0.0));
   goes_safe([&] { node->second_offset = 0.002; }, [&] { node->second_offset = 0.0; });
-  ended_driving({Fault::stale_sensor, Fault::bad_frame, Fault::position_error, Fault::out_of_range, Fault::limit,
-                 Fault::readings_disagree});
+  ended_driving({Fault::stale_sensor, Fault::bad_frame, Fault::position_error, Fault::second_sender, Fault::out_of_range,
+                 Fault::limit, Fault::readings_disagree});
 }
 
 TEST(Lab, FaultOfTheBusLeavesItSafeUntilArmedAgain) {

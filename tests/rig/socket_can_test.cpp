@@ -139,6 +139,33 @@ TEST(SocketCan, NewestFrameIsKeptAndOlderOnesAreCounted) {
   CHECK(!bus->mailbox(0).fresh);
 }
 
+TEST(SocketCan, EveryFrameOfACycleIsHandedOnInItsOrderWithItsStamp) {
+  for (std::uint8_t i = 1; i <= 5; ++i) {
+    peer->send(0x200, i);
+  }
+  peer->send(0x300, 6, CANFD_MTU);
+  receive();
+  const auto arrivals = bus->arrivals();
+  UNSIGNED_LONGS_EQUAL(6, arrivals.size());
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    BYTES_EQUAL(i + 1, arrivals[i].frame.data[0]);
+    UNSIGNED_LONGS_EQUAL(i < 5 ? 0 : 1, arrivals[i].subscription);
+    CHECK(i == 0 || arrivals[i].arrived_ns >= arrivals[i - 1].arrived_ns);
+  }
+  receive();
+  CHECK(bus->arrivals().empty());
+}
+
+TEST(SocketCan, FrameUnderAnIdOfItsOwnThatAnotherNodeSendsIsAnImpostors) {
+  CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::taken);
+  receive();
+  UNSIGNED_LONGS_EQUAL(0, bus->counters().impostors);
+  peer->send(0x100, 2);
+  receive();
+  UNSIGNED_LONGS_EQUAL(1, bus->counters().impostors);
+  UNSIGNED_LONGS_EQUAL(1, bus->counters().confirmed);
+}
+
 TEST(SocketCan, FdFramesGoBothWaysAndTheWrongFormatIsForeign) {
   peer->send(0x300, 7, CANFD_MTU);
   peer->send(0x200, 8, CANFD_MTU);

@@ -36,10 +36,12 @@ std::string crc_table(const CanCrc& crc, const std::string& type, const std::str
 }
 
 std::string message_text(const CanMessage& message) {
-  constexpr std::size_t kProtection = 2;  // check and counter
+  constexpr std::size_t kProtection = 2;      // check and counter
+  constexpr std::size_t kAuthentication = 3;  // freshness and both halves of the code
+  const std::size_t end = message.signals.size() - (message.has_authentication() ? kAuthentication : 0);
   std::string names;
   std::string rows;
-  for (std::size_t i = kProtection; i < message.signals.size(); ++i) {
+  for (std::size_t i = kProtection; i < end; ++i) {
     const CanSignal& signal = message.signals[i];
     names += fmt::format("inline constexpr std::size_t {} = {};  ///< [{}]\n", signal.name, i - kProtection,
                          signal.unit.empty() ? "1" : signal.unit);
@@ -48,9 +50,9 @@ std::string message_text(const CanMessage& message) {
   }
   return fmt::format(
       "namespace {} {{\n{}inline constexpr std::array<Signal, {}> kSignals{{{{\n{}}}}};\n"
-      "inline constexpr Message kMessage{{\"{}\", {:#x}, {}, {}, {}, {}, kSignals}};\n}}\n\n",
-      lower(message.name), names, message.signals.size() - kProtection, rows, message.name, message.id, message.fd,
-      message.length, message.crc_bits(), message.cycle_ms);
+      "inline constexpr Message kMessage{{\"{}\", {:#x}, {:#x}, {}, {}, {}, {}, {}, kSignals}};\n}}\n\n",
+      lower(message.name), names, end - kProtection, rows, message.name, message.id, message.data_id, message.fd,
+      message.has_authentication(), message.length, message.crc_bits(), message.cycle_ms);
 }
 
 std::string header(const CanMap& map) {

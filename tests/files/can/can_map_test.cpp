@@ -33,7 +33,9 @@ TEST(CanMap, own_map_has_a_classic_and_an_fd_command_and_every_message_is_protec
   const CanMessage& fd = own_map.at("SERVOVALVE_COMMAND_FD");
   CHECK(!own_map.at("SERVOVALVE_COMMAND").fd);
   CHECK(fd.fd);
-  UNSIGNED_LONGS_EQUAL(10, fd.signals.size());
+  UNSIGNED_LONGS_EQUAL(13, fd.signals.size());
+  CHECK(fd.has_authentication());
+  CHECK(!own_map.at("SERVOVALVE_COMMAND").has_authentication());
   UNSIGNED_LONGS_EQUAL(16, fd.crc_bits());
   UNSIGNED_LONGS_EQUAL(1, fd.cycle_ms);
   CHECK(own_map.find(0x110, true) == &fd);
@@ -95,6 +97,35 @@ TEST(CanMap, what_is_wrong_is_refused_with_file_and_line) {
   expect_message(refused("BO_ 1 A: 2 X\n" + kProtection + "BO_ 1 B: 2 X\n" + kProtection), {"rig.dbc:4: B:", "used before"});
   expect_message(refused("BO_ 1 A: 10 X\n" + kProtection), {"A: 10 bytes; allowed: 0 to 8, and for FD 12, 16"});
   expect_message(refused("BO_ 1 A: 2 X\n" + kProtection + "BA_ \"VFrameFormat\" BO_ 1 15;\n"), {"A: VFrameFormat 15"});
+}
+
+TEST(CanMap, message_without_a_data_id_or_with_one_that_its_check_does_not_tell_from_another_is_refused) {
+  const std::string two = "BO_ 1 A: 2 X\n" + kProtection + "BO_ 2 B: 2 X\n" + kProtection;
+  const auto with_ids = [&](unsigned first, unsigned second) {
+    return two + "BA_ \"E2EDataId\" BO_ 1 " + std::to_string(first) + ";\nBA_ \"E2EDataId\" BO_ 2 " +
+           std::to_string(second) + ";\n";
+  };
+  expect_message(refused(two), {"rig.dbc:1: A: data id 0; allowed: BA_ \"E2EDataId\" BO_ 1 of 1 to 65535"});
+  expect_message(refused(with_ids(1, 65536)), {"rig.dbc:4: B: data id 65536"});
+  expect_message(refused(with_ids(7, 7)), {"rig.dbc:4: B: data id 7", "from 7, that of A"});
+  // 0x4301 and 0x5041 differ by a multiple of the check's polynomial.
+  expect_message(refused(with_ids(0x4301, 0x5041)), {"rig.dbc:4: B: data id 20545", "8 bits does not tell from 17153"});
+  UNSIGNED_LONGS_EQUAL(2, read_can_map(with_ids(0x4301, 0x5071), "rig.dbc").messages.size());
+}
+
+TEST(CanMap, authentication_that_is_not_the_end_of_its_frame_is_refused) {
+  const auto message = [](unsigned freshness, unsigned low, unsigned high, const std::string& behind = "") {
+    const auto signal = [](const char* name, unsigned start) {
+      return " SG_ " + std::string(name) + " : " + std::to_string(start) + "|32@1+ (1,0) [0|4294967295] \"\" Plant\n";
+    };
+    return "BO_ 1 A: 16 X\n SG_ crc16 : 0|16@1+ (1,0) [0|65535] \"\" Plant\n SG_ counter : 16|8@1+ (1,0) [0|255] \"\" "
+           "Plant\n" +
+           signal("freshness", freshness) + signal("mac_low", low) + signal("mac_high", high) + behind +
+           "BA_ \"VFrameFormat\" BO_ 1 14;\nBA_ \"E2EDataId\" BO_ 1 7;\n";
+  };
+  CHECK(read_can_map(message(32, 64, 96), "rig.dbc").messages[0].has_authentication());
+  expect_message(refused(message(32, 96, 64)), {"rig.dbc:1: A: its authentication is not in its place", "freshness"});
+  expect_message(refused(message(32, 64, 96, " SG_ x : 24|8@1+ (1,0) [0|255] \"\" Plant\n")), {"not in its place"});
 }
 
 }  // namespace hotfire

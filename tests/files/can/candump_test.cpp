@@ -112,6 +112,28 @@ TEST(Candump, fd_layout_gives_the_actuator_asked_for_and_its_engines_strings) {
   expect_values(record, "string4", {0.4, 0.4, 0.4, 0.4}, 1e-12);
 }
 
+TEST(Candump, readings_of_two_nodes_make_one_row_and_a_lost_one_is_refused) {
+  for (const bool fd : {false, true}) {
+    const std::string node = fd ? "PISTONS_" : "PISTON_2_";
+    const std::string end = fd ? "_FD" : "";
+    const char* const piston = fd ? "piston_2" : "piston";
+    const auto row = [&](std::uint8_t i, const char* reading, double value) {
+      return line(5.0 + 0.001 * i, node + reading + end, i, {{piston, value}});
+    };
+    const auto told = [&](std::uint8_t i) {
+      return line(5.0005 + 0.001 * i, fd ? "SERVOVALVE_COMMAND_FD" : "SERVOVALVE_COMMAND", i, {{"current_2", 0.01}});
+    };
+    const std::string two =
+        told(0) + row(0, "A", 0.01) + row(0, "B", 0.03) + told(1) + row(1, "A", 0.02) + row(1, "B", 0.04);
+    const Record record = load(two + told(2) + row(2, "A", 0.05), {2, 0.0});
+    expect_values(record, "piston", {0.02, 0.03}, 1e-12);
+    expect_message(refused(two + row(2, "A", 0.0) + row(3, "A", 0.0) + row(3, "B", 0.0), {2, 0.0}),
+                   {"run.log:8", "B", "lost"});
+    expect_message(refused(two + row(2, "A", 0.0) + row(1, "B", 0.0), {2, 0.0}), {"run.log:8", "counter 1", "one counter"});
+    expect_message(refused(two + reading(5.003, 0, 0.0), {2, 0.0}), {"run.log:7", "layout"});
+  }
+}
+
 TEST(Candump, what_is_written_is_read_back_within_half_a_code_of_each_signal) {
   Record record{"run.csv", "run.csv", 1000.0, 0.001, 2000, {}};
   for (const char* name : {"command", "piston", "string1", "string2", "string3", "string4"}) {

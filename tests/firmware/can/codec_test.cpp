@@ -73,7 +73,7 @@ TEST(Codec, WhatIsEncodedIsDecodedToTheSameValuesAndCounter) {
 TEST(Codec, FramesSayWhatTheDbcFileSaysTheySay) {
   for (const Message* message : kMessages) {
     const CanMessage& declared = in_map(*message);
-    UNSIGNED_LONGS_EQUAL(declared.signals.size(), message->signals.size() + 2);
+    UNSIGNED_LONGS_EQUAL(declared.signals.size(), message->signals.size() + (message->can_be_authenticated ? 5 : 2));
     for (int i = 0; i < 200; ++i) {
       const std::vector<double> sent = any_values(*message, random);
       const hal::CanFrame frame = framed(*message, sent, static_cast<std::uint8_t>(i));
@@ -100,11 +100,39 @@ TEST(Codec, AnyFlippedBitIsNoticed) {
   }
 }
 
-TEST(Codec, FrameUnderTheIdOfAnotherMessageOfItsShapeIsRefused) {
-  hal::CanFrame frame = framed(piston_1::kMessage, any_values(piston_1::kMessage, random));
-  CHECK(decode(piston_2::kMessage, frame, values, counter) == Decoding::wrong_id);
-  frame.id.value = piston_2::kMessage.id;
-  CHECK(decode(piston_2::kMessage, frame, values, counter) == Decoding::wrong_crc);
+TEST(Codec, FrameOfAnotherActuatorOrDirectionIsRefusedUnderWhateverId) {
+  std::size_t of_one_shape = 0;
+  for (const Message* sent : kMessages) {
+    for (const Message* wanted : kMessages) {
+      if (sent == wanted) {
+        continue;
+      }
+      hal::CanFrame frame = framed(*sent, any_values(*sent, random));
+      CHECK(decode(*wanted, frame, values, counter) == Decoding::wrong_id);
+      // A node that has the id of another one, or a gateway that changes it.
+      frame.id.value = wanted->id;
+      const bool one_shape = sent->fd == wanted->fd && sent->length == wanted->length;
+      of_one_shape += one_shape ? 1 : 0;
+      CHECK(decode(*wanted, frame, values, counter) != Decoding::good);
+      CHECK(!one_shape || decode(*wanted, frame, values, counter) == Decoding::wrong_crc);
+    }
+  }
+  // Both pistons, both strings and STATUS; the command and the split readings; both sets of each FD length.
+  CHECK(of_one_shape >= 5 * 4 + 5 * 4 + 2 + 2);
+}
+
+TEST(Codec, NodeThatIsConfiguredWithTheIdOfAnotherOneIsRefusedThoughItChecksItsOwnFrames) {
+  for (const Message* wanted : kMessages) {
+    for (const Message* misplaced : kMessages) {
+      if (misplaced != wanted) {
+        Message node = *wanted;
+        node.data_id = misplaced->data_id;
+        const hal::CanFrame frame = framed(node, any_values(*wanted, random));
+        CHECK(decode(node, frame, values, counter) == Decoding::good);
+        CHECK(decode(*wanted, frame, values, counter) == Decoding::wrong_crc);
+      }
+    }
+  }
 }
 
 TEST(Codec, OtherFormatAndLengthAreRefused) {

@@ -128,6 +128,11 @@ TEST(CanBusLoad, ClassicLayoutFitsAMegabitAndNotHalfOfIt) {
   CHECK(bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6) < hal::kLargestBusLoad);
   CHECK(bus_load(Layout::classic, 2, kMillisecond, 500e3, 500e3) > hal::kLargestBusLoad);
   CHECK(bus_load(Layout::fd, 8, kMillisecond, 1e6, 5e6) < hal::kLargestBusLoad);
+  // The figures of docs/can-map.md.
+  DOUBLES_EQUAL(0.471, bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6), 5e-4);
+  DOUBLES_EQUAL(0.661, bus_load(Layout::classic_split, 2, kMillisecond, 1e6, 1e6), 5e-4);
+  DOUBLES_EQUAL(0.361, bus_load(Layout::fd, 8, kMillisecond, 1e6, 5e6), 5e-4);
+  DOUBLES_EQUAL(0.467, bus_load(Layout::fd_split, 8, kMillisecond, 1e6, 5e6), 5e-4);
   const double strings = 2.0 * hal::longest_classic_frame(8, 1e6) / 4e-3;
   DOUBLES_EQUAL(bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6) + strings,
                 bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6, true), 1e-12);

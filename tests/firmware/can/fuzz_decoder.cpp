@@ -19,7 +19,7 @@ namespace {
 }
 
 std::uint16_t right_check(const Message& message, const hal::CanFrame& frame) {
-  return can_crc(message.crc_bits).of_frame(frame.bytes(), message.id);
+  return can_crc(message.crc_bits).of_frame(frame.bytes(), message.data_id);
 }
 
 /// The frame that the fuzzer's bytes stand for: flags, length, message, data. Half of them get the right check, or the

@@ -1,6 +1,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -65,6 +66,14 @@ TEST(IndependentReader, UnderstandsEveryFrameOfTheFirmwareAsTheFirmwareDoes) {
       STRCMP_EQUAL(std::string(signal.name).c_str(), word.substr(0, equals).c_str());
       // Rounding of a double; one code more or less would be the whole factor.
       DOUBLES_EQUAL(std::stod(word.substr(equals + 1)), values[i], 1e-6 * signal.factor);
+    }
+    // Freshness and code, which the codec leaves to who has the key: the last bytes of the frame.
+    const hal::CanFrame bytes = frame_of(frame);
+    for (std::size_t i = 0; message->can_be_authenticated && i < 3; ++i) {
+      CHECK(static_cast<bool>(words >> word));
+      std::uint32_t number = 0;
+      std::memcpy(&number, bytes.data.data() + bytes.length - 12 + 4 * i, sizeof number);
+      UNSIGNED_LONGS_EQUAL(number, std::stoul(word.substr(word.find('=') + 1)));
     }
     CHECK(words.eof());
     seen.insert(name);

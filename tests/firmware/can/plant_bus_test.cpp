@@ -16,11 +16,13 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 
 /// A plant's bus of a layout, and a controller's node.
 struct World {
-  World(Layout layout, std::size_t actuators, std::size_t channels = 1)
-      : bus(node, clock, {layout, actuators, channels, 5.0, kMillisecond, 20 * kMillisecond}),
-        node(wire, plant_ids(layout, actuators).subscriptions, plant_ids(layout, actuators, true).senders),
-        controller(wire, heard(layout, actuators), controller_ids(layout, actuators).senders),
-        message(command_message(layout)) {}
+  World(Layout frames, std::size_t plants, std::size_t channels = 1)
+      : layout(frames),
+        actuators(plants),
+        bus(node, clock, {frames, plants, channels, 5.0, kMillisecond, 20 * kMillisecond, 50 * kMillisecond}),
+        node(wire, plant_ids(frames, plants).subscriptions, plant_ids(frames, plants, true).senders),
+        controller(wire, heard(frames, plants), controller_ids(frames, plants).senders),
+        message(command_message(frames)) {}
 
   static std::vector<hal::CanSubscription> heard(Layout layout, std::size_t actuators) {
     std::vector<hal::CanSubscription> all = controller_ids(layout, actuators).subscriptions;
@@ -45,6 +47,33 @@ struct World {
 
   bool take() { return bus.try_receive_command(command); }
 
+  void beat(std::uint8_t counter) {
+    hal::CanFrame frame;
+    CHECK(encode(heartbeat::kMessage, std::array{1.0, 2.0}, counter, frame));
+    CHECK(controller.try_send(frame) == hal::CanSend::taken);
+    controller.receive(clock.now_ns());
+  }
+
+  /// The number of the fault in the next STATUS frame.
+  double said_fault() {
+    for (int i = 0; i < 101; ++i) {
+      bus.try_send_reading({});
+      controller.receive(clock.now_ns());
+      // What the plant has sent is known to be out once it has looked.
+      node.receive(clock.now_ns());
+      const hal::CanMailbox& box = controller.mailbox(reading_messages(layout, actuators));
+      if (box.fresh) {
+        std::array<double, 32> values{};
+        std::uint8_t counter = 0;
+        CHECK(decode(status::kMessage, box.frame, values, counter) == Decoding::good);
+        return values[status::fault];
+      }
+    }
+    return -1.0;
+  }
+
+  Layout layout;
+  std::size_t actuators;
   Wire wire;
   hal::sim::ManualClock clock;
   Bus bus;
@@ -94,16 +123,75 @@ TEST(CanPlantBus, SequenceGoesOnBeyondTheCounterAndSkippedOnesAreCounted) {
   UNSIGNED_LONGS_EQUAL(3, fd.bus.commands().skipped);
 }
 
-TEST(CanPlantBus, RepeatedOrLateCommandMovesNothing) {
+TEST(CanPlantBus, TwoControllersMoveNothingAndStatusSaysSoUntilOneOfThemIsLeft) {
+  for (std::size_t number = 0; number < kLayouts.size(); ++number) {
+    const auto layout = static_cast<Layout>(number);
+    for (const std::uint8_t other : std::array<std::uint8_t, 3>{10, 9, 190}) {
+      World world{layout, most_actuators(layout)};
+      world.send(10);
+      CHECK(world.take());
+      world.send(other, 0.02);
+      CHECK(world.take());
+      DOUBLES_EQUAL(0.0, world.command.values[0], 0.0);
+      world.send(11);
+      CHECK(!world.take());
+      DOUBLES_EQUAL(36.0, world.said_fault(), 0.0);
+      world.clock.advance_ns(Bus::kSecondSenderHoldNs);
+      world.send(12);
+      CHECK(world.take());
+      DOUBLES_EQUAL(0.01, world.command.values[0], 1e-12);
+      DOUBLES_EQUAL(0.0, world.said_fault(), 0.0);
+    }
+  }
+}
+
+TEST(CanPlantBus, SecondControllerIsFoundOutThoughTheFramesOfTheFirstOvertakeIts) {
+  fd.send(10);
+  CHECK(fd.take());
+  fd.send(10, 0.02);
+  fd.send(11);
+  CHECK(fd.take());
+  DOUBLES_EQUAL(0.0, fd.command.values[0], 0.0);
+  UNSIGNED_LONGS_EQUAL(1, fd.bus.commands().repeated);
+}
+
+TEST(CanPlantBus, AnotherPlantOnItsBusMovesNothing) {
+  Wire::Node other{classic.wire, {}, plant_ids(Layout::classic, 2).senders};
   classic.send(10);
   CHECK(classic.take());
-  classic.send(10, 0.03);
+  hal::CanFrame frame;
+  CHECK(encode(piston_1::kMessage, std::array{0.0, 0.0}, 1, frame));
+  CHECK(other.try_send(frame) == hal::CanSend::taken);
+  CHECK(classic.take());
+  DOUBLES_EQUAL(0.0, classic.command.values[0], 0.0);
+}
+
+TEST(CanPlantBus, ControllerWhoseHeartbeatHasStoppedGetsNoCurrentUntilItIsBack) {
+  classic.beat(0);
   CHECK(!classic.take());
-  classic.send(9, 0.03);
-  CHECK(!classic.take());
+  std::uint8_t counter = 0;
+  const auto commanded_for = [&](std::int64_t milliseconds) {
+    for (std::int64_t i = 0; i < milliseconds; ++i) {
+      classic.clock.advance_ns(kMillisecond);
+      classic.send(counter++);
+      classic.take();
+    }
+    return classic.command.values[0];
+  };
+  DOUBLES_EQUAL(0.01, commanded_for(50), 1e-12);
+  DOUBLES_EQUAL(0.0, commanded_for(1), 0.0);
+  DOUBLES_EQUAL(38.0, classic.said_fault(), 0.0);
+  DOUBLES_EQUAL(0.0, commanded_for(300), 0.0);
+  classic.beat(77);
+  DOUBLES_EQUAL(0.01, commanded_for(1), 1e-12);
+  DOUBLES_EQUAL(0.0, classic.said_fault(), 0.0);
+}
+
+TEST(CanPlantBus, ControllerThatNeverHadAHeartbeatIsFollowed) {
+  classic.clock.advance_ns(1000 * kMillisecond);
+  classic.send(0);
+  CHECK(classic.take());
   DOUBLES_EQUAL(0.01, classic.command.values[0], 1e-12);
-  UNSIGNED_LONGS_EQUAL(1, classic.bus.commands().repeated);
-  UNSIGNED_LONGS_EQUAL(1, classic.bus.commands().backward);
 }
 
 TEST(CanPlantBus, DamagedCommandMovesNothingAndIsCounted) {
@@ -139,10 +227,12 @@ TEST(CanPlantBus, ControllerThatComesBackIsTakenWhateverItsCounter) {
 }
 
 TEST(CanPlantBus, ReadingCarriesEveryPistonTwiceUnderTheNumberOfItsCycle) {
-  for (World* world : {&classic, &fd}) {
-    hal::Reading reading;
-    const Layout layout = world == &classic ? Layout::classic : Layout::fd;
+  for (std::size_t number = 0; number < kLayouts.size(); ++number) {
+    const auto layout = static_cast<Layout>(number);
     const std::size_t actuators = most_actuators(layout);
+    World owned{layout, actuators, 3};
+    World* const world = &owned;
+    hal::Reading reading;
     for (std::size_t i = 0; i < actuators; ++i) {
       reading.values[3 * i] = 0.01 * static_cast<double>(i + 1);
     }
@@ -151,15 +241,16 @@ TEST(CanPlantBus, ReadingCarriesEveryPistonTwiceUnderTheNumberOfItsCycle) {
     CHECK(world->bus.try_send_reading(reading));
     world->controller.receive(0);
     for (std::size_t i = 0; i < actuators; ++i) {
-      const PistonPlace place = place_of_piston(layout, i);
-      std::array<double, 32> values{};
-      std::uint8_t counter = 0;
-      CHECK(decode(reading_message(layout, place.message), world->controller.mailbox(place.message).frame, values,
-                   counter) == Decoding::good);
-      DOUBLES_EQUAL(reading.values[3 * i], values[place.value], 1e-12);
-      DOUBLES_EQUAL(reading.values[3 * i], values[place.value + 1], 1e-12);
-      UNSIGNED_LONGS_EQUAL(300 % 256, counter);
-      CHECK(layout == Layout::classic || values[pistons_fd::command_counter] == 299 % 256);
+      for (std::size_t redundant = 0; redundant < kRedundantReadings; ++redundant) {
+        const PistonPlace place = place_of_piston(layout, i, redundant);
+        std::array<double, 32> values{};
+        std::uint8_t counter = 0;
+        CHECK(decode(reading_message(layout, place.message), world->controller.mailbox(place.message).frame, values,
+                     counter) == Decoding::good);
+        DOUBLES_EQUAL(reading.values[3 * i], values[place.value], 1e-12);
+        UNSIGNED_LONGS_EQUAL(300 % 256, counter);
+        CHECK(!has_echo(layout) || values[kEchoPlace] == 299 % 256);
+      }
     }
   }
 }

@@ -43,19 +43,22 @@ TEST_GROUP(Faults) {
 
 TEST(Faults, NumbersAreThoseOfTheListAndNamesAreDifferent) {
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
-    UNSIGNED_LONGS_EQUAL(i + 1, static_cast<std::size_t>(kFaults[i].fault));
+    CHECK(static_cast<std::size_t>(kFaults[i].fault) < kFaultNumbers);
+    POINTERS_EQUAL(&kFaults[i], &firmware::text_of(kFaults[i].fault));
     for (std::size_t j = 0; j < i; ++j) {
+      CHECK(kFaults[i].fault > kFaults[j].fault);
       CHECK(kFaults[i].name != kFaults[j].name);
     }
   }
-  LONGS_EQUAL(15, FaultSet::all().count());
+  UNSIGNED_LONGS_EQUAL(kFaults.size(), FaultSet::all().count());
 }
 
 TEST(Faults, EveryFaultHasASectionThatSaysWhatItMeansWhatTheRigDidAndWhatToDo) {
   const std::vector<std::string> found = sections();
   UNSIGNED_LONGS_EQUAL(kFaults.size(), found.size());
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
-    const std::string heading = std::to_string(i + 1) + " " + std::string(kFaults[i].name) + "\n";
+    const std::string heading =
+        std::to_string(static_cast<unsigned>(kFaults[i].fault)) + " " + std::string(kFaults[i].name) + "\n";
     STRCMP_EQUAL(heading.c_str(), found[i].substr(0, heading.size()).c_str());
     for (const char* part : {"**Means.** ", "**The rig** ", "**To do.** "}) {
       STRCMP_CONTAINS(part, found[i].c_str());
@@ -75,6 +78,9 @@ TEST(Faults, EachSignalOfTheRigIsItsOwnFault) {
   const std::vector<std::pair<Fault, void (*)(ObservedRig&)>> signals{
       {Fault::stale_command, [](ObservedRig& r) { r.command_age_ns = kLimits.command_age_ns + 1; }},
       {Fault::bad_frame, [](ObservedRig& r) { r.bad_frame = true; }},
+      {Fault::second_sender, [](ObservedRig& r) { r.second_sender = true; }},
+      {Fault::command_not_answered, [](ObservedRig& r) { r.command_not_answered = true; }},
+      {Fault::not_authentic, [](ObservedRig& r) { r.not_authentic = true; }},
       {Fault::bus_off, [](ObservedRig& r) { r.bus_off = true; }},
       {Fault::bus_down, [](ObservedRig& r) { r.bus_down = true; }},
       {Fault::transmit_queue_full, [](ObservedRig& r) { r.transmit_queue_full = true; }},

@@ -12,28 +12,36 @@
 
 namespace hotfire::firmware::test_lab {
 
-/// A lab of one actuator on a wire, with a board of lines, beside a node that sends what its pistons read. Emergency stop
-/// released, hydraulic supply enabled.
+/// A lab on a wire, with a board of lines, beside a plant that sends what its pistons read in the frames of a layout and
+/// echoes the commands where they have room for that. Emergency stop released, hydraulic supply enabled.
 class LabOnWire {
  public:
   using Wire = hal::sim::CanWire;
   using Rig = LabRig<Wire::Node, hal::sim::GpioBoard, hal::sim::ManualClock>;
 
-  explicit LabOnWire(LabSettings made) : lab(std::move(made), kPeriod) {
+  explicit LabOnWire(LabSettings made, can::Layout frames = can::Layout::classic)
+      : layout(frames), actuators(made.actuators), lab(std::move(made), kPeriod) {
     board.drive(kEmergencyStopReleased, true);
     board.drive(kHydraulicEnabled, true);
   }
 
   /// One cycle of the loop.
   void cycle() {
-    hal::CanFrame frame;
-    CHECK(can::encode(can::piston_1::kMessage, std::array{piston, piston}, counter_++, frame));
-    plant.try_send(frame);
+    for (std::size_t i = 0; i < can::reading_messages(layout, actuators); ++i) {
+      if (sends) {
+        plant.try_send(reading(i, counter));
+      }
+    }
+    ++counter;
+    before_lab();
     rig.try_receive_command(unused_);
     rig.step(unused_);
     rig.try_send_reading({});
     plant.receive(clock.now_ns());
     commands += plant.mailbox(0).fresh ? 1 : 0;
+    if (plant.mailbox(0).fresh && hears_commands) {
+      echo = plant.mailbox(0).frame.data[can::command_message(layout).crc_bits / 8];
+    }
     after_cycle();
     clock.advance_ns(kPeriodNs);
   }
@@ -51,6 +59,28 @@ class LabOnWire {
     cycles(2);
   }
 
+  /// What the plant says in reading message `which` under this counter.
+  hal::CanFrame reading(std::size_t which, std::uint8_t number) const {
+    const can::Message& message = can::reading_message(layout, which);
+    std::array<double, 32> values{};
+    std::fill_n(values.begin(), message.signals.size(), piston);
+    if (can::has_echo(layout)) {
+      values[can::kEchoPlace] = echo;
+    }
+    hal::CanFrame frame;
+    CHECK(can::encode(message, std::span(values).first(message.signals.size()), number, frame));
+    return frame;
+  }
+
+  /// Armed and started, with some cycles of the profile behind it.
+  void run() {
+    cycles(3);
+    press();
+    press();
+    cycles(5);
+    CHECK(lab.outputs().interlock.state == RigState::running);
+  }
+
   bool on(LabOutput line) const { return ((board.outputs() >> line) & 1U) != 0; }
 
  private:
@@ -61,21 +91,31 @@ class LabOnWire {
     return made;
   }
 
-  can::NodeIds own_ = can::controller_ids(can::Layout::classic, 1);
-  can::NodeIds of_plant_ = can::plant_ids(can::Layout::classic, 1);
-  std::uint8_t counter_ = 0;
   hal::Command unused_;
 
  public:
+  can::Layout layout;
+  std::size_t actuators;
+
+ private:
+  can::NodeIds own_ = can::controller_ids(layout, actuators);
+  can::NodeIds of_plant_ = can::plant_ids(layout, actuators);
+
+ public:
+  std::uint8_t counter = 0;  ///< of the readings of the next cycle
+  std::uint8_t echo = 0;     ///< counter of the newest command that the plant has
+  bool sends = true;
+  bool hears_commands = true;
   Wire wire;
   hal::sim::ManualClock clock;
   hal::sim::GpioBoard board{lines()};
   Lab lab;
   Wire::Node node{wire, own_.subscriptions, own_.senders};
   Wire::Node plant{wire, of_plant_.subscriptions, of_plant_.senders};
-  Rig rig{lab, node, board, clock, can::Layout::classic, kPeriodNs};
+  Rig rig{lab, node, board, clock, layout, kPeriodNs};
   double piston = 0.0;                        ///< what both of its readings say [m]
   std::uint64_t commands = 0;                 ///< that have reached the plant
+  std::function<void()> before_lab = [] {};   ///< after the plant has sent
   std::function<void()> after_cycle = [] {};  ///< before the clock goes on
 };
 

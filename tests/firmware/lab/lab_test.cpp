@@ -67,13 +67,16 @@ TEST(Lab, AtTheEndOfTheProfileItComesToRestAndIsSafe) {
 TEST(Lab, EveryFaultEndsDrivingInItsCycleAndNothingMovesUntilArmedAgain) {
   const std::vector<std::pair<Fault, void (*)(LabInputs&)>> provoked{
       {Fault::stale_command, [](LabInputs& in) { in.rig.command_age_ns = 6 * kPeriodNs; }},
-      {Fault::stale_sensor, [](LabInputs& in) { in.ages_ns[0] = 6 * kPeriodNs; }},
+      {Fault::stale_sensor, [](LabInputs& in) { in.ages_ns[0][1] = 6 * kPeriodNs; }},
       {Fault::out_of_range,
        [](LabInputs& in) {
          in.readings[0] = {0.2, 0.2};
        }},
       {Fault::readings_disagree, [](LabInputs& in) { in.readings[0][1] += 0.002; }},
       {Fault::bad_frame, [](LabInputs& in) { in.rig.bad_frame = true; }},
+      {Fault::second_sender, [](LabInputs& in) { in.rig.second_sender = true; }},
+      {Fault::command_not_answered, [](LabInputs& in) { in.rig.command_not_answered = true; }},
+      {Fault::not_authentic, [](LabInputs& in) { in.rig.not_authentic = true; }},
       {Fault::bus_off, [](LabInputs& in) { in.rig.bus_off = true; }},
       {Fault::bus_down, [](LabInputs& in) { in.rig.bus_down = true; }},
       {Fault::transmit_queue_full, [](LabInputs& in) { in.rig.transmit_queue_full = true; }},

@@ -66,7 +66,7 @@ TEST(LabReplay, WhatTheLabSawIsTakenOutAsItWasPutIn) {
     stopped += inputs.rig.emergency_stop ? 1 : 0;
     pressed += inputs.arm ? 1 : 0;
     // Nothing had come before the first cycle, whose clock shows 0.
-    LONGS_EQUAL(cycle.head.cycle == 0 ? std::int64_t{1} << 62 : 0, inputs.ages_ns[0]);
+    LONGS_EQUAL(cycle.head.cycle == 0 ? std::int64_t{1} << 62 : 0, inputs.ages_ns[0][1]);
   }
   UNSIGNED_LONGS_EQUAL(5, stopped);
   UNSIGNED_LONGS_EQUAL(10, pressed);

@@ -1,6 +1,13 @@
 #include "firmware/session/options.hpp"
 
 #include <CppUTest/TestHarness.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "firmware/session/key_file.hpp"
 
 namespace hotfire::firmware {
 
@@ -57,6 +64,40 @@ TEST(Options, LayoutOfACanBusIsTheSmallestThatHasRoomUnlessSaid) {
   CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--actuators", "3"}).frame_layout() == can::Layout::fd);
   CHECK(accepted({"controller", "--bus", "can0", "--layout", "fd"}).frame_layout() == can::Layout::fd);
   refused({"plant", "--image", "p", "--bus", "can0", "--actuators", "3", "--layout", "classic"}, "room for 2 actuators");
+  CHECK(accepted({"controller", "--bus", "can0", "--layout", "fd-split"}).frame_layout() == can::Layout::fd_split);
+}
+
+TEST(Options, KeyNeedsFramesThatHaveRoomForACode) {
+  STRCMP_EQUAL("k", accepted({"controller", "--bus", "can0", "--layout", "fd", "--key", "k"}).key.c_str());
+  refused({"controller", "--bus", "can0", "--key", "k"}, "--layout fd, or fd-split");
+  refused({"plant", "--image", "p", "--key", "k"}, "--bus can0");
+}
+
+TEST(Options, KeyIsAFileOfItsDigitsThatNobodyElseMayUse) {
+  const std::string path = "/tmp/hotfire-key-" + std::to_string(getpid());
+  const auto with = [&](const std::string& content, mode_t mode) {
+    std::ofstream(path) << content;
+    chmod(path.c_str(), mode);
+    const ReadKey read = read_key(path);
+    remove(path.c_str());
+    return read;
+  };
+  const std::string digits = "000102030405060708090a0b0c0d0e0F";
+  for (const char* end : {"", "\n"}) {
+    const ReadKey good = with(digits + end, 0600);
+    CHECK(!good.refused);
+    BYTES_EQUAL(0, good.key[0]);
+    BYTES_EQUAL(15, good.key[15]);
+  }
+  STRCMP_CONTAINS("others may use it", with(digits, 0640).refused->what.c_str());
+  STRCMP_CONTAINS("others may use it", with(digits, 0604).refused->what.c_str());
+  for (const std::string& wrong :
+       {std::string(), digits + "0", digits.substr(1), std::string("x00102030405060708090a0b0c0d0e0F"), digits + "\n\n"}) {
+    STRCMP_CONTAINS("not a key", with(wrong, 0600).refused->what.c_str());
+  }
+  STRCMP_CONTAINS("No such file", read_key(path).refused->what.c_str());
+  STRCMP_CONTAINS("not a file", read_key("/tmp").refused->what.c_str());
+  STRCMP_CONTAINS("openssl rand -hex 16", read_key("/dev/zero").refused->mend.c_str());
 }
 
 TEST(Options, WhatABusCannotDoIsRefused) {

@@ -7,8 +7,8 @@
 namespace hotfire {
 
 /// The two checks of the CAN map, bit by bit, most significant bit first, without reflection. Both run over the bytes behind
-/// the check, then over the frame's id, low byte first, so that a frame under another id is refused: the order of AUTOSAR's
-/// E2E profile 5.
+/// the check, then over the message's data id, low byte first (AUTOSAR, Specification of E2E Protocol, profile 5). The data
+/// id is not in the frame: who takes a message for another one finds a wrong check, whatever the frame's CAN id is.
 /// - 8 bits: CRC-8/SAE-J1850, polynomial 0x1D, start and final exclusive-or 0xFF. Check value 0x4B for "123456789".
 /// - 16 bits: CRC-16/IBM-3740 (CCITT-FALSE), polynomial 0x1021, start 0xFFFF. Check value 0x29B1.
 struct CanCrc {
@@ -28,13 +28,13 @@ struct CanCrc {
   }
 
   /// Of a frame's data, whose first `bits` are the place of the check itself.
-  constexpr std::uint16_t of_frame(std::span<const std::uint8_t> data, std::uint32_t id) const {
+  constexpr std::uint16_t of_frame(std::span<const std::uint8_t> data, std::uint16_t data_id) const {
     std::uint16_t crc = start;
     for (const std::uint8_t byte : data.subspan(bits / 8)) {
       crc = add(crc, byte);
     }
-    crc = add(crc, static_cast<std::uint8_t>(id));
-    crc = add(crc, static_cast<std::uint8_t>(id >> 8));
+    crc = add(crc, static_cast<std::uint8_t>(data_id));
+    crc = add(crc, static_cast<std::uint8_t>(data_id >> 8));
     return crc ^ final_xor;
   }
 };

@@ -19,6 +19,8 @@ constexpr unsigned kLargestId = 0x7FF;
 constexpr unsigned kMostBits = 32;
 constexpr std::array<unsigned, 7> kLongLengths{12, 16, 20, 24, 32, 48, 64};
 constexpr int kStandardFd = 14;  ///< VFrameFormat
+constexpr std::array<std::string_view, 3> kAuthentication{"freshness", "mac_low", "mac_high"};
+constexpr std::array<std::uint8_t, 2> kNoBytes{};  ///< a frame of nothing but its check
 
 /// Takes from a DBC file what this project's frames are made of, and refuses the rest.
 class MapMaker {
@@ -29,6 +31,7 @@ class MapMaker {
     CanMap map;
     for (const DbcMessage& message : dbc_.messages) {
       map.messages.push_back(message_of(message));
+      require_data_id(map, message);
     }
     return map;
   }
@@ -51,6 +54,7 @@ class MapMaker {
     message.name = declared.name;
     message.sender = declared.sender;
     message.id = declared.id;
+    message.data_id = static_cast<std::uint16_t>(declared.data_id);
     message.fd = declared.frame_format == kStandardFd;
     message.length = declared.length;
     message.cycle_ms = declared.cycle_ms;
@@ -59,6 +63,7 @@ class MapMaker {
     }
     require_protection(message, declared.line);
     require_length(message, declared.line);
+    require_authentication(message, declared.line);
     return message;
   }
 
@@ -121,6 +126,55 @@ class MapMaker {
     }
   }
 
+  /// The newest message of the map must not be taken for another one of it: the checks of their data ids alone are
+  /// different, and so are those of any frame of theirs with the same bytes, the checks being linear.
+  void require_data_id(const CanMap& map, const DbcMessage& declared) const {
+    constexpr unsigned kLargest = 0xFFFF;
+    if (declared.data_id == 0 || declared.data_id > kLargest) {
+      refuse(declared.line, fmt::format("{}: data id {}; allowed: BA_ \"E2EDataId\" BO_ {} of 1 to {}", declared.name,
+                                        declared.data_id, declared.id, kLargest));
+    }
+    const CanMessage& message = map.messages.back();
+    for (const CanMessage& other : std::span(map.messages).first(map.messages.size() - 1)) {
+      const CanCrc& crc = can_crc(message.crc_bits());
+      if (other.crc_bits() == crc.bits && crc.of_frame(kNoBytes, message.data_id) == crc.of_frame(kNoBytes, other.data_id)) {
+        refuse(declared.line, fmt::format("{}: data id {}, which a check of {} bits does not tell from {}, that of {}",
+                                          declared.name, message.data_id, crc.bits, other.data_id, other.name));
+      }
+    }
+  }
+
+  void require_authentication(const CanMessage& message, std::size_t line) const {
+    const std::size_t count = message.signals.size();
+    for (const CanSignal& signal : message.signals) {
+      const auto place = std::find(kAuthentication.begin(), kAuthentication.end(), signal.name);
+      if (place == kAuthentication.end() && !message.has_authentication()) {
+        continue;
+      }
+      const auto index = static_cast<std::size_t>(&signal - message.signals.data());
+      const bool is_behind = index + kAuthentication.size() >= count;
+      if (is_behind != (place != kAuthentication.end())) {
+        refuse_authentication(message, line);
+      }
+      if (!is_behind) {
+        continue;
+      }
+      const auto number = static_cast<unsigned>(place - kAuthentication.begin());
+      const unsigned start = 8 * message.length - kMostBits * (static_cast<unsigned>(kAuthentication.size()) - number);
+      if (index + kAuthentication.size() != count + number || signal.start != start || signal.length != kMostBits ||
+          signal.is_signed || signal.factor != 1.0 || signal.offset != 0.0 ||
+          signal.highest_raw != (std::int64_t{1} << kMostBits) - 1) {
+        refuse_authentication(message, line);
+      }
+    }
+  }
+
+  [[noreturn]] void refuse_authentication(const CanMessage& message, std::size_t line) const {
+    refuse(line, fmt::format("{}: its authentication is not in its place; allowed: {}, |32@1+ each, as its last signals and "
+                             "its last 12 bytes",
+                             message.name, fmt::join(kAuthentication, ", ")));
+  }
+
   void require_length(const CanMessage& message, std::size_t line) const {
     const bool is_long = std::find(kLongLengths.begin(), kLongLengths.end(), message.length) != kLongLengths.end();
     if (message.length > 8 && !(message.fd && is_long)) {
@@ -170,11 +224,11 @@ const CanSignal* CanMessage::find(std::string_view signal) const {
 }
 
 bool CanMessage::is_intact(std::span<const std::uint8_t> data) const {
-  return signals.front().read(data) == can_crc(crc_bits()).of_frame(data, id);
+  return signals.front().read(data) == can_crc(crc_bits()).of_frame(data, data_id);
 }
 
 void CanMessage::seal(std::span<std::uint8_t> data) const {
-  signals.front().write(can_crc(crc_bits()).of_frame(data, id), data);
+  signals.front().write(can_crc(crc_bits()).of_frame(data, data_id), data);
 }
 
 const CanSignal& CanMessage::at(std::string_view signal) const {

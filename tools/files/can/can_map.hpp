@@ -30,11 +30,13 @@ struct CanSignal {
   void write(std::int64_t raw, std::span<std::uint8_t> data) const;
 };
 
-/// A frame of the map. Its first signals are the check (crc8 or crc16) and the counter.
+/// A frame of the map. Its first signals are the check (crc8 or crc16) and the counter. Those of a message that can be
+/// authenticated end with `freshness`, `mac_low` and `mac_high`, which fill its last 12 bytes.
 struct CanMessage {
   std::string name;
   std::string sender;
-  std::uint32_t id = 0;  ///< 11 bits
+  std::uint32_t id = 0;       ///< 11 bits
+  std::uint16_t data_id = 0;  ///< what the check covers beside the bytes (can_crc.hpp)
   bool fd = false;
   unsigned length = 0;    ///< bytes
   unsigned cycle_ms = 0;  ///< 0: not cyclic
@@ -45,6 +47,7 @@ struct CanMessage {
   const CanSignal& at(std::string_view signal) const;
   unsigned crc_bits() const { return signals.front().length; }
   const CanSignal& counter() const { return signals[1]; }
+  bool has_authentication() const { return find("freshness") != nullptr; }
   /// Whether the check in this data is right for this message.
   bool is_intact(std::span<const std::uint8_t> data) const;
   /// Puts the check in its place.
@@ -62,7 +65,8 @@ struct CanMap {
 
 /// Makes the map of a DBC file (dbc.hpp). Throws FileError with file and line for what this project does not use (extended
 /// ids, multiplexing, big-endian or floating-point signals, signals over 32 bits) and for what is wrong: a signal over
-/// another one, a length no frame has, a message whose first two signals are not crc8 or crc16 and counter in their places.
+/// another one, a length no frame has, a message whose first two signals are not crc8 or crc16 and counter in their places,
+/// or one without a data id (attribute E2EDataId), two whose data ids the check cannot tell apart.
 CanMap read_can_map(std::string_view text, const std::filesystem::path& path);
 
 /// The map that this build's firmware is made from.

@@ -18,24 +18,26 @@ namespace {
 constexpr std::size_t kStrings = 4;  ///< of one engine
 constexpr unsigned kPerEngine = 2;   ///< actuators
 
-/// Where the numbers of one actuator are in the map.
+/// Where the numbers of one actuator are in the map. In a split layout reading B comes in a message of its own.
 struct ActuatorPlaces {
   const CanMessage* command;
   const CanSignal* current;
   const CanMessage* reading;
   const CanSignal* piston_a;
+  const CanMessage* second_reading;
   const CanSignal* piston_b;
   std::array<const CanMessage*, kStrings> string_messages;
   std::array<const CanSignal*, kStrings> strings;
 };
 
-ActuatorPlaces classic_places(const CanMap& map, unsigned actuator) {
+ActuatorPlaces classic_places(const CanMap& map, unsigned actuator, bool split) {
   ActuatorPlaces places{};
   places.command = &map.at("SERVOVALVE_COMMAND");
   places.current = &places.command->at(fmt::format("current_{}", actuator));
-  places.reading = &map.at(fmt::format("PISTON_{}", actuator));
-  places.piston_a = &places.reading->at("piston_a");
-  places.piston_b = &places.reading->at("piston_b");
+  places.reading = &map.at(fmt::format("PISTON_{}{}", actuator, split ? "_A" : ""));
+  places.piston_a = &places.reading->at(split ? "piston" : "piston_a");
+  places.second_reading = &map.at(fmt::format("PISTON_{}{}", actuator, split ? "_B" : ""));
+  places.piston_b = &places.second_reading->at(split ? "piston" : "piston_b");
   for (std::size_t i = 0; i < kStrings; ++i) {
     places.string_messages[i] = &map.at(i < 2 ? "STRINGS_12" : "STRINGS_34");
     places.strings[i] = &places.string_messages[i]->at(fmt::format("string_{}", i + 1));
@@ -43,13 +45,14 @@ ActuatorPlaces classic_places(const CanMap& map, unsigned actuator) {
   return places;
 }
 
-ActuatorPlaces fd_places(const CanMap& map, unsigned actuator) {
+ActuatorPlaces fd_places(const CanMap& map, unsigned actuator, bool split) {
   ActuatorPlaces places{};
   places.command = &map.at("SERVOVALVE_COMMAND_FD");
   places.current = &places.command->at(fmt::format("current_{}", actuator));
-  places.reading = &map.at("PISTONS_FD");
-  places.piston_a = &places.reading->at(fmt::format("piston_{}_a", actuator));
-  places.piston_b = &places.reading->at(fmt::format("piston_{}_b", actuator));
+  places.reading = &map.at(split ? "PISTONS_A_FD" : "PISTONS_FD");
+  places.piston_a = &places.reading->at(fmt::format("piston_{}{}", actuator, split ? "" : "_a"));
+  places.second_reading = &map.at(split ? "PISTONS_B_FD" : "PISTONS_FD");
+  places.piston_b = &places.second_reading->at(fmt::format("piston_{}{}", actuator, split ? "" : "_b"));
   const std::size_t first = (actuator - 1) / kPerEngine * kStrings;
   for (std::size_t i = 0; i < kStrings; ++i) {
     places.string_messages[i] = &map.at("STRINGS_FD");
@@ -69,6 +72,9 @@ class LogReader {
   Record read() {
     while (const auto frame = next_candump_frame(lines_)) {
       take(*frame);
+    }
+    if (open_ && !has_both_) {
+      open_.reset();  // the log ends between two readings of one row
     }
     close_row();  // the last command holds on
     return record();
@@ -101,7 +107,11 @@ class LogReader {
       require_next(last_reading_, *message, frame);
       close_row();
       open_row(frame);
-    } else if (message == places_->command) {
+    }
+    if (message == places_->second_reading && open_) {
+      add_second_reading(frame);
+    }
+    if (message == places_->command) {
       require_next(last_command_, *message, frame);
       current_ = places_->current->physical(places_->current->read(frame.data));
     }
@@ -129,10 +139,11 @@ class LogReader {
     }
   }
 
-  /// By the first frame that only one layout has.
+  /// By the first command or string, which says classic or FD, and by the first reading, which says whether it is split.
   void choose_layout(const CanMessage& message) {
     const auto begins = [&](std::string_view word) { return message.name.starts_with(word); };
-    if (!begins("SERVOVALVE_COMMAND") && !begins("PISTON") && !begins("STRINGS")) {
+    const bool is_reading = begins("PISTON");
+    if (!begins("SERVOVALVE_COMMAND") && !is_reading && !begins("STRINGS")) {
       return;
     }
     const bool fd = message.fd;
@@ -140,14 +151,21 @@ class LogReader {
       lines_.refuse(fmt::format("{}: a frame of the {} layout after one of the other; allowed: one layout", message.name,
                                 fd ? "FD" : "classic"));
     }
-    if (!is_fd_) {
-      is_fd_ = fd;
-      if (!fd && options_.actuator > kPerEngine) {
-        lines_.refuse(
-            fmt::format("the log is of the classic layout, which has no actuator {}; allowed: 1, 2", options_.actuator));
-      }
-      places_ = fd ? fd_places(map_, options_.actuator) : classic_places(map_, options_.actuator);
+    if (!is_fd_ && !fd && options_.actuator > kPerEngine) {
+      lines_.refuse(
+          fmt::format("the log is of the classic layout, which has no actuator {}; allowed: 1, 2", options_.actuator));
     }
+    const bool split =
+        is_reading ? message.find("piston") != nullptr || message.find("piston_1") != nullptr : is_split_.value_or(false);
+    if (is_reading && is_split_ && *is_split_ != split) {
+      lines_.refuse(fmt::format("{}: a frame of the {} layout after one of the other; allowed: one layout", message.name,
+                                split ? "split" : "joint"));
+    }
+    if (!is_fd_ || (is_reading && !is_split_)) {
+      places_ = fd ? fd_places(map_, options_.actuator, split) : classic_places(map_, options_.actuator, split);
+    }
+    is_fd_ = fd;
+    is_split_ = is_reading ? split : is_split_;
   }
 
   void require_next(std::optional<std::uint8_t>& last, const CanMessage& message, const CandumpFrame& frame) const {
@@ -159,13 +177,30 @@ class LogReader {
     last = counter;
   }
 
+  /// With reading A only: B belongs to the same row, if it is of another frame too.
   void open_row(const CandumpFrame& frame) {
     const double a = places_->piston_a->physical(places_->piston_a->read(frame.data));
+    open_ = Row{frame.time, a, std::nan(""), strings_};
+    has_both_ = false;
+  }
+
+  void add_second_reading(const CandumpFrame& frame) {
+    const auto counter = static_cast<std::uint8_t>(places_->second_reading->counter().read(frame.data));
+    if (has_both_ || counter != last_reading_) {
+      lines_.refuse(fmt::format("{}: counter {} after {} {} of the other reading; allowed: both readings with one counter",
+                                places_->second_reading->name, counter, places_->reading->name, *last_reading_));
+    }
     const double b = places_->piston_b->physical(places_->piston_b->read(frame.data));
-    open_ = Row{frame.time, 0.5 * (a + b), std::nan(""), strings_};
+    open_->piston = 0.5 * (open_->piston + b);
+    has_both_ = true;
   }
 
   void close_row() {
+    if (open_ && !has_both_) {
+      lines_.refuse(
+          fmt::format("{}: none with the counter {} of {}: frames are lost; a record has no gaps, cut the log here",
+                      places_->second_reading->name, *last_reading_, places_->reading->name));
+    }
     if (open_ && !std::isnan(current_)) {
       if (rows_.size() == kMostRows) {
         lines_.refuse(fmt::format("more than {} readings; cut the log into parts", kMostRows));
@@ -229,12 +264,14 @@ class LogReader {
   CsvLines lines_;
   std::string interface_;
   std::optional<bool> is_fd_;
+  std::optional<bool> is_split_;
   std::optional<ActuatorPlaces> places_;
   std::optional<std::uint8_t> last_reading_;
   std::optional<std::uint8_t> last_command_;
   double current_ = std::nan("");
   std::array<double, kStrings> strings_{};
   std::optional<Row> open_;
+  bool has_both_ = false;  ///< redundant readings are in the open row
   std::vector<Row> rows_;
 };
 

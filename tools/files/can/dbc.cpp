@@ -171,6 +171,8 @@ class DbcReader {
       message.frame_format = std::stoi(parts[3]);
     } else if (parts[1] == "GenMsgCycleTime") {
       message.cycle_ms = static_cast<unsigned>(std::stoul(parts[3]));
+    } else if (parts[1] == "E2EDataId") {
+      message.data_id = static_cast<unsigned>(std::stoul(parts[3]));
     }
   }
 

@@ -43,6 +43,7 @@ struct DbcMessage {
   std::uint32_t id = 0;                    ///< 11 bits, or 29 bits with kExtendedId
   unsigned length = 0;                     ///< bytes
   unsigned cycle_ms = 0;                   ///< GenMsgCycleTime; 0: not cyclic
+  unsigned data_id = 0;                    ///< E2EDataId; 0: none
   int frame_format = 0;                    ///< VFrameFormat
   bool has_extended_multiplexing = false;  ///< a multiplexer that is multiplexed, or ranges of its values
   std::vector<DbcSignal> signals;
