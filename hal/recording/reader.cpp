@@ -8,8 +8,8 @@
 namespace hotfire::hal {
 namespace {
 
-/// More than the header of a plant has; the profile of a lab makes it longer.
-constexpr std::size_t kHeaderPiece = 1 << 18;
+/// About the header of a plant; the profile of a lab makes it longer.
+constexpr std::size_t kHeaderPiece = 1 << 14;
 
 /// Up to `wanted` bytes.
 std::size_t read_bytes(std::ifstream& file, void* into, std::size_t wanted) {

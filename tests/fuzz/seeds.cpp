@@ -92,7 +92,6 @@ void write_all(const fs::path& source, const fs::path& folder) {
   write(folder / "toml/can_map", "5schema = 1\n[can]\nrows = \"F\"\n[channels.command]\ncolumn = \"F.s\"\n");
   write(folder / "csv/record", "# by hand\ntime[s],command[rad],piston[mm]\n0,0,0\n0.001,1e-3,0.5\n0.002,,\n0.003,2e-3,1\n");
   write(folder / "csv/vehicle", "time[ms],command.pitch1[deg],string1.engine1[m],vibration.yaw1[rad/s]\n0,1,2,3\n2,1,2,3\n");
-  write(folder / "modes/own", content_of(source / "tools/structure/synthetic_vehicle.csv"));
   write(folder / "modes/small",
         "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1\n1,5,0.01,1e-3,0,1e-4,0\n"
         "residual.attach.pitch1,,,1e-9,0,0,0\nresidual.attach.yaw1,,,0,1e-9,0,0\nresidual.gimbal.pitch1,,,0,0,1e-9,0\n"
