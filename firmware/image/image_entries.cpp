@@ -8,6 +8,12 @@
 #include <system_error>
 
 namespace hotfire::firmware {
+namespace {
+
+constexpr std::size_t kLargestImage = std::size_t{64} << 20;  ///< a profile of half a million rows
+constexpr std::size_t kImagePiece = 1 << 14;
+
+}  // namespace
 
 double read_bounded(Entries& entries, const std::string& key, double lower, double upper, std::string_view unit) {
   double value = lower;
@@ -54,12 +60,23 @@ void read_list(Entries& entries, const std::string& key, double lower, double up
 }
 
 ReadText read_image_text(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream content;
-  if (!file || !(content << file.rdbuf())) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string content;
+  for (std::size_t read = kImagePiece; file && read == kImagePiece && content.size() <= kLargestImage;) {
+    const std::size_t before = content.size();
+    content.resize(before + kImagePiece);
+    file.read(content.data() + before, kImagePiece);
+    read = static_cast<std::size_t>(file.gcount());
+    content.resize(before + read);
+  }
+  if (!file.is_open() || errno != 0) {
     return {{}, path + ": cannot be read as an image: " + std::strerror(errno)};
   }
-  return {content.str(), {}};
+  if (content.size() > kLargestImage) {
+    return {{}, path + text(":1: over %zu bytes; allowed: an image of at most so many", kLargestImage)};
+  }
+  return {content, {}};
 }
 
 }  // namespace hotfire::firmware

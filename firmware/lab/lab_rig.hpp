@@ -193,7 +193,8 @@ class LabRig {
     const auto on = [&](LabInput line) { return readable && ((levels >> line) & 1U) != 0; };
     inputs_.rig.emergency_stop = !on(kEmergencyStopReleased);
     inputs_.rig.hydraulic_enable = on(kHydraulicEnabled);
-    const bool pressed = on(kArm);
+    // A line that cannot be read has not been seen off: a button held all the while would else arm when it can be read again.
+    const bool pressed = readable ? on(kArm) : pressed_before_;
     if (pressed && !pressed_before_ && !lab_.outputs().interlock.drive) {
       press_is_spent_ = takes_bus_into_use();
     }

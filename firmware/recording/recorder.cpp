@@ -43,8 +43,8 @@ RecorderAccount Recorder::close() {
   end.kind = hal::BlockHead::kEnd;
   end.dropped = offered_ - stored_;
   append(end, {});
-  sink_.sync();
-  return {offered_, stored_, failure_};
+  sync();
+  return {offered_, stored_, failure_, is_error_};
 }
 
 void Recorder::empty_until_closed() {
@@ -57,7 +57,7 @@ void Recorder::empty_until_closed() {
     }
     empty_ring();
     if (SteadyClock::now() - synced > std::chrono::nanoseconds(kSyncEveryNs)) {
-      sink_.sync();
+      sync();
       synced = SteadyClock::now();
     }
   }
@@ -81,9 +81,15 @@ void Recorder::empty_ring() {
 
 void Recorder::append(hal::BlockHead& head, std::span<const std::byte> content) {
   head.checksum = head.checksum_with(content);
-  const std::string why = sink_.append(std::as_bytes(std::span(&head, 1)), content);
-  if (!why.empty() && failure_.empty()) {
-    failure_ = why;
+  keep(sink_.append(std::as_bytes(std::span(&head, 1)), content));
+}
+
+void Recorder::sync() { keep(sink_.sync()); }
+
+void Recorder::keep(const std::optional<hal::SinkRefusal>& refusal) {
+  if (refusal && (failure_.empty() || (refusal->is_error && !is_error_))) {
+    failure_ = refusal->why;
+    is_error_ = refusal->is_error;
     refused_.store(true, std::memory_order_relaxed);
   }
 }

@@ -19,13 +19,15 @@ namespace hotfire::firmware {
 struct RecorderAccount {
   std::uint64_t offered = 0;
   std::uint64_t stored = 0;
-  std::string failure;  ///< why the recording ended before the loop; empty: it did not
+  std::string failure;    ///< why the recording ended before the loop; empty: it did not
+  bool is_error = false;  ///< it ended because the disk failed, and not at a limit that was asked for
 
   std::uint64_t dropped() const noexcept { return offered - stored; }
 };
 
 /// Takes cycles from a real-time loop and hands them to a sink by a thread of its own, which is not real-time. Between the
 /// two is a ring: when the sink is slower than the loop for so long that the ring is full, cycles are dropped, and counted.
+/// The first refusal of the sink, to append or to make safe, ends the recording: every cycle from then on is dropped.
 class Recorder {
  public:
   /// How often the thread empties the ring: what is lost when the process is killed is no more than this and one write.
@@ -55,6 +57,8 @@ class Recorder {
   void empty_until_closed();
   void empty_ring();
   void append(hal::BlockHead& head, std::span<const std::byte> content);
+  void sync();
+  void keep(const std::optional<hal::SinkRefusal>& refusal);
 
   hal::RecordingSink& sink_;
   RecordingRing ring_;
@@ -63,6 +67,7 @@ class Recorder {
   std::atomic<bool> refused_{false};
   std::uint64_t stored_ = 0;  ///< the thread's own
   std::string failure_;       ///< the thread's own
+  bool is_error_ = false;     ///< the thread's own
   std::mutex mutex_;          ///< of `closing_`; the loop never takes it
   std::condition_variable close_asked_;
   bool closing_ = false;

@@ -55,6 +55,10 @@ Verdict judge(const Session& session) {
         text("%llu cycles missing in the recording, allowed %llu", static_cast<unsigned long long>(dropped),
              static_cast<unsigned long long>(options.max_dropped)));
   }
+  if (session.recording != nullptr && session.recording->is_error) {
+    add(false, "the recording failed: " + session.recording->failure);
+    verdict.status = kHardware;
+  }
   if (verdict.reason.empty()) {
     verdict.reason = "no limit asked for";
   }

@@ -108,6 +108,6 @@ std::uint64_t model_hash(std::string_view model);
 std::string header_text(const RecordingHeader& header);
 
 /// The first line of every recording; the number is the version of the format.
-inline constexpr std::string_view kRecordingMark = "hotfire recording 1\n";
+inline constexpr std::string_view kRecordingMark = "hotfire recording 2\n";
 
 }  // namespace hotfire::hal

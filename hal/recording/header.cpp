@@ -56,6 +56,15 @@ bool read_double(const std::string& value, double& result) {
   return !value.empty() && *end == '\0';
 }
 
+/// Of the line that says what all lines before it hash to.
+constexpr std::string_view kHashKey = "\nheader_hash ";
+
+std::string hash_of(std::string_view text) {
+  Fnv1a hash;
+  hash.add(std::as_bytes(std::span(text)));
+  return hexadecimal(hash.value());
+}
+
 /// Takes one line into the header; false if its value is not of its kind.
 bool take(RecordingHeader& header, std::string_view key, std::string_view value, std::string& hash) {
   const std::string text(value);
@@ -107,6 +116,18 @@ std::string what_is_wrong(const RecordingHeader& header, const std::string& hash
   return {};
 }
 
+/// Whether the lines, which end with the one of the hash, are those that were written; they lose that line.
+bool take_hash(std::string_view& lines, std::string_view text) {
+  const std::size_t at = lines.rfind(kHashKey);
+  if (at == std::string_view::npos) {
+    return false;
+  }
+  const std::string_view before = text.substr(0, static_cast<std::size_t>(lines.data() - text.data()) + at + 1);
+  const std::string_view given = lines.substr(at + kHashKey.size());
+  lines = lines.substr(0, at + 1);
+  return given == hash_of(before) + "\n";
+}
+
 }  // namespace
 
 std::uint64_t model_hash(std::string_view model) {
@@ -140,20 +161,27 @@ std::string header_text(const RecordingHeader& header) {
   for (std::string_view rest = header.model; !rest.empty();) {
     add("model", std::string(take_line(rest)));
   }
+  add(kHashKey.substr(1, kHashKey.size() - 2), hash_of(text));
   return text.append(kLastHeaderLine.substr(1));
 }
 
 ParsedHeader parse_header(std::string_view text) {
   if (!text.starts_with(kRecordingMark)) {
-    return {{}, 0, "it does not begin with `hotfire recording 1`: it is no recording, or one of another version"};
+    return {{}, 0, "line 1: it does not begin with `hotfire recording 2`: it is no recording, or one of another version"};
   }
-  const std::size_t last = text.find(kLastHeaderLine);
+  const std::size_t last = text.substr(0, kLongestHeader).find(kLastHeaderLine);
   if (last == std::string_view::npos) {
-    return {{}, 0, "its header has no end: the file is cut off"};
+    return text.size() < kLongestHeader
+               ? ParsedHeader{{}, 0, "its header has no end: the file is cut off"}
+               : ParsedHeader{{}, 0, "its header has no end within " + std::to_string(kLongestHeader) + " bytes"};
   }
   ParsedHeader parsed;
   parsed.bytes = last + kLastHeaderLine.size();
   std::string_view lines = text.substr(kRecordingMark.size(), last + 1 - kRecordingMark.size());
+  if (!take_hash(lines, text)) {
+    parsed.error = "its header is damaged: it is not what its line `header_hash` says";
+    return parsed;
+  }
   std::string hash;
   for (int number = 2; !lines.empty(); ++number) {
     const std::string_view line = take_line(lines);

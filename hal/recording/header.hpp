@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,9 @@ struct ParsedHeader {
   std::size_t bytes = 0;
   std::string error;
 };
+
+/// The most bytes of a header: a profile of half a million rows. A reader looks no further.
+inline constexpr std::size_t kLongestHeader = std::size_t{64} << 20;
 
 /// The last line of a header, with the end of the line before it.
 inline constexpr std::string_view kLastHeaderLine = "\ncycles\n";

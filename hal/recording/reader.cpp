@@ -8,8 +8,8 @@
 namespace hotfire::hal {
 namespace {
 
-/// More than the header of a plant has; the profile of a lab makes it as long as it likes.
-constexpr std::size_t kHeaderPiece = 1 << 18;
+/// About the header of a plant; the profile of a lab makes it longer.
+constexpr std::size_t kHeaderPiece = 1 << 14;
 
 /// Up to `wanted` bytes.
 std::size_t read_bytes(std::ifstream& file, void* into, std::size_t wanted) {
@@ -17,12 +17,17 @@ std::size_t read_bytes(std::ifstream& file, void* into, std::size_t wanted) {
   return static_cast<std::size_t>(file.gcount());
 }
 
-/// The beginning of a file up to where its header ends, or all of it.
+/// The beginning of a file up to where its header ends, or as much of it as a header may have; its first line, if that is
+/// not a recording's.
 std::string read_header_text(std::ifstream& file) {
-  std::string text;
-  std::size_t read = kHeaderPiece;
-  while (read == kHeaderPiece && text.find(kLastHeaderLine) == std::string::npos) {
+  std::string text(kRecordingMark.size(), '\0');
+  std::size_t read = read_bytes(file, text.data(), text.size());
+  text.resize(read);
+  std::size_t searched = 0;
+  for (read = kHeaderPiece; text.starts_with(kRecordingMark) && read == kHeaderPiece && text.size() < kLongestHeader &&
+                            text.find(kLastHeaderLine, searched) == std::string::npos;) {
     const std::size_t before = text.size();
+    searched = before - kLastHeaderLine.size();
     text.resize(before + kHeaderPiece);
     read = read_bytes(file, text.data() + before, kHeaderPiece);
     text.resize(before + read);

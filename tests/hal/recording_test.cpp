@@ -1,9 +1,13 @@
 #include <CppUTest/TestHarness.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
+#include <atomic>
+#include <barrier>
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <thread>
 
 #include "hal/linux/recording_file.hpp"
 #include "hal/recording/header.hpp"
@@ -30,6 +34,20 @@ RecordingHeader bench() {
   header.start = {0.1, -std::nextafter(0.3, 1.0)};
   header.model = "schema 1\ntopology direct\n";
   return header;
+}
+
+/// The header with the hash of what it says now.
+std::string with_right_hash(const std::string& text) {
+  const std::string key = "header_hash ";
+  const std::size_t at = text.find(key);
+  if (at == std::string::npos) {
+    return text;
+  }
+  Fnv1a hash;
+  hash.add(std::as_bytes(std::span(text)).first(at));
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash.value()));
+  return text.substr(0, at) + key + digits + text.substr(at + key.size() + 16);
 }
 
 /// A block of cycles with these numbers, commands and readings derived from them.
@@ -67,6 +85,11 @@ TEST_GROUP(Recording) {
     return RecordingReader(scratch.write("run.hfr", content).string());
   }
 
+  static std::size_t files_beside(const std::string& path) {
+    const std::filesystem::directory_iterator files(std::filesystem::path(path).parent_path());
+    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+  }
+
   static std::uint64_t count(RecordingReader & reader) {
     RecordedCycle cycle;
     std::uint64_t cycles = 0;
@@ -89,9 +112,41 @@ TEST(Recording, HeaderComesBackBitForBitWithUnitsAndProvenance) {
   CHECK(header_text(parsed.header) == header_text(parse_header(header_text(parsed.header)).header));
 }
 
+TEST(Recording, NoByteOfAHeaderCanChangeUnnoticed) {
+  for (std::size_t at = 0; at < start.size(); ++at) {
+    for (const char bit : {'\x01', '\x10'}) {
+      std::string changed = start;
+      changed[at] = static_cast<char>(changed[at] ^ bit);
+      CHECK_TRUE_TEXT(!parse_header(changed).error.empty(), changed.substr(at, 20).c_str());
+    }
+  }
+}
+
+TEST(Recording, HeaderWithAnotherPeriodUnitOrStartIsRefused) {
+  const auto refused = [&](const std::string& before, const std::string& after) {
+    std::string text = start;
+    STRCMP_CONTAINS("its header is damaged",
+                    parse_header(text.replace(text.find(before), before.size(), after)).error.c_str());
+  };
+  refused("period_ns 250000", "period_ns 750000");
+  refused("channel position m", "channel position mm");
+  refused("start 0x1.999999999999ap-4", "start 0x1.999999999999ap-5");
+}
+
+TEST(Recording, FileWithoutEndIsRefusedAtItsFirstLine) {
+  const std::string error = RecordingReader("/dev/zero").error();
+  STRCMP_CONTAINS("/dev/zero: not a recording of this version: line 1: it does not begin with", error.c_str());
+}
+
+TEST(Recording, HeaderIsSearchedForItsEndUpToALimit) {
+  const std::string text = std::string(kRecordingMark) + std::string(kLongestHeader, 'x') + std::string(kLastHeaderLine);
+  STRCMP_CONTAINS("no end within 67108864 bytes", opened(text).error().c_str());
+  STRCMP_CONTAINS("the file is cut off", opened(std::string(kRecordingMark) + "version 1\n").error().c_str());
+}
+
 TEST(Recording, HeaderThatLacksSomethingOrIsForeignIsRefusedWithTheReason) {
   const auto refused = [](const std::string& text, const char* reason) {
-    STRCMP_CONTAINS(reason, parse_header(text).error.c_str());
+    STRCMP_CONTAINS(reason, parse_header(with_right_hash(text)).error.c_str());
   };
   const auto without = [&](const std::string& line) {
     std::string text = start;
@@ -102,7 +157,7 @@ TEST(Recording, HeaderThatLacksSomethingOrIsForeignIsRefusedWithTheReason) {
     return text.replace(text.find(before), before.size(), after);
   };
   refused("time[s],command[rad]\n", "no recording");
-  refused(with("recording 1", "recording 2"), "another version");
+  refused(with("recording 2", "recording 1"), "another version");
   refused(start.substr(0, start.size() - 3), "cut off");
   refused(without("period_ns 250000\n"), "lacks period_ns");
   refused(with("actuators 2", "actuators 9"), "more of them than a plant can have");
@@ -162,11 +217,11 @@ TEST(Recording, FileHasItsNameOnlyWithItsHeaderAndReplacesAnOlderOneThatItMayOve
     RecordingFile file(path, 1 << 20, true);
     CHECK(!file.create(start));
     const std::string one = block({0});
-    STRCMP_EQUAL("", file.append(std::as_bytes(std::span(one)), {}).c_str());
+    CHECK(!file.append(std::as_bytes(std::span(one)), {}));
   }
   RecordingReader reader(path);
   UNSIGNED_LONGS_EQUAL(1, count(reader));
-  CHECK(!std::filesystem::exists(path + ".part"));
+  UNSIGNED_LONGS_EQUAL(1, files_beside(path));
 }
 
 TEST(Recording, FileThatExistsIsRefusedWithTheMendAndStaysAsItWas) {
@@ -178,7 +233,86 @@ TEST(Recording, FileThatExistsIsRefusedWithTheMendAndStaysAsItWas) {
     STRCMP_CONTAINS("--overwrite", failure->mend.c_str());
   }
   UNSIGNED_LONGS_EQUAL(3, std::filesystem::file_size(path));
-  CHECK(!std::filesystem::exists(path + ".part"));
+  UNSIGNED_LONGS_EQUAL(1, files_beside(path));
+}
+
+TEST(Recording, FileIsReadableForItsUserAndGroupAlone) {
+  const mode_t before = umask(0);
+  const std::string path = scratch.path("run.hfr").string();
+  CHECK(!RecordingFile(path, 1 << 20).create(start));
+  umask(before);
+  CHECK(std::filesystem::status(path).permissions() == std::filesystem::perms{0640});
+}
+
+// Two programs with one --record: the second finds the name taken, whatever it may overwrite, and the first one's file
+// whole.
+TEST(Recording, FileThatAProgramWritesIsReplacedByNoOther) {
+  const std::string path = scratch.path("run.hfr").string();
+  const std::string one = block({0});
+  RecordingFile first(path, 1 << 20);
+  CHECK(!first.create(start));
+  for (const bool overwrite : {false, true}) {
+    RecordingFile second(path, 1 << 20, overwrite);
+    const auto failure = second.create(start);
+    CHECK(failure.has_value());
+    STRCMP_CONTAINS(overwrite ? "is being written by another program" : "exists", failure->what.c_str());
+    CHECK(!first.append(std::as_bytes(std::span(one)), {}));
+  }
+  RecordingReader reader(path);
+  RecordedCycle cycle;
+  CHECK(reader.next(cycle) && reader.next(cycle));
+  UNSIGNED_LONGS_EQUAL(1, files_beside(path));
+}
+
+TEST(Recording, OfProgramsThatStartTogetherOneGetsTheNameAndItsRecordingIsWhole) {
+  for (int round = 0; round < 60; ++round) {
+    const std::string path = scratch.path("run" + std::to_string(round) + ".hfr").string();
+    std::atomic<int> made{0};
+    std::barrier together(2);
+    const auto record = [&](bool overwrite) {
+      RecordingFile file(path, 1 << 20, overwrite);
+      together.arrive_and_wait();
+      const bool is_mine = !file.create(start);
+      together.arrive_and_wait();
+      if (is_mine) {
+        ++made;
+        const std::string cycles = block({0, 1, 2});
+        file.append(std::as_bytes(std::span(cycles)), {});
+      }
+    };
+    std::thread one(record, round % 2 == 0);
+    std::thread two(record, round % 3 == 0);
+    one.join();
+    two.join();
+    LONGS_EQUAL(1, made.load());
+    RecordingReader reader(path);
+    STRCMP_EQUAL("", reader.error().c_str());
+    UNSIGNED_LONGS_EQUAL(3, count(reader));
+  }
+}
+
+TEST(Recording, LinkIsRefusedAndWhatItLeadsToStaysAsItWas) {
+  const std::string target = scratch.write("target", "old").string();
+  const std::string path = scratch.path("link.hfr").string();
+  std::filesystem::create_symlink(target, path);
+  for (const bool overwrite : {false, true}) {
+    const auto failure = RecordingFile(path, 1 << 20, overwrite).create(start);
+    CHECK(failure.has_value());
+    STRCMP_CONTAINS("link.hfr is a link", failure->what.c_str());
+  }
+  UNSIGNED_LONGS_EQUAL(3, std::filesystem::file_size(target));
+}
+
+// What a program killed while it made a file leaves, or what somebody has put there.
+TEST(Recording, TemporaryThatStandsThereIsNeitherFollowedNorReplaced) {
+  const std::string target = scratch.write("target", "old").string();
+  const std::string path = scratch.path("run.hfr").string();
+  std::filesystem::create_symlink(target, path + "." + std::to_string(getpid()) + ".part");
+  const auto failure = RecordingFile(path, 1 << 20).create(start);
+  CHECK(failure.has_value());
+  STRCMP_CONTAINS(".part: File exists", failure->what.c_str());
+  UNSIGNED_LONGS_EQUAL(3, std::filesystem::file_size(target));
+  CHECK(!std::filesystem::exists(path));
 }
 
 TEST(Recording, FileThatWouldGrowBeyondItsLimitRefusesTheBlockWhole) {
@@ -186,8 +320,11 @@ TEST(Recording, FileThatWouldGrowBeyondItsLimitRefusesTheBlockWhole) {
   const std::string one = block({0});
   RecordingFile file(path, start.size() + one.size());
   CHECK(!file.create(start));
-  STRCMP_EQUAL("", file.append(std::as_bytes(std::span(one)), {}).c_str());
-  STRCMP_CONTAINS("--record-max-mib", file.append(std::as_bytes(std::span(one)), {}).c_str());
+  CHECK(!file.append(std::as_bytes(std::span(one)), {}));
+  const auto refused = file.append(std::as_bytes(std::span(one)), {});
+  CHECK(refused.has_value());
+  CHECK(!refused->is_error);
+  STRCMP_CONTAINS("--record-max-mib", refused->why.c_str());
   UNSIGNED_LONGS_EQUAL(start.size() + one.size(), std::filesystem::file_size(path));
 }
 
@@ -205,20 +342,23 @@ TEST(Recording, BlockThatTheDiskTakesOnlyInPartIsTakenBack) {
   const std::string one = block({0, 1, 2});
   RecordingFile file(path, 1 << 20);
   CHECK(!file.create(start));
-  STRCMP_EQUAL("", file.append(std::as_bytes(std::span(one)), {}).c_str());
+  CHECK(!file.append(std::as_bytes(std::span(one)), {}));
   // A limit on the size of files stands in for a disk that is full.
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
   const rlimit small{start.size() + one.size() + 40, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  const std::string why = file.append(std::as_bytes(std::span(one)), {});
+  const auto refused = file.append(std::as_bytes(std::span(one)), {});
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, SIG_DFL);
-  STRCMP_CONTAINS("run.hfr: File too large", why.c_str());
+  CHECK(refused.has_value());
+  CHECK(refused->is_error);
+  STRCMP_CONTAINS("run.hfr: File too large", refused->why.c_str());
   UNSIGNED_LONGS_EQUAL(start.size() + one.size(), std::filesystem::file_size(path));
   const std::string end = end_block(1);
-  STRCMP_EQUAL("", file.append(std::as_bytes(std::span(end)), {}).c_str());
+  CHECK(!file.append(std::as_bytes(std::span(end)), {}));
+  CHECK(!file.sync());
   RecordingReader reader(path);
   UNSIGNED_LONGS_EQUAL(3, count(reader));
   CHECK(reader.end() == RecordingReader::End::closed);

@@ -112,7 +112,40 @@ TEST(Dbc, what_is_wrong_is_refused_with_file_and_line) {
   expect_message(refused_signal("s : 0|8@1+ (1,0) [0|0] \"\" X", "SIG_VALTYPE_ 257 s : 1;\n"),
                  {"rig.dbc:3: of message 257, which is none"});
   expect_message(refused("BO_ 1 A: 8 X\nCM_ \"begun\n\n"), {"rig.dbc:2: a text begins here that never ends"});
+  expect_message(refused_signal("s : 0|8@1+ (1,0) [0|0 \"\" X"), {"rig.dbc:2: not a signal"});
+  expect_message(refused_signal("s : 0|8@1+ (1,0) [0|0] \"\" X", "SG_MUL_VAL_ 256 s which ;\n"),
+                 {"rig.dbc:3: not multiplexing"});
   expect_message(refusal([] { load_dbc("/nowhere/rig.dbc"); }), {"/nowhere/rig.dbc: cannot be opened"});
+}
+
+TEST(Dbc, line_of_100_kB_is_refused_with_its_line_and_the_limit) {
+  const std::string unit(100'000, 'x');
+  expect_message(refused("BO_ 256 A: 8 X\n SG_ s : 0|8@1+ (1,0) [0|0] \"" + unit + "\" X\n"),
+                 {"rig.dbc:2: a line of 1000", "allowed: up to 65536"});
+  expect_message(refused("BO_ 256 A: 8 X\nCM_ \"" + unit + "\";\n"),
+                 {"rig.dbc:2: a line of 100007", "allowed: up to 65536"});
+}
+
+TEST(Dbc, line_up_to_its_limit_is_read) {
+  const std::string before = "s : 0|8@1+ (1,0) [0|0] \"";
+  const std::string after = "\" X";
+  const std::string unit(65536 - 5 - before.size() - after.size(), 'x');
+  STRCMP_EQUAL(unit.c_str(), with_signal(before + unit + after).messages.front().signals.front().unit.c_str());
+  expect_message(refused("BO_ 256 A: 8 X\n SG_ " + before + unit + "x" + after), {"rig.dbc:2: a line of 65537"});
+}
+
+TEST(Dbc, more_messages_or_signals_than_any_file_has_are_refused_where_they_begin) {
+  std::string messages;
+  for (int id = 0; id <= 10'000; ++id) {
+    messages += "BO_ " + std::to_string(0x80000000U + static_cast<unsigned>(id)) + " M" + std::to_string(id) + ": 8 X\n";
+  }
+  expect_message(refused(messages), {"rig.dbc:10001: more than 10000 messages"});
+  std::string signals = "BO_ 256 A: 8 X\n";
+  for (int i = 0; i <= 1024; ++i) {
+    signals += " SG_ s" + std::to_string(i) + " : 0|8@1+ (1,0) [0|0] \"\" X\n";
+  }
+  expect_message(refused(signals), {"rig.dbc:1026: A: more than 1024 signals"});
+  expect_message(refused(std::string((16U << 20U) + 1, '\n')), {"rig.dbc:1: over 16777216 bytes"});
 }
 
 }  // namespace hotfire

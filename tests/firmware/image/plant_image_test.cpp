@@ -102,6 +102,8 @@ TEST(PlantImage, FileThatCannotBeReadIsRefusedWithTheReason) {
   CHECK(!image.parameters);
   STRCMP_CONTAINS("no/such/file.image: cannot be read", image.error.c_str());
   STRCMP_CONTAINS("No such file", image.error.c_str());
+  STRCMP_CONTAINS("/dev/zero:1: over 67108864 bytes", read_plant_image("/dev/zero").error.c_str());
+  STRCMP_CONTAINS("Is a directory", read_plant_image("/tmp").error.c_str());
 }
 
 }  // namespace hotfire::firmware

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -20,20 +21,23 @@ namespace hotfire::test {
 /// Keeps what is appended in memory. Whoever holds `gate` stalls it, as a disk does; `refuse_after` makes it full.
 class MemorySink final : public hal::RecordingSink {
  public:
-  std::string append(std::span<const std::byte> head, std::span<const std::byte> content) override {
+  std::optional<hal::SinkRefusal> append(std::span<const std::byte> head, std::span<const std::byte> content) override {
     const std::lock_guard guard(gate);
     if (bytes.size() + head.size() + content.size() > refuse_after) {
-      return "the disk is full";
+      return hal::SinkRefusal{"the disk is full"};
     }
     bytes.append(reinterpret_cast<const char*>(head.data()), head.size());
     bytes.append(reinterpret_cast<const char*>(content.data()), content.size());
-    return {};
+    return std::nullopt;
   }
-  void sync() override {}
+  std::optional<hal::SinkRefusal> sync() override {
+    return syncs_refused.load() ? std::optional(hal::SinkRefusal{"not safe"}) : std::nullopt;
+  }
 
   std::mutex gate;
   std::string bytes;
   std::size_t refuse_after = std::string::npos;
+  std::atomic<bool> syncs_refused{false};
 };
 
 inline const std::string kBenchImage = "schema 1\ntopology direct\nmass.inertia 96\nmass.damping 200\nmass.stiffness 1e4\n";

@@ -32,12 +32,12 @@ class StallingFile final : public hal::RecordingSink {
  public:
   explicit StallingFile(hal::RecordingFile& file) : file_(file) {}
 
-  std::string append(std::span<const std::byte> head, std::span<const std::byte> content) override {
+  std::optional<hal::SinkRefusal> append(std::span<const std::byte> head, std::span<const std::byte> content) override {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !stalled_; });
     return file_.append(head, content);
   }
-  void sync() override { file_.sync(); }
+  std::optional<hal::SinkRefusal> sync() override { return file_.sync(); }
 
   void stall(bool stalled) {
     {

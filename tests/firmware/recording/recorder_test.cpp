@@ -3,6 +3,8 @@
 #include <CppUTest/TestHarness.h>
 
 #include <array>
+#include <chrono>
+#include <thread>
 
 #include "hal/recording/header.hpp"
 #include "hal/recording/reader.hpp"
@@ -107,11 +109,39 @@ TEST(Recorder, SinkThatRefusesEndsTheRecordingAndEveryCycleAfterIsCounted) {
   offer(recorder, 0, 4000);
   const RecorderAccount account = recorder.close();
   STRCMP_EQUAL("the disk is full", account.failure.c_str());
+  CHECK(account.is_error);
   UNSIGNED_LONGS_EQUAL(4000, account.offered);
   CHECK(account.stored < 200);
   const hal::RecordingReader reader = read_back();
   UNSIGNED_LONGS_EQUAL(account.stored, reader.cycles());
   UNSIGNED_LONGS_EQUAL(account.dropped(), reader.dropped());
+}
+
+// What was written may be gone: the recorder says so while the loop runs, and takes no more.
+TEST(Recorder, SinkThatCannotMakeItsContentSafeEndsTheRecordingWithAnError) {
+  sink.syncs_refused = true;
+  Recorder recorder(sink, kActuators, kReadings, 5000);
+  CHECK(!recorder.start());
+  std::uint64_t cycle = 0;
+  while (!recorder.dropping()) {
+    offer(recorder, cycle++, 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const RecorderAccount account = recorder.close();
+  STRCMP_EQUAL("not safe", account.failure.c_str());
+  CHECK(account.is_error);
+  UNSIGNED_LONGS_EQUAL(1, account.dropped());
+}
+
+TEST(Recorder, ContentThatCannotBeMadeSafeAtTheEndIsAnErrorToo) {
+  Recorder recorder(sink, kActuators, kReadings, 5000);
+  CHECK(!recorder.start());
+  offer(recorder, 0, 100);
+  sink.syncs_refused = true;
+  const RecorderAccount account = recorder.close();
+  STRCMP_EQUAL("not safe", account.failure.c_str());
+  CHECK(account.is_error);
+  UNSIGNED_LONGS_EQUAL(0, account.dropped());
 }
 
 TEST(Recorder, RecordingAllocatesNothingWhetherTheRingIsFullOrNot) {

@@ -74,7 +74,7 @@ TEST(Report, LimitsAreJudgedWithoutTheWarmUp) {
 }
 
 TEST(Report, CycleMissingInTheRecordingIsBadUnlessAllowed) {
-  const RecorderAccount account{100, 99, "the disk is full"};
+  RecorderAccount account{100, 99, "the disk is full"};
   const auto with_recording = [&] {
     Session with = session();
     with.recording = &account;
@@ -86,6 +86,10 @@ TEST(Report, CycleMissingInTheRecordingIsBadUnlessAllowed) {
                   json_report(with_recording()).c_str());
   options.max_dropped = 1;
   CHECK(judge(with_recording()).good);
+  account.is_error = true;
+  CHECK(!judge(with_recording()).good);
+  LONGS_EQUAL(kHardware, judge(with_recording()).status);
+  STRCMP_CONTAINS("the recording failed: the disk is full", judge(with_recording()).reason.c_str());
 }
 
 TEST(Report, LoopStoppedByAnOverrunIsBadWhateverTheLimits) {

@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <fstream>
-#include <iterator>
-#include <limits>
-#include <regex>
 
+#include "tools/files/can/dbc_line.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
@@ -20,25 +17,36 @@ constexpr unsigned kLargestBaseId = 0x7FF;
 constexpr unsigned kLargestExtendedId = 0x1FFFFFFF;
 /// CANdb++ keeps signals of no frame in a message of this id and no bytes, which nobody sends.
 constexpr std::uint32_t kNoFrame = 0xC0000000;
+/// Far above any real file, so that reading one takes a bounded time and memory.
+constexpr std::size_t kLargestFile = std::size_t{16} << 20;
+constexpr std::size_t kLongestLine = std::size_t{64} << 10;
+constexpr std::size_t kMostMessages = 10'000;
+constexpr std::size_t kMostSignals = 1024;  ///< of a message
 
 class DbcReader {
  public:
-  DbcReader(std::string_view text, const std::filesystem::path& path) : text_(text) { dbc_.path = path; }
+  DbcReader(std::string_view text, const std::filesystem::path& path) : text_(text) {
+    dbc_.path = path;
+    if (text.size() > kLargestFile) {
+      throw FileError(
+          fmt::format("{}:1: over {} bytes; allowed: a DBC file of at most so many", path.string(), kLargestFile));
+    }
+  }
 
   Dbc read() {
     while (next_statement()) {
-      const std::size_t first = line_.find_first_not_of(" \t");
-      const std::string_view statement = std::string_view(line_).substr(std::min(first, line_.size()));
-      if (statement.starts_with("BO_ ")) {
-        read_message();
-      } else if (statement.starts_with("SG_ ")) {
-        read_signal();
-      } else if (statement.starts_with("BA_ ")) {
-        read_attribute();
-      } else if (statement.starts_with("SIG_VALTYPE_ ")) {
-        read_number_type();
-      } else if (statement.starts_with("SG_MUL_VAL_ ")) {
-        read_multiplexing();
+      DbcLine line(line_);
+      line.blanks();
+      if (line.maybe("BO_ ")) {
+        read_message(line);
+      } else if (line.maybe("SG_ ")) {
+        read_signal(line);
+      } else if (line.maybe("BA_ ")) {
+        read_attribute(line);
+      } else if (line.maybe("SIG_VALTYPE_ ")) {
+        read_number_type(line);
+      } else if (line.maybe("SG_MUL_VAL_ ")) {
+        read_multiplexing(line);
       }
     }
     if (dbc_.messages.empty()) {
@@ -58,12 +66,15 @@ class DbcReader {
       return false;
     }
     const std::size_t end = std::min(text_.find('\n'), text_.size());
-    line_ = std::string(text_.substr(0, end));
+    line_ = text_.substr(0, end);
+    ++number_;
+    if (end > kLongestLine) {
+      refuse(fmt::format("a line of {} characters; allowed: up to {}", end, kLongestLine));
+    }
     if (line_.ends_with('\r')) {
-      line_.pop_back();
+      line_.remove_suffix(1);
     }
     text_.remove_prefix(std::min(end + 1, text_.size()));
-    ++number_;
     return true;
   }
 
@@ -87,17 +98,24 @@ class DbcReader {
     return false;
   }
 
-  void read_message() {
-    std::smatch parts;
-    if (!std::regex_match(line_, parts, message_form_)) {
+  void read_message(DbcLine& line) {
+    DbcMessage message;
+    message.line = number_;
+    line.blanks();
+    const std::string id = line.digits(10);
+    line.gap();
+    message.name = line.word();
+    line.blanks();
+    line.expect(":");
+    line.blanks();
+    const std::string length = line.digits(4);
+    line.gap();
+    message.sender = line.word();
+    if (!line.whole()) {
       refuse("not a message; allowed: BO_ id name: length sender");
     }
-    DbcMessage message;
-    message.name = parts[2];
-    message.line = number_;
-    message.id = id_of(parts[1]);
-    message.length = static_cast<unsigned>(std::stoul(parts[3]));
-    message.sender = parts[4];
+    message.id = id_of(id);
+    message.length = static_cast<unsigned>(std::stoul(length));
     const std::uint32_t largest = (message.id & kExtendedId) != 0 ? kLargestExtendedId : kLargestBaseId;
     if ((message.id & ~kExtendedId) > largest && message.id != kNoFrame) {
       refuse(fmt::format("{}: id {}; allowed: 0 to {}, or {} to {} for 29 bits", message.name, message.id, kLargestBaseId,
@@ -106,37 +124,79 @@ class DbcReader {
     if (dbc_.find(message.name) != nullptr || with_id(message.id) != nullptr) {
       refuse(fmt::format("{}: its name or its id {} is used before", message.name, message.id));
     }
+    if (dbc_.messages.size() == kMostMessages) {
+      refuse(fmt::format("more than {} messages; cut the file into parts", kMostMessages));
+    }
     dbc_.messages.push_back(std::move(message));
   }
 
-  void read_signal() {
-    const std::size_t unit = line_.find('"');
-    const std::string head = line_.substr(0, line_.find('"', std::min(unit, line_.size() - 1) + 1));  // not the receivers
-    std::smatch parts;
-    if (dbc_.messages.empty() || !std::regex_match(head, parts, signal_form_)) {
+  /// The bits and numbers of a signal, as they are written.
+  struct SignalText {
+    std::string selected_by, start, length, factor, offset, lowest, highest;
+    char byte_order = '\0';
+    char sign = '\0';
+    bool is_multiplexed_multiplexer = false;
+  };
+
+  static void read_signal_text(DbcLine& line, DbcSignal& signal, SignalText& text) {
+    line.blanks();
+    signal.name = line.word();
+    line.blanks();
+    if (line.maybe("M")) {
+      signal.is_multiplexer = true;
+    } else if (line.maybe("m")) {
+      text.selected_by = line.digits(10);
+      text.is_multiplexed_multiplexer = line.maybe("M");
+    }
+    line.blanks();
+    line.expect(":");
+    line.blanks();
+    text.start = line.digits(4);
+    line.expect("|");
+    text.length = line.digits(4);
+    line.expect("@");
+    text.byte_order = line.one_of("01");
+    text.sign = line.one_of("+-");
+    line.blanks();
+    line.expect("(");
+    text.factor = line.up_to(',');
+    text.offset = line.up_to(')');
+    line.blanks();
+    line.expect("[");
+    text.lowest = line.up_to('|');
+    text.highest = line.up_to(']');
+    line.blanks();
+    line.expect("\"");
+    signal.unit = line.up_to('"');  // the receivers follow
+  }
+
+  void read_signal(DbcLine& line) {
+    DbcSignal signal;
+    SignalText text;
+    read_signal_text(line, signal, text);
+    if (dbc_.messages.empty() || !line.good()) {
       refuse(
           "not a signal; allowed: SG_ name : start|length@1+ (factor,offset) [lowest|highest] \"unit\" receivers, below a "
           "message; @0 is big-endian, @1- signed, M or m0 behind the name multiplexed");
     }
     DbcMessage& message = dbc_.messages.back();
-    DbcSignal signal;
-    signal.name = parts[1];
     signal.line = number_;
-    signal.is_multiplexer = parts[2] == "M";
-    if (parts[3].matched) {
-      signal.selected_by = std::stoull(parts[3]);
+    if (!text.selected_by.empty()) {
+      signal.selected_by = std::stoull(text.selected_by);
     }
-    message.has_extended_multiplexing = message.has_extended_multiplexing || parts[4] == "M";
-    signal.start = static_cast<unsigned>(std::stoul(parts[5]));
-    signal.length = static_cast<unsigned>(std::stoul(parts[6]));
-    signal.big_endian = parts[7] == "0";
-    signal.number = parts[8] == "-" ? DbcNumber::signed_integer : DbcNumber::unsigned_integer;
-    signal.factor = number(parts[9]);
-    signal.offset = number(parts[10]);
-    signal.lowest = number(parts[11]);
-    signal.highest = number(parts[12]);
-    signal.unit = parts[13];
+    message.has_extended_multiplexing = message.has_extended_multiplexing || text.is_multiplexed_multiplexer;
+    signal.start = static_cast<unsigned>(std::stoul(text.start));
+    signal.length = static_cast<unsigned>(std::stoul(text.length));
+    signal.big_endian = text.byte_order == '0';
+    signal.number = text.sign == '-' ? DbcNumber::signed_integer : DbcNumber::unsigned_integer;
+    signal.factor = number(text.factor);
+    signal.offset = number(text.offset);
+    signal.lowest = number(text.lowest);
+    signal.highest = number(text.highest);
     require_sound(message, signal);
+    if (message.signals.size() == kMostSignals) {
+      refuse(fmt::format("{}: more than {} signals; cut the message into parts", message.name, kMostSignals));
+    }
     message.signals.push_back(std::move(signal));
   }
 
@@ -161,48 +221,75 @@ class DbcReader {
     }
   }
 
-  void read_attribute() {
-    std::smatch parts;
-    if (!std::regex_match(line_, parts, attribute_form_)) {
-      return;
+  void read_attribute(DbcLine& line) {
+    line.blanks();
+    line.expect("\"");
+    const std::string name = line.word();
+    line.expect("\"");
+    line.gap();
+    line.expect("BO_ ");
+    line.blanks();
+    const std::string id = line.digits(10);
+    line.gap();
+    const std::string value = line.digits(9);
+    line.blanks();
+    line.expect(";");
+    if (!line.whole()) {
+      return;  // of a signal, a node or the network, or a text
     }
-    DbcMessage& message = declared(parts[2]);
-    if (parts[1] == "VFrameFormat") {
-      message.frame_format = std::stoi(parts[3]);
-    } else if (parts[1] == "GenMsgCycleTime") {
-      message.cycle_ms = static_cast<unsigned>(std::stoul(parts[3]));
-    } else if (parts[1] == "E2EDataId") {
-      message.data_id = static_cast<unsigned>(std::stoul(parts[3]));
+    DbcMessage& message = declared(id);
+    if (name == "VFrameFormat") {
+      message.frame_format = std::stoi(value);
+    } else if (name == "GenMsgCycleTime") {
+      message.cycle_ms = static_cast<unsigned>(std::stoul(value));
+    } else if (name == "E2EDataId") {
+      message.data_id = static_cast<unsigned>(std::stoul(value));
     }
   }
 
-  void read_number_type() {
-    std::smatch parts;
-    if (!std::regex_match(line_, parts, number_type_form_)) {
+  void read_number_type(DbcLine& line) {
+    line.blanks();
+    const std::string id = line.digits(10);
+    line.gap();
+    const std::string name = line.word();
+    line.blanks();
+    line.maybe(":");
+    line.blanks();
+    const char type = line.one_of("012");
+    line.blanks();
+    line.expect(";");
+    if (!line.whole()) {
       refuse("not the type of a signal; allowed: SIG_VALTYPE_ id signal : 0; (integer), 1; (single), 2; (double precision)");
     }
-    DbcMessage& message = declared(parts[1]);
+    DbcMessage& message = declared(id);
     const auto signal = std::find_if(message.signals.begin(), message.signals.end(),
-                                     [&](const DbcSignal& known) { return known.name == parts[2]; });
+                                     [&](const DbcSignal& known) { return known.name == name; });
     if (signal == message.signals.end()) {
-      refuse(fmt::format("{} has no signal {}", message.name, parts[2].str()));
+      refuse(fmt::format("{} has no signal {}", message.name, name));
     }
-    if (parts[3] == "0") {
+    if (type == '0') {
       return;
     }
-    const bool is_single = parts[3] == "1";
+    const bool is_single = type == '1';
     if (signal->length != (is_single ? 32U : 64U)) {
       refuse(fmt::format("{}: {} bits; allowed: 32 for single, 64 for double precision", signal->name, signal->length));
     }
     signal->number = is_single ? DbcNumber::single_precision : DbcNumber::double_precision;
   }
 
-  void read_multiplexing() {
-    std::smatch parts;
-    if (!std::regex_match(line_, parts, multiplexing_form_)) {
+  void read_multiplexing(DbcLine& line) {
+    line.blanks();
+    const std::string id = line.digits(10);
+    line.gap();
+    line.word();
+    line.gap();
+    line.word();
+    line.gap();
+    const bool has_ranges = !line.up_to(';').empty();
+    if (!line.whole() || !has_ranges) {
       refuse("not multiplexing; allowed: SG_MUL_VAL_ id signal multiplexer ranges;");
     }
-    declared(parts[1]).has_extended_multiplexing = true;
+    declared(id).has_extended_multiplexing = true;
   }
 
   std::uint32_t id_of(const std::string& text) const {
@@ -240,68 +327,14 @@ class DbcReader {
     refuse(fmt::format("\"{}\" is no number", text));
   }
 
-  const std::regex message_form_{R"re(\s*BO_ +(\d{1,10}) +(\w+) *: *(\d{1,4}) +(\w+)\s*)re"};
-  const std::regex signal_form_{
-      R"re(\s*SG_ +(\w+) *(M|m(\d{1,10})(M?))? *: *(\d{1,4})\|(\d{1,4})@([01])([+-]) *\(([^,]+),([^)]+)\) *\[([^|]+)\|([^\]]+)\] *"([^"]*))re"};
-  const std::regex attribute_form_{R"re(\s*BA_ +"(\w+)" +BO_ +(\d{1,10}) +(\d{1,9}) *;\s*)re"};
-  const std::regex number_type_form_{R"re(\s*SIG_VALTYPE_ +(\d{1,10}) +(\w+) *:? *([0-2]) *;\s*)re"};
-  const std::regex multiplexing_form_{R"re(\s*SG_MUL_VAL_ +(\d{1,10}) +(\w+) +(\w+) +[^;]+;\s*)re"};
   std::string_view text_;
-  std::string line_;
+  std::string_view line_;
   std::size_t number_ = 0;
   std::size_t text_from_ = 0;  ///< line on which a text begins that has not ended, 0: none
   Dbc dbc_;
 };
 
 }  // namespace
-
-std::uint64_t DbcSignal::raw(std::span<const std::uint8_t> data) const {
-  std::uint64_t bits = 0;
-  for (unsigned i = 0; i < length; ++i) {  // from the highest bit on
-    const unsigned at = big_endian ? ((start ^ 7U) + i) ^ 7U : start + length - 1 - i;
-    bits = (bits << 1U) | ((data[at / 8] >> (at % 8)) & 1U);
-  }
-  return bits;
-}
-
-double DbcSignal::physical(std::span<const std::uint8_t> data) const {
-  constexpr unsigned kBits = 64;
-  const std::uint64_t bits = raw(data);
-  switch (number) {
-    case DbcNumber::signed_integer:  // shifted up and down again, which repeats the sign
-      return offset + factor * static_cast<double>(static_cast<std::int64_t>(bits << (kBits - length)) >> (kBits - length));
-    case DbcNumber::single_precision:
-      return offset + factor * static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-    case DbcNumber::double_precision:
-      return offset + factor * std::bit_cast<double>(bits);
-    case DbcNumber::unsigned_integer:
-      break;
-  }
-  return offset + factor * static_cast<double>(bits);
-}
-
-bool DbcSignal::allows(double physical) const {
-  const bool is_integer = number == DbcNumber::unsigned_integer || number == DbcNumber::signed_integer;
-  const double rounding = is_integer ? 0.5 * std::abs(factor)
-                                     : static_cast<double>(std::numeric_limits<float>::epsilon()) *
-                                           std::max(std::abs(lowest), std::abs(highest));
-  return std::isfinite(physical) && (lowest == highest || (physical >= lowest - rounding && physical <= highest + rounding));
-}
-
-const DbcSignal* DbcMessage::find(std::string_view signal) const {
-  const auto found = std::find_if(signals.begin(), signals.end(), [&](const DbcSignal& s) { return s.name == signal; });
-  return found == signals.end() ? nullptr : &*found;
-}
-
-const DbcSignal* DbcMessage::multiplexer() const {
-  const auto found = std::find_if(signals.begin(), signals.end(), [](const DbcSignal& s) { return s.is_multiplexer; });
-  return found == signals.end() ? nullptr : &*found;
-}
-
-const DbcMessage* Dbc::find(std::string_view message) const {
-  const auto found = std::find_if(messages.begin(), messages.end(), [&](const DbcMessage& m) { return m.name == message; });
-  return found == messages.end() ? nullptr : &*found;
-}
 
 Dbc read_dbc(std::string_view text, const std::filesystem::path& path) { return DbcReader(text, path).read(); }
 
@@ -310,7 +343,9 @@ Dbc load_dbc(const std::filesystem::path& path) {
   if (!file || !std::filesystem::is_regular_file(path)) {
     throw FileError(fmt::format("{}: cannot be opened; allowed: a DBC file", path.string()));
   }
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  std::string text(kLargestFile + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
   return read_dbc(text, path);
 }
 

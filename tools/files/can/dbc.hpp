@@ -66,7 +66,8 @@ inline constexpr std::uint32_t kExtendedId = 0x80000000;
 
 /// Reads a DBC file: messages, signals (either byte order, floating-point, multiplexed), cycle times, frame formats; what
 /// else there is (comments, units of other tools) is left out. Throws FileError with file and line for what is wrong: a
-/// signal beyond its frame, a message or signal twice, a factor of 0, a text without end, no message at all.
+/// signal beyond its frame, a message or signal twice, a factor of 0, a text without end, no message at all; over 16 MiB, a
+/// line over 64 KiB, over 10,000 messages or 1024 signals of one, so that any input is read in bounded time and memory.
 Dbc read_dbc(std::string_view text, const std::filesystem::path& path);
 
 /// The same of a file. Throws FileError if it cannot be read.

@@ -45,7 +45,8 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
 
 /// The same from a MATLAB file (version 4 to 7.2; 7.3 where the library has HDF5). Throws FileError: not such a file, no
 /// such variable (with those that there are), not a real vector or matrix column of numbers or logicals, an integer beyond
-/// 2^53, which no double holds.
+/// 2^53, which no double holds; a file on which the library crashes or takes over 60 s or 4 GiB: it is read in a process of
+/// its own.
 std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path& path, const ImportMap& map);
 
 /// Columns with a time and with units.

@@ -73,6 +73,9 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
     if (trimmed(line).empty()) {
       continue;
     }
+    if (values.front().size() == kMostRows) {
+      lines.refuse(fmt::format("more than {} rows; cut the file into parts", kMostRows));
+    }
     const std::vector<std::string_view> cells = cells_of(line, map.delimiter);
     if (cells.size() != names.size()) {
       lines.refuse(fmt::format("{} columns; the header has {}", cells.size(), names.size()));

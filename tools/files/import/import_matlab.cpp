@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <span>
 #include <type_traits>
 
+#include "tools/files/import/apart.hpp"
 #include "tools/files/import/import.hpp"
 #include "tools/files/text/error.hpp"
 
@@ -23,6 +25,10 @@ struct FreeVariable {
 };
 using MatFile = std::unique_ptr<mat_t, CloseMat>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
+
+/// What reading a file may use. A column of as many rows as a record may have is 80 MB, and matio holds it twice.
+constexpr std::size_t kMemoryMib = 4096;
+constexpr std::size_t kProcessorSeconds = 60;
 
 /// "data.beta:3": variable "data", field "beta", third column; 0 is a vector.
 struct Place {
@@ -100,12 +106,21 @@ class MatlabReader {
       refuse(column,
              fmt::format("is a matrix of {} x {}; write \"{}:1\" for its first column", rows, columns, column.column));
     }
+    if (rows > kMostRows || columns > kMostRows) {
+      refuse(column, fmt::format("{} x {}; allowed: up to {} rows", rows, columns, kMostRows));
+    }
     if (place.column > columns) {
       refuse(column, fmt::format("has {} columns", columns));
     }
     const std::size_t first = place.column == 0 ? 0 : (place.column - 1) * rows;
     const std::size_t count = place.column == 0 ? rows * columns : rows;
+    if (count > kMostRows) {
+      refuse(column, fmt::format("{} values; allowed: up to {}", count, kMostRows));
+    }
     const auto copy = [&]<class T>(const T* data) {
+      if (variable.nbytes / sizeof(T) / std::max<std::size_t>(rows, 1) < columns) {
+        refuse(column, fmt::format("{} x {} values, and bytes for fewer: the file is damaged", rows, columns));
+      }
       require_exact(std::span(data + first, count), column);
       return std::vector<double>(data + first, data + first + count);
     };
@@ -154,16 +169,58 @@ class MatlabReader {
   MatFile file_;
 };
 
+/// The columns as bytes: of each its number of rows, then its values.
+std::string columns_text(const std::filesystem::path& path, const ImportMap& map) {
+  const MatlabReader reader(path);
+  std::string text;
+  for (const ImportColumn& column : map.columns) {
+    const std::vector<double> values = reader.read(column);
+    const std::uint64_t rows = values.size();
+    text.append(reinterpret_cast<const char*>(&rows), sizeof rows);
+    text.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+  }
+  return text;
+}
+
+std::vector<std::vector<double>> columns_of(std::string_view text) {
+  std::vector<std::vector<double>> columns;
+  while (text.size() >= sizeof(std::uint64_t)) {
+    std::uint64_t rows = 0;
+    std::memcpy(&rows, text.data(), sizeof rows);
+    text.remove_prefix(sizeof rows);
+    std::vector<double>& values = columns.emplace_back(std::min<std::size_t>(rows, text.size() / sizeof(double)));
+    if (!values.empty()) {
+      std::memcpy(values.data(), text.data(), values.size() * sizeof(double));
+    }
+    text.remove_prefix(values.size() * sizeof(double));
+  }
+  return columns;
+}
+
 }  // namespace
 
+// What matio does with a damaged file is its own affair: it has crashed on damaged structs.
 std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path& path, const ImportMap& map) {
-  const MatlabReader reader(path);
+  if (!std::filesystem::is_regular_file(path)) {
+    throw FileError(fmt::format("{}: is no file; allowed: a MATLAB file", path.string()));
+  }
+  const std::size_t most_bytes = map.columns.size() * sizeof(double) * (kMostRows + 1);
   std::vector<std::vector<double>> values;
-  for (const ImportColumn& column : map.columns) {
-    values.push_back(reader.read(column));
-    if (values.back().size() != values.front().size()) {
+  try {
+    values = columns_of(run_apart([&] { return columns_text(path, map); }, {kMemoryMib, kProcessorSeconds, most_bytes}));
+  } catch (const ApartError& error) {
+    throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {}; it is damaged: save it again with -v7",
+                                path.string(), error.what()));
+  }
+  if (values.size() != map.columns.size()) {
+    throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {} columns came of {}", path.string(), values.size(),
+                                map.columns.size()));
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i].size() != values.front().size()) {
       throw FileError(fmt::format("{}: {} has {} rows, {} has {}; a record has as many of each", path.string(),
-                                  column.column, values.back().size(), map.columns.front().column, values.front().size()));
+                                  map.columns[i].column, values[i].size(), map.columns.front().column,
+                                  values.front().size()));
     }
   }
   return values;

@@ -14,6 +14,7 @@ namespace hotfire {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 18;
+constexpr std::size_t kFirstBlock = 1 << 12;                 ///< enough for a small file
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets put it first
 
 bool is_text(char letter) {
@@ -24,13 +25,17 @@ bool is_text(char letter) {
 }  // namespace
 
 CsvLines::CsvLines(const std::filesystem::path& path)
-    : path_(path), file_(std::fopen(path.c_str(), "rb"), std::fclose), buffer_(kBlock) {
+    : path_(path), file_(std::fopen(path.c_str(), "rb"), std::fclose), buffer_(kFirstBlock) {
   if (!file_) {
     throw FileError(fmt::format("{}: cannot be opened: {}", path.string(), std::generic_category().message(errno)));
   }
   if (fill() == 0) {
     throw FileError(
         fmt::format("{}:1: empty file; a record begins with a line like time[s],command[rad],piston[m]", path.string()));
+  }
+  if (end_ == buffer_.size()) {
+    buffer_.resize(kBlock);
+    fill();
   }
   require_text();
   if (std::string_view(buffer_.data(), end_).starts_with(kByteOrderMark)) {
@@ -72,7 +77,7 @@ bool CsvLines::next(std::string_view& line) {
   }
   ++number_;
   if (found == nullptr && end_ == buffer_.size()) {
-    refuse(fmt::format("not CSV: a line of over {} characters", buffer_.size()));
+    refuse(fmt::format("not CSV: a line of over {} characters; allowed: fewer", buffer_.size()));
   }
   const char* start = buffer_.data() + begin_;
   const std::size_t length =

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/toml_keys.hpp"
 #include "tools/files/text/units.hpp"
 
 namespace hotfire {
@@ -24,8 +25,14 @@ std::string read_small_file(const std::filesystem::path& path) {
   if (!file) {
     throw FileError(fmt::format("{}: cannot be opened: {}", path.string(), std::generic_category().message(errno)));
   }
-  std::string content(kLargestFile + 1, '\0');
-  content.resize(std::fread(content.data(), 1, content.size(), file.get()));
+  constexpr std::size_t kPiece = 1 << 14;
+  std::string content;
+  for (std::size_t read = kPiece; read == kPiece && content.size() <= kLargestFile;) {
+    const std::size_t before = content.size();
+    content.resize(before + kPiece);
+    read = std::fread(content.data() + before, 1, kPiece, file.get());
+    content.resize(before + read);
+  }
   if (std::ferror(file.get()) != 0) {
     throw FileError(fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(errno)));
   }
@@ -92,6 +99,11 @@ std::string wanted_unit(std::string_view unit) {
 
 TomlSource::TomlSource(const std::filesystem::path& path)
     : path_(path), content_(read_small_file(path)), lines_(split_lines(content_)) {
+  if (const std::size_t line = line_of_long_key(content_); line != 0) {
+    refuse_at({static_cast<toml::source_index>(line), 0},
+              fmt::format("a key of more than {} parts; allowed: up to {}, as in limits.command_rate", kMostKeyParts,
+                          kMostKeyParts));
+  }
   try {
     root_ = toml::parse(std::string_view{content_}, path.string());
   } catch (const toml::parse_error& error) {

@@ -11,7 +11,7 @@ namespace hotfire {
 /// A parsed TOML file that knows where each thing stands, for messages.
 class TomlSource {
  public:
-  /// Throws FileError if the file cannot be read, is over a megabyte or is not TOML.
+  /// Throws FileError if the file cannot be read, is over a megabyte, has a key of too many parts or is not TOML.
   explicit TomlSource(const std::filesystem::path& path);
 
   const toml::table& root() const { return root_; }

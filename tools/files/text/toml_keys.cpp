@@ -1,0 +1,78 @@
+#include "tools/files/text/toml_keys.hpp"
+
+#include <algorithm>
+
+namespace hotfire {
+
+namespace {
+
+constexpr std::size_t kMostClosingQuotes = 5;  ///< two of the text itself, then three
+
+/// Behind a string of one line that begins at `at`; at the end of its line if it has no end.
+std::size_t behind_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  for (++at; at < text.size() && text[at] != '\n'; ++at) {
+    if (text[at] == quote) {
+      return at + 1;
+    }
+    at += quote == '"' && text[at] == '\\' ? 1 : 0;
+  }
+  return std::min(at, text.size());
+}
+
+/// Behind a string of several lines that begins at `at`.
+std::size_t behind_long_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  for (at += 3; at < text.size();) {
+    const std::size_t quotes = std::min(text.find_first_not_of(quote, at), text.size()) - at;
+    if (quotes >= 3) {
+      return at + std::min(quotes, kMostClosingQuotes);
+    }
+    at += std::max<std::size_t>(quotes, 1) + (quote == '"' && text[at] == '\\' ? 1 : 0);
+  }
+  return text.size();
+}
+
+}  // namespace
+
+std::size_t line_of_long_key(std::string_view text) {
+  std::size_t parts = 0;
+  bool joined = false;  // the last thing was a point, which joins what follows to the key
+  const auto part = [&] {
+    parts = joined ? parts + 1 : 1;
+    joined = false;
+    return parts > kMostKeyParts;
+  };
+  const auto line = [&](std::size_t at) {
+    return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  };
+  constexpr std::string_view kBreaks = "=,[]{}\n#\"'. \t";
+  for (std::size_t at = 0; at < text.size();) {
+    const char letter = text[at];
+    if (letter == '"' || letter == '\'') {
+      if (part()) {
+        return line(at);
+      }
+      const bool is_long = text.substr(at).starts_with(letter == '"' ? "\"\"\"" : "'''");
+      at = is_long ? behind_long_string(text, at) : behind_string(text, at);
+    } else if (letter == '#') {
+      at = std::min(text.find('\n', at), text.size());
+    } else if (letter == '.') {
+      joined = true;
+      ++at;
+    } else if (letter == ' ' || letter == '\t') {
+      ++at;
+    } else if (kBreaks.find(letter) != std::string_view::npos) {
+      joined = false;
+      ++at;
+    } else {
+      if (part()) {
+        return line(at);
+      }
+      at = std::min(text.find_first_of(kBreaks, at), text.size());
+    }
+  }
+  return 0;
+}
+
+}  // namespace hotfire
