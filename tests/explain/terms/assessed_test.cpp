@@ -33,12 +33,6 @@ TEST(Assessed, WhatClearsTheWorstChannelCountsByTheRmsOverAll) {
   DOUBLES_EQUAL(std::sqrt(10.0 / 901.0), held_out_ratio(leaving({3.0, 1.0}), leaving({30.0, 1.0})), 1e-12);
 }
 
-TEST(Assessed, NoModelLeavesLessThanTheNoiseOrThanWhatOneLeavesAlready) {
-  // The worse channel can come down to 1, the better one is at 0.9 already.
-  DOUBLES_EQUAL(held_out_ratio(leaving({1.0, 0.9}), leaving({30.0, 6.0})),
-                least_held_out_ratio(leaving({1.4, 0.9}), leaving({30.0, 6.0})), 1e-12);
-}
-
 TEST(Assessed, ADeclaredParameterSixTolerancesOffStandsInForSomethingAndAnEffectsOwnDoesNot) {
   Fitted<SimplexFamily> model;
   model.free = declared_parameters<SimplexFamily>(model.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});

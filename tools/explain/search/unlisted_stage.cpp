@@ -50,22 +50,27 @@ void UnlistedStage<Family>::finish() {
   }
 }
 
-/// True if more than noise is left, or less by declared parameters that stand in for something, and so much of it that a
-/// term of unknown law could have the advantage that it needs.
+/// True if more than noise is left, or less by declared parameters far from their declaration.
 template <class Family>
 bool UnlistedStage<Family>::is_worth_a_table() const {
   return !reaches_noise(data_, result_.explained) &&
          (excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise ||
-          !is_within_tolerances(result_.explained.model)) &&
-         least_held_out_ratio(result_.explained, result_.calibrated) < wanted();
+          !is_within_tolerances(result_.explained.model));
 }
 
-/// The share of the calibrated model's held-out error that a term of unknown law has to stay below.
+/// True if a model leaves less than `share` of what the explained one leaves beyond noise. Noise itself cannot be explained:
+/// near it the whole error hardly falls.
 template <class Family>
-double UnlistedStage<Family>::wanted() const {
-  const double listed = left_by_listed();
-  const bool names_little = !result_.kept.empty() && listed > kLittleExplained;
-  return (names_little ? kAdvantageOverLittle : kUnlistedAdvantage) * listed;
+bool UnlistedStage<Family>::leaves_clearly_less(const Assessed<Family>& model, double share) const {
+  const double left = excess_over_noise(data_, result_.explained.prediction);
+  return left > kLargerThanNoise && excess_over_noise(data_, model.prediction) < share * left &&
+         held_out_ratio(model, result_.explained) < 1.0 - kLeastHeldOutDrop;
+}
+
+/// The share of what the listed effects leave that a term of unknown law has to stay below.
+template <class Family>
+double UnlistedStage<Family>::advantage() const {
+  return !result_.kept.empty() && left_by_listed() > kLittleExplained ? kAdvantageOverLittle : kUnlistedAdvantage;
 }
 
 template <class Family>
@@ -127,7 +132,8 @@ void UnlistedStage<Family>::look_instead() {
 template <class Family>
 void UnlistedStage<Family>::take_instead_if_better() {
   const double listed = left_by_listed();
-  if (!instead_->leaves_less_than(wanted())) {
+  if (!instead_->leaves_less_than(advantage() * listed) &&
+      !(instead_->leaves_less_than(1.0) && leaves_clearly_less(instead_->model, advantage()))) {
     return;
   }
   if (!result_.kept.empty()) {
@@ -164,7 +170,7 @@ void UnlistedStage<Family>::add_beside() {
                           options_.watch, result_.next_round());
       const std::size_t first = result_.trials.size();
       result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
-      if (!beside.leaves_less_than(kUnlistedAdvantage)) {
+      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, kUnlistedAdvantage)) {
         return;
       }
       result_.rival.reset();

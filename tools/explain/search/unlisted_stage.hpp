@@ -34,7 +34,8 @@ class UnlistedStage {
  private:
   bool is_worth_a_table() const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
-  double wanted() const;
+  double advantage() const;
+  bool leaves_clearly_less(const Assessed<Family>& model, double share) const;
   Located locate_about(const Assessed<Family>& model) const;
   const Located& located();
   void take_out_names(const std::string& why);

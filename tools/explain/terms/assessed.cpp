@@ -140,15 +140,6 @@ double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& with
   return error_ratio(with.goodness.held_out, without.goodness.held_out);
 }
 
-template <class Family>
-double least_held_out_ratio(const Assessed<Family>& model, const Assessed<Family>& without) {
-  std::vector<ChannelFit> at_noise = model.goodness.held_out;
-  for (ChannelFit& channel : at_noise) {
-    channel.mean_square = std::min(channel.mean_square, 1.0);
-  }
-  return error_ratio(at_noise, without.goodness.held_out);
-}
-
 #define HOTFIRE_INSTANTIATE(Family)                                                                                   \
   template Assessed<Family> assess(const Evaluator<Family>&, unsigned, const Fitted<Family>&);                        \
   template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
@@ -162,8 +153,7 @@ double least_held_out_ratio(const Assessed<Family>& model, const Assessed<Family
   template bool is_far_from_declared(const Fitted<Family>&);                                                          \
   template Assessed<Family> better_of(Assessed<Family>, Assessed<Family>);                                            \
   template double criterion_change(const Assessed<Family>&, const Assessed<Family>&, const std::vector<ChannelFit>&); \
-  template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);                                   \
-  template double least_held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);
+  template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);
 
 HOTFIRE_INSTANTIATE(SimplexFamily)
 HOTFIRE_INSTANTIATE(DirectFamily)

@@ -101,9 +101,4 @@ double criterion_change(const Assessed<Family>& with, const Assessed<Family>& wi
 template <class Family>
 double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without);
 
-/// The least that any model's held-out ratio can be: every channel at the sensor's noise, or at what `model` leaves there if
-/// that is less.
-template <class Family>
-double least_held_out_ratio(const Assessed<Family>& model, const Assessed<Family>& without);
-
 }  // namespace hotfire::explain
