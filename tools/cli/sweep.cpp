@@ -9,6 +9,8 @@
 
 #include "tools/cli/commands.hpp"
 #include "tools/cli/trial_options.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/profiles.hpp"
 #include "tools/trials/results_json.hpp"
@@ -44,6 +46,14 @@ std::vector<double> command_of(const SweepOptions& options) {
   return trials::stepped_sines(bands);
 }
 
+Record simulate_both(const TrialOptions& options) {
+  const std::optional<VehicleFile> vehicle = vehicle_of_trial(options);
+  if (!vehicle || !std::holds_alternative<TaosParameters>(vehicle->parameters)) {
+    throw UsageError("--profile green-run-both drives the two axes of one engine; allowed with topology \"taos\"");
+  }
+  return simulate(*vehicle, trials::green_run_record());
+}
+
 void print(const std::vector<trials::ChannelSweep>& sweeps) {
   for (const trials::ChannelSweep& sweep : sweeps) {
     const std::string amplitude =
@@ -65,7 +75,8 @@ void run_sweep(SweepOptions& options) {
   options.goal.axis = options.trial.axis;
   options.goal.moment_arm = options.moment_arm > 0.0 ? options.moment_arm : 1.0;
   const Record record = record_of_trial(options.trial, [&] {
-    Record run = simulate_command(options.trial, command_of(options));
+    Record run = options.profile == "green-run-both" ? simulate_both(options.trial)
+                                                     : simulate_command(options.trial, command_of(options));
     if (options.moment_arm == 0.0) {
       options.goal.moment_arm = moment_arm_of_trial(options.trial);
     }
@@ -89,8 +100,9 @@ void add_sweep(CLI::App& program) {
   add_trial_options(*command, options->trial);
   command
       ->add_option("--profile", options->profile,
-                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), sines, or multisine")
-      ->check(CLI::IsMember({"green-run", "sines", "multisine"}))
+                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), green-run-both (the other axis "
+                   "driven as well, the other way round), sines, or multisine")
+      ->check(CLI::IsMember({"green-run", "green-run-both", "sines", "multisine"}))
       ->capture_default_str();
   command->add_option("--amplitudes", options->amplitudes, "of sines, one sweep each; of a multisine, its peak [deg]")
       ->delimiter(',')
