@@ -161,10 +161,10 @@ struct BearingVibration {
 ///
 /// The force through it is thrust, dead load, the push of both actuators and whatever disturbs it. A bearing whose parts
 /// seat under load is softer without: its translation under a force F is
-///   u = C F (1 + (1 / unloaded_stiffness - 1) e^{-N / load_scale}),   N = sqrt(F^T C F / C_xx),
+///   u = C F (1 + (1 / unloaded_stiffness - 1) e^{-(N / load_scale)^2}),   N^2 = F^T C F / C_xx,
 /// C being the compliance of `stiffness`, which is that under full load. N is the size of F for a C that is the same in all
 /// directions, and makes u the gradient of an energy for any. [SD 2, 3]: "load-dependent stiffnesses in the actuator and
-/// gimbal"; the law is the one of `soft_stiffness`.
+/// gimbal"; the law is our choice, smooth at zero load.
 template <class S>
 struct GimbalBearing {
   using Scalar = S;
@@ -175,6 +175,7 @@ struct GimbalBearing {
   S rated_thrust{0.0};
   S unloaded_stiffness{1.0};
   S load_scale{1e5};
+  S unloaded_structure{1.0};
   S pitch_misalignment{0.0};
   S yaw_misalignment{0.0};
   static constexpr auto fields() {
@@ -185,11 +186,13 @@ struct GimbalBearing {
         Field<P>{"dead_load", "N", -1e8, 1e8, 4e4, "force of weight and ducts on the bearing, along the thrust",
                  &P::dead_load},
         Field<P>{"rated_thrust", "N", 0.0, 1e8, 1.86e6,
-                 "thrust at which vibration is as declared, and with which it grows; 0: it is so at any thrust",
-                 &P::rated_thrust},
+                 "thrust at which vibration and structure are as declared; 0: they are so at any thrust", &P::rated_thrust},
         Field<P>{"unloaded_stiffness", "1", 1e-3, 1.0, 0.1, "translational stiffness without load, over that under load",
                  &P::unloaded_stiffness},
         Field<P>{"load_scale", "N", 10.0, 1e8, 1e5, "load over which the translational stiffness rises", &P::load_scale},
+        Field<P>{"unloaded_structure", "1", 1e-2, 1.0, 0.5,
+                 "structure.stiffness of both attach points without thrust, over that under rated thrust",
+                 &P::unloaded_structure},
         Field<P>{"pitch_misalignment", "m", -1.0, 1.0, 3e-3, "arm of the thrust against positive pitch",
                  &P::pitch_misalignment},
         Field<P>{"yaw_misalignment", "m", -1.0, 1.0, 3e-3, "arm of the thrust against positive yaw", &P::yaw_misalignment}};
@@ -198,6 +201,14 @@ struct GimbalBearing {
   /// Size of the vibration under a thrust, over the declared one.
   S vibration_under(const S& own_thrust) const noexcept {
     return value_of(rated_thrust) > 0.0 ? S(own_thrust / rated_thrust) : S{1.0};
+  }
+
+  /// What a thrust below the rated one adds to the flexibility of an attach point, over what the declared stiffness gives:
+  /// from nothing at rated thrust, linearly to that of `unloaded_structure` without. Thrust comes with full and pressurised
+  /// tanks, which stiffen what the actuators push against [SD 2.4]: one switch for both.
+  S further_structure(const S& own_thrust) const noexcept {
+    const S missing = value_of(rated_thrust) > value_of(own_thrust) ? S(1.0 - own_thrust / rated_thrust) : S{0.0};
+    return (1.0 / unloaded_structure - 1.0) * missing;
   }
 };
 
@@ -227,6 +238,9 @@ std::string_view broken_relation(const GimbalParameters<S>& gimbal) {
   }
   if (gimbal.compliant && !is_positive_definite(gimbal.stiffness)) {
     return "the stiffness matrix is not positive definite";
+  }
+  if (value_of(gimbal.bearing.unloaded_structure) < 1.0 && !(value_of(gimbal.bearing.rated_thrust) > 0.0)) {
+    return "unloaded_structure has no meaning without rated_thrust; give it";
   }
   const bool vibrates = value_of(gimbal.vibration.pitch_velocity) > 0.0 || value_of(gimbal.vibration.yaw_velocity) > 0.0;
   if (vibrates && gimbal.friction.option == BearingFriction<S>::kVibrated) {
@@ -263,9 +277,7 @@ class GimbalSpring {
     for (int i = 0; i < 3; ++i) {
       moved(i) = compliance_(i, 0) * force(0) + compliance_(i, 1) * force(1) + compliance_(i, 2) * force(2);
     }
-    const S squared = dot<S>(force, moved) / compliance_(0, 0);
-    // The root has no slope at zero load; a newton is none.
-    return 1.0 + further_ * fading_exponential<S>(sqrt(value_of(squared) > 1.0 ? squared : S{1.0}) / load_scale_);
+    return 1.0 + further_ * fading_exponential<S>(dot<S>(force, moved) / (compliance_(0, 0) * load_scale_ * load_scale_));
   }
 
   /// Displacement at the end of a step under a force and a torque about pitch (y) and yaw (z).

@@ -104,6 +104,9 @@ class Vehicle {
         }
       }
     }
+    for (int i = 0; i < kAxes; ++i) {
+      flexibility(i, i) += further_flexibility(i, gimbals_[at(i / 2)].bearing.thrust);
+    }
     Eigen::Matrix<S, kAxes, kAxes> with_springs = flexibility;
     for (int i = 0; i < kAxes; ++i) {
       with_springs(i, i) += 1.0 / axes_[at(i)].stiffness();
@@ -282,6 +285,11 @@ class Vehicle {
     turn_engines(state, step, keep);
   }
 
+  /// What an attach point gives way by beyond its declared stiffness under a thrust [m/N].
+  S further_flexibility(int i, const S& thrust) const noexcept {
+    return gimbals_[at(i / 2)].bearing.further_structure(thrust) / axes_[at(i)].parameters().structure.stiffness;
+  }
+
   /// Mean deflection of a load spring before its effects.
   S deflection(const Step& step, int i, const S& motion) const noexcept {
     return step.axes[at(i)].mean(AxisModel::kPiston) -
@@ -306,7 +314,8 @@ class Vehicle {
       const int i = 2 * e + k;
       const auto& axis = axes_[at(i)];
       motion(i) = pose.stroke[at(k)] - axis.parameters().actuator.moment_arm * (k == 0 ? pitch : yaw) + moved(i) +
-                  dot<S>(pose.direction[at(k)], moved_bearing);
+                  dot<S>(pose.direction[at(k)], moved_bearing) +
+                  further_flexibility(i, step.thrust[at(e)]) * state.structure.forces(i);
       surplus(i) = deflection(step, i, motion(i)) - state.softening[at(i)] - state.structure.forces(i) / axis.stiffness();
       step.around[at(i)].arm = pose.arm[at(k)][at(k)];
     }
@@ -398,7 +407,7 @@ class Vehicle {
         const int i = 2 * e + k;
         const auto& parameters = axes_[at(i)].parameters();
         around[at(i)].motion = pose.stroke[at(k)] - parameters.actuator.moment_arm * angles[at(k)] + moved(i) +
-                               dot<S>(pose.direction[at(k)], moved_bearing);
+                               dot<S>(pose.direction[at(k)], moved_bearing) + further_flexibility(i, own_thrust) * forces(i);
         around[at(i)].arm = pose.arm[at(k)][at(k)];
         around[at(i)].torque = misalignment[at(k)] * own_thrust -
                                pose.arm[at(1 - k)][at(k)] * state.axes[at(2 * e + 1 - k)].spring_force -
