@@ -31,7 +31,10 @@ void run_hammer(const HammerOptions& options) {
   });
   const std::string name = record.find("position") != nullptr ? "position" : "engine";
   const Channel& channel = trials::required_channel(record, name, options.trial.axis);
-  const auto decay = analysis::free_decay(channel.values, record.period, options.blow.seconds);
+  // A simulated blow hits an engine at rest; a recorded one is about zero already.
+  const auto decay =
+      analysis::free_decay(options.trial.record.empty() ? trials::swing(record, channel.name) : channel.values,
+                           record.period, options.blow.seconds);
   if (!decay) {
     throw FileError(fmt::format("{}: {} does not ring for three cycles in {:g} s", record.path.string(), channel.name,
                                 options.blow.seconds));
