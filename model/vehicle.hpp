@@ -31,7 +31,8 @@ namespace hotfire::model {
 /// Discretisation: the axes' own two passes. Over one step all flexibility is a constant symmetric matrix C of mean motion
 /// per mean force, so spring forces and motion are found together: F = (1/K_T + C)^-1 (deflection without force, less what
 /// the springs' nonlinearity took in the last evaluation). That is exact for linear springs and contracts for softer ones,
-/// so a structure softer than the actuators is as stable as a stiff one. Second order where smooth, first order at stick and
+/// so a structure softer than the actuators is as stable as a stiff one. Where stiffness follows the thrust, C is that of
+/// the step's own. Second order where smooth, first order at stick and
 /// slip.
 ///
 /// A step costs the same whatever the state, and is linear in the modes. No allocation, lock or exception after
@@ -50,6 +51,7 @@ class Vehicle {
   static constexpr std::size_t kChannels = AxisModel::channels.size();
   using Structure = ModalStructure<S, kPorts, Capacity>;
   using Modes = typename Structure::Table;
+  using AxisMatrix = Eigen::Matrix<S, kAxes, kAxes>;
 
   struct Parameters {
     std::array<typename AxisModel::Parameters, kAxes> axes{};
@@ -91,30 +93,13 @@ class Vehicle {
         axes_(axes_of(parameters, h, std::make_index_sequence<kAxes>{})),
         structure_(parameters.modes, h),
         gimbals_(gimbals_of(parameters, h, std::make_index_sequence<Engines>{})) {
-    // Mean motion of the attach points per mean force, bearings at zero angles.
-    Eigen::Matrix<S, kAxes, kAxes> flexibility = structure_.mean_flexibility().template topLeftCorner<kAxes, kAxes>();
+    std::array<S, Engines> thrust;
     for (int e = 0; e < Engines; ++e) {
-      const Gimbal& gimbal = gimbals_[at(e)];
-      const Pose<S> pose = gimbal.geometry.at(S(0.0), S(0.0));
-      for (int a = 0; a < 2; ++a) {
-        for (int b = 0; b < 2; ++b) {
-          flexibility(2 * e + a, 2 * e + b) +=
-              gimbal.spring.mean_flexibility(pose.direction[at(a)], pose.direction[at(b)],
-                                             pose.thrust * (gimbal.bearing.thrust + gimbal.bearing.dead_load));
-        }
-      }
+      const GimbalBearing<S>& bearing = gimbals_[at(e)].bearing;
+      thrust[at(e)] = bearing.thrust;
+      stiffens_ = stiffens_ || value_of(bearing.unloaded_structure) < 1.0 || value_of(bearing.unloaded_stiffness) < 1.0;
     }
-    for (int i = 0; i < kAxes; ++i) {
-      flexibility(i, i) += further_flexibility(i, gimbals_[at(i / 2)].bearing.thrust);
-    }
-    Eigen::Matrix<S, kAxes, kAxes> with_springs = flexibility;
-    for (int i = 0; i < kAxes; ++i) {
-      with_springs(i, i) += 1.0 / axes_[at(i)].stiffness();
-    }
-    const Eigen::Matrix<S, kAxes, kAxes> force_per_surplus = inverse_of_positive_definite<S, kAxes>(with_springs);
-    for (int column = 0; column < kAxes; ++column) {
-      motion_per_surplus_.col(column) = times(flexibility, Eigen::Matrix<S, kAxes, 1>(force_per_surplus.col(column)));
-    }
+    motion_per_surplus_ = motion_per_surplus(thrust);
   }
 
   double step_size() const noexcept { return h_; }
@@ -168,6 +153,9 @@ class Vehicle {
     }
     step.force = inputs.force;
     step.torque = inputs.torque;
+    if (stiffens_) {
+      step.motion_per_surplus = motion_per_surplus(step.thrust);
+    }
     for (int pass = 0; pass < kPasses; ++pass) {
       evaluate(state, step, pass + 1 == kPasses ? Keep::yes : Keep::no);
     }
@@ -200,6 +188,7 @@ class Vehicle {
     BearingFriction<S> friction;
     BearingVibration<S> vibration;
     GimbalBearing<S> bearing;
+    Pose<S> upright;  ///< at zero angles
     bool vibrates;
   };
 
@@ -215,6 +204,7 @@ class Vehicle {
     std::array<S, Engines> thrust{};
     std::array<S, kAxes> torque{};
     std::array<Vector3<S>, Engines> force;
+    AxisMatrix motion_per_surplus;  ///< under this step's thrust; read only where stiffness follows it
   };
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -252,6 +242,7 @@ class Vehicle {
                     own.friction,
                     own.vibration,
                     own.bearing,
+                    geometry_of(parameters, e).at(S(0.0), S(0.0)),
                     value_of(own.vibration.pitch_velocity) > 0.0 || value_of(own.vibration.yaw_velocity) > 0.0};
     };
     return {gimbal(I)...};
@@ -274,7 +265,7 @@ class Vehicle {
     for (int e = 0; e < Engines; ++e) {
       move_engine(state, step, moved, e, motion, surplus);
     }
-    motion += times(motion_per_surplus_, surplus);
+    motion += times(stiffens_ ? step.motion_per_surplus : motion_per_surplus_, surplus);
     for (int i = 0; i < kAxes; ++i) {
       auto& axis = state.axes[at(i)];
       step.around[at(i)].motion = motion(i);
@@ -283,6 +274,33 @@ class Vehicle {
       state.structure.forces(i) = axis.spring_force;
     }
     turn_engines(state, step, keep);
+  }
+
+  /// flexibility (1 / K_T + flexibility)^-1 under a thrust, flexibility being the mean motion of the attach points per mean
+  /// force, bearings at zero angles.
+  AxisMatrix motion_per_surplus(const std::array<S, Engines>& thrust) const noexcept {
+    AxisMatrix flexibility = structure_.mean_flexibility().template topLeftCorner<kAxes, kAxes>();
+    for (int e = 0; e < Engines; ++e) {
+      const Gimbal& gimbal = gimbals_[at(e)];
+      const Vector3<S> load = gimbal.upright.thrust * (thrust[at(e)] + gimbal.bearing.dead_load);
+      const auto& direction = gimbal.upright.direction;
+      for (int a = 0; a < 2; ++a) {
+        for (int b = 0; b < 2; ++b) {
+          flexibility(2 * e + a, 2 * e + b) += gimbal.spring.mean_flexibility(direction[at(a)], direction[at(b)], load);
+        }
+        flexibility(2 * e + a, 2 * e + a) += further_flexibility(2 * e + a, thrust[at(e)]);
+      }
+    }
+    AxisMatrix with_springs = flexibility;
+    for (int i = 0; i < kAxes; ++i) {
+      with_springs(i, i) += 1.0 / axes_[at(i)].stiffness();
+    }
+    const AxisMatrix force_per_surplus = inverse_of_positive_definite<S, kAxes>(with_springs);
+    AxisMatrix product;
+    for (int column = 0; column < kAxes; ++column) {
+      product.col(column) = times(flexibility, Eigen::Matrix<S, kAxes, 1>(force_per_surplus.col(column)));
+    }
+    return product;
   }
 
   /// What an attach point gives way by beyond its declared stiffness under a thrust [m/N].
@@ -429,8 +447,9 @@ class Vehicle {
   std::array<AxisModel, kAxes> axes_;
   Structure structure_;
   std::array<Gimbal, Engines> gimbals_;
-  /// flexibility (1 / K_T + flexibility)^-1: what the attach points move by when the springs take up their surplus.
-  Eigen::Matrix<S, kAxes, kAxes> motion_per_surplus_;
+  /// What the attach points move by when the springs take up their surplus, under the declared thrust.
+  AxisMatrix motion_per_surplus_;
+  bool stiffens_ = false;  ///< structure or bearings are stiffer under thrust
 };
 
 /// The presets, with the modes that their memory holds.

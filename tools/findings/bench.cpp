@@ -54,6 +54,10 @@ void remove_from_stage(TaosParameters& stage, Physics physics) {
   switch (physics) {
     case Physics::friction:
       friction.coulomb_torque = friction.coefficient = 0.0;
+      for (auto& axis : stage.axes) {
+        set_active<model::GimbalFriction>(axis, false);
+        set_active<model::GimbalCompliance>(axis, false);
+      }
       break;
     case Physics::friction_follows_load:
       friction.coulomb_torque = friction.sliding_torque(gimbal.bearing.thrust + gimbal.bearing.dead_load);
