@@ -1,5 +1,4 @@
 #include "tools/structure/vehicle_file.hpp"
-#include "tools/files/text/error.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include "model/keys.hpp"
 #include "tests/model/plants.hpp"
 #include "tests/structure/vehicle_texts.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/structure/mode_table.hpp"
 #include "tools/structure/synthetic.hpp"
