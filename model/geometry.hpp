@@ -18,6 +18,13 @@ S dot(const Vector3<S>& a, const Vector3<S>& b) noexcept {
   return a(0) * b(0) + a(1) * b(1) + a(2) * b(2);
 }
 
+/// Length of a vector; at zero it has no slope.
+template <class S>
+S norm(const Vector3<S>& a) noexcept {
+  const S squared = dot<S>(a, a);
+  return value_of(squared) > 0.0 ? S(sqrt(squared)) : S{0.0};
+}
+
 /// Where one actuator holds on to its engine and to the vehicle, with the engine at zero angles. Origin at the gimbal's
 /// centre; x along the thrust, forward; pitch turns about y and yaw about z. Extension must give a positive angle. The
 /// defaults are a representative pitch actuator parallel to the thrust at an arm of 0.7544 m; `yaw_attach_points` its twin.
@@ -70,7 +77,7 @@ class EngineGeometry {
   EngineGeometry(const AttachPoints<S>& pitch, const AttachPoints<S>& yaw)
       : engine_{pitch.engine(), yaw.engine()},
         vehicle_{pitch.vehicle(), yaw.vehicle()},
-        length_{norm(pitch.engine() - pitch.vehicle()), norm(yaw.engine() - yaw.vehicle())} {}
+        length_{norm<S>(pitch.engine() - pitch.vehicle()), norm<S>(yaw.engine() - yaw.vehicle())} {}
 
   /// Arms [m] that are the same at any angle, as physics.md section 1 has them: stroke = arm angle, and no actuator turns
   /// the engine about the other axis. Both push along the thrust.
@@ -101,7 +108,7 @@ class EngineGeometry {
       const S z = engine_[k](2);
       const Vector3<S> turned{cp * x + sp * z, y, cp * z - sp * x};
       const Vector3<S> line = turned - vehicle_[k];
-      const S length = norm(line);
+      const S length = norm<S>(line);
       pose.direction[k] = line / length;
       pose.stroke[k] = length - length_[k];
       const Vector3<S> by_pitch{turned(2), S(0.0), -turned(0)};
@@ -112,8 +119,6 @@ class EngineGeometry {
   }
 
  private:
-  static S norm(const Vector3<S>& a) noexcept { return sqrt(dot<S>(a, a)); }
-
   std::array<Vector3<S>, 2> engine_;
   std::array<Vector3<S>, 2> vehicle_;
   std::array<S, 2> length_;  ///< between the attach points at zero angles; the arms where these are constant

@@ -20,14 +20,19 @@ namespace hotfire::model {
 ///   stroke    s_i(pitch, yaw) of the attach points in 3-D, and its derivatives as arms (`EngineGeometry`)
 ///   structure w_i = modes and residual under all forces F and the torques on the gimbals (`ModalStructure`)
 ///   bearing   translation u under thrust and forces, n_i . u added to w_i; torsion in series with the friction
-///   (`GimbalSpring`) friction  one torque over both angles' slip, beta' - rotation of the vehicle's side - torsion'
-///   (`BearingFriction`) ducts and viscous damping of an axis work against the vehicle's side, as far as it turns.
+///             (`GimbalSpring`)
+///   friction  one torque over both angles' slip, beta' - rotation of the vehicle's side - torsion', its level from the
+///   force
+///             through the bearing (`BearingFriction`)
+///   thrust    may change from step to step: level, vibration, seat of the bearing and torque of a misaligned thrust follow
+///   ducts     and viscous damping of an axis work against the vehicle's side, as far as it turns.
 /// With modes, an axis's `structure.stiffness` is what is local to its attach point, in series with them.
 ///
 /// Discretisation: the axes' own two passes. Over one step all flexibility is a constant symmetric matrix C of mean motion
 /// per mean force, so spring forces and motion are found together: F = (1/K_T + C)^-1 (deflection without force, less what
 /// the springs' nonlinearity took in the last evaluation). That is exact for linear springs and contracts for softer ones,
-/// so a structure softer than the actuators is as stable as a stiff one. Second order where smooth, first order at stick and
+/// so a structure softer than the actuators is as stable as a stiff one. Where stiffness follows the thrust, C is that of
+/// the step's own. Second order where smooth, first order at stick and
 /// slip.
 ///
 /// A step costs the same whatever the state, and is linear in the modes. No allocation, lock or exception after
@@ -46,6 +51,7 @@ class Vehicle {
   static constexpr std::size_t kChannels = AxisModel::channels.size();
   using Structure = ModalStructure<S, kPorts, Capacity>;
   using Modes = typename Structure::Table;
+  using AxisMatrix = Eigen::Matrix<S, kAxes, kAxes>;
 
   struct Parameters {
     std::array<typename AxisModel::Parameters, kAxes> axes{};
@@ -73,8 +79,11 @@ class Vehicle {
 
   /// What drives a step, held over it.
   struct Inputs {
-    std::array<S, kAxes> commands{};   ///< [rad]
-    std::array<S, kAxes> vibration{};  ///< slip velocity of the bearings from a recorded vibration [rad/s]
+    std::array<S, kAxes> commands{};                     ///< [rad]
+    std::array<S, kAxes> vibration{};                    ///< slip velocity of the bearings from a recorded vibration [rad/s]
+    std::array<S, Engines> thrust{};                     ///< of an engine, beyond its declared one [N]
+    std::array<S, kAxes> torque{};                       ///< on the engine, towards positive angles [N m]
+    std::array<Vector3<S>, Engines> force = no_force();  ///< on the engine at its gimbal's centre, along x, y, z [N]
   };
 
   /// Constants of a run at step `h` [s]. But for constant arms, an axis's moment arm is that of its attach points at zero
@@ -84,25 +93,13 @@ class Vehicle {
         axes_(axes_of(parameters, h, std::make_index_sequence<kAxes>{})),
         structure_(parameters.modes, h),
         gimbals_(gimbals_of(parameters, h, std::make_index_sequence<Engines>{})) {
-    // Mean motion of the attach points per mean force, bearings at zero angles.
-    Eigen::Matrix<S, kAxes, kAxes> flexibility = structure_.mean_flexibility().template topLeftCorner<kAxes, kAxes>();
+    std::array<S, Engines> thrust;
     for (int e = 0; e < Engines; ++e) {
-      const Gimbal& gimbal = gimbals_[at(e)];
-      const Pose<S> pose = gimbal.geometry.at(S(0.0), S(0.0));
-      for (int a = 0; a < 2; ++a) {
-        for (int b = 0; b < 2; ++b) {
-          flexibility(2 * e + a, 2 * e + b) += gimbal.spring.mean_flexibility(pose.direction[at(a)], pose.direction[at(b)]);
-        }
-      }
+      const GimbalBearing<S>& bearing = gimbals_[at(e)].bearing;
+      thrust[at(e)] = bearing.thrust;
+      stiffens_ = stiffens_ || value_of(bearing.unloaded_structure) < 1.0 || value_of(bearing.unloaded_stiffness) < 1.0;
     }
-    Eigen::Matrix<S, kAxes, kAxes> with_springs = flexibility;
-    for (int i = 0; i < kAxes; ++i) {
-      with_springs(i, i) += 1.0 / axes_[at(i)].stiffness();
-    }
-    const Eigen::Matrix<S, kAxes, kAxes> force_per_surplus = inverse_of_positive_definite<S, kAxes>(with_springs);
-    for (int column = 0; column < kAxes; ++column) {
-      motion_per_surplus_.col(column) = times(flexibility, Eigen::Matrix<S, kAxes, 1>(force_per_surplus.col(column)));
-    }
+    motion_per_surplus_ = motion_per_surplus(thrust);
   }
 
   double step_size() const noexcept { return h_; }
@@ -111,30 +108,9 @@ class Vehicle {
   const EngineGeometry<S>& geometry(int engine) const noexcept { return gimbals_[at(engine)].geometry; }
 
   /// The steady state under constant commands [rad]: set-up only. Every axis settles under the motion and torque that the
-  /// others' forces give it, until these no longer change; friction starts unloaded.
-  State steady(const std::array<S, kAxes>& commands) const {
-    constexpr int kRounds = 60;  // each shrinks the change by K_n / (R^2 K_L), 1e-2, or the change of the arms, 1e-1
-    State state;
-    std::array<Coupling<S>, kAxes> around{};
-    for (int i = 0; i < kAxes; ++i) {
-      around[at(i)].arm = axes_[at(i)].parameters().actuator.moment_arm;
-    }
-    for (int round = 0; round < kRounds; ++round) {
-      for (int i = 0; i < kAxes; ++i) {
-        state.axes[at(i)] = axes_[at(i)].settled(commands[at(i)], around[at(i)]);
-      }
-      couple_at_rest(state, around);
-    }
-    for (int i = 0; i < kAxes; ++i) {
-      const auto& axis = axes_[at(i)];
-      const S deflection = state.axes[at(i)].y(AxisModel::kPiston) -
-                           axis.parameters().actuator.moment_arm * state.axes[at(i)].y(AxisModel::kAngle) -
-                           around[at(i)].motion;
-      state.softening[at(i)] = deflection - state.axes[at(i)].spring_force / axis.stiffness();
-    }
-    gather(state);
-    return state;
-  }
+  /// others' forces give it, until these no longer change; friction starts unloaded. `thrust` is beyond the declared one
+  /// [N].
+  State steady(const std::array<S, kAxes>& commands, const std::array<S, Engines>& thrust = {}) const;
 
   /// Advances by one step.
   void step(State& state, const Inputs& inputs) const noexcept {
@@ -144,10 +120,19 @@ class Vehicle {
     }
     step.structure = structure_.begin(state.structure);
     for (int e = 0; e < Engines; ++e) {
+      const Gimbal& gimbal = gimbals_[at(e)];
+      step.thrust[at(e)] = gimbal.bearing.thrust + inputs.thrust[at(e)];
+      step.vibrating[at(e)] = gimbal.bearing.vibration_under(step.thrust[at(e)]);
       step.vibration[at(e)] = {inputs.vibration[at(2 * e)], inputs.vibration[at(2 * e + 1)]};
-      if (gimbals_[at(e)].vibrates) {
-        step.vibration[at(e)] = step.vibration[at(e)] + vibration_over(gimbals_[at(e)].vibration, state.tick, h_);
+      if (gimbal.vibrates) {
+        step.vibration[at(e)] =
+            step.vibration[at(e)] + step.vibrating[at(e)] * vibration_over(gimbal.vibration, state.tick, h_);
       }
+    }
+    step.force = inputs.force;
+    step.torque = inputs.torque;
+    if (stiffens_) {
+      step.motion_per_surplus = motion_per_surplus(step.thrust);
     }
     for (int pass = 0; pass < kPasses; ++pass) {
       evaluate(state, step, pass + 1 == kPasses ? Keep::yes : Keep::no);
@@ -158,8 +143,7 @@ class Vehicle {
     structure_.finish(state.structure, step.structure);
     for (int e = 0; e < Engines; ++e) {
       GimbalState& gimbal = state.gimbals[at(e)];
-      gimbal.displacement =
-          gimbals_[at(e)].spring.end(gimbal.displacement, bearing_force(state, step.poses[at(e)], e), gimbal.torque);
+      gimbal.displacement = gimbals_[at(e)].spring.end(gimbal.displacement, bearing_force(state, step, e), gimbal.torque);
     }
     ++state.tick;
     gather(state);
@@ -181,7 +165,8 @@ class Vehicle {
     GimbalSpring<S> spring;
     BearingFriction<S> friction;
     BearingVibration<S> vibration;
-    S thrust;
+    GimbalBearing<S> bearing;
+    Pose<S> upright;  ///< at zero angles
     bool vibrates;
   };
 
@@ -193,9 +178,20 @@ class Vehicle {
     std::array<Spring<S>, kAxes> springs{};
     std::array<Pose<S>, Engines> poses;
     std::array<Pair<S>, Engines> vibration{};
+    std::array<S, Engines> vibrating{};  ///< size of the vibration over the declared one
+    std::array<S, Engines> thrust{};
+    std::array<S, kAxes> torque{};
+    std::array<Vector3<S>, Engines> force;
+    AxisMatrix motion_per_surplus;  ///< under this step's thrust; read only where stiffness follows it
   };
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
+
+  static std::array<Vector3<S>, Engines> no_force() noexcept {
+    std::array<Vector3<S>, Engines> forces;
+    forces.fill(Vector3<S>::Zero());
+    return forces;
+  }
 
   static constexpr std::array<AttachPoints<S>, kAxes> representative_attach_points() noexcept {
     std::array<AttachPoints<S>, kAxes> points{};
@@ -223,15 +219,19 @@ class Vehicle {
                     GimbalSpring<S>(own, h),
                     own.friction,
                     own.vibration,
-                    own.bearing.thrust,
+                    own.bearing,
+                    geometry_of(parameters, e).at(S(0.0), S(0.0)),
                     value_of(own.vibration.pitch_velocity) > 0.0 || value_of(own.vibration.yaw_velocity) > 0.0};
     };
     return {gimbal(I)...};
   }
 
-  /// Force on the bearing of an engine: its thrust and the push of its actuators.
-  Vector3<S> bearing_force(const State& state, const Pose<S>& pose, int e) const noexcept {
-    return pose.thrust * gimbals_[at(e)].thrust + pose.direction[0] * state.structure.forces(2 * e) +
+  /// Force on the bearing of an engine: its thrust and dead load, the push of its actuators and a disturbance.
+  Vector3<S> bearing_force(const State& state, const Step& step, int e) const noexcept {
+    return pushed(state, step.poses[at(e)], step.thrust[at(e)], e) + step.force[at(e)];
+  }
+  Vector3<S> pushed(const State& state, const Pose<S>& pose, const S& thrust, int e) const noexcept {
+    return pose.thrust * (thrust + gimbals_[at(e)].bearing.dead_load) + pose.direction[0] * state.structure.forces(2 * e) +
            pose.direction[1] * state.structure.forces(2 * e + 1);
   }
 
@@ -243,7 +243,7 @@ class Vehicle {
     for (int e = 0; e < Engines; ++e) {
       move_engine(state, step, moved, e, motion, surplus);
     }
-    motion += times(motion_per_surplus_, surplus);
+    motion += times(stiffens_ ? step.motion_per_surplus : motion_per_surplus_, surplus);
     for (int i = 0; i < kAxes; ++i) {
       auto& axis = state.axes[at(i)];
       step.around[at(i)].motion = motion(i);
@@ -252,6 +252,15 @@ class Vehicle {
       state.structure.forces(i) = axis.spring_force;
     }
     turn_engines(state, step, keep);
+  }
+
+  /// flexibility (1 / K_T + flexibility)^-1 under a thrust, flexibility being the mean motion of the attach points per mean
+  /// force, bearings at zero angles.
+  AxisMatrix motion_per_surplus(const std::array<S, Engines>& thrust) const noexcept;
+
+  /// What an attach point gives way by beyond its declared stiffness under a thrust [m/N].
+  S further_flexibility(int i, const S& thrust) const noexcept {
+    return gimbals_[at(i / 2)].bearing.further_structure(thrust) / axes_[at(i)].parameters().structure.stiffness;
   }
 
   /// Mean deflection of a load spring before its effects.
@@ -273,12 +282,13 @@ class Vehicle {
     pose = gimbal.geometry.at(pitch, yaw);
     const GimbalState& own = state.gimbals[at(e)];
     const Vector3<S> moved_bearing =
-        gimbal.spring.mean_translation(own.displacement, bearing_force(state, pose, e), own.torque);
+        gimbal.spring.mean_translation(own.displacement, bearing_force(state, step, e), own.torque);
     for (int k = 0; k < 2; ++k) {
       const int i = 2 * e + k;
       const auto& axis = axes_[at(i)];
       motion(i) = pose.stroke[at(k)] - axis.parameters().actuator.moment_arm * (k == 0 ? pitch : yaw) + moved(i) +
-                  dot<S>(pose.direction[at(k)], moved_bearing);
+                  dot<S>(pose.direction[at(k)], moved_bearing) +
+                  further_flexibility(i, step.thrust[at(e)]) * state.structure.forces(i);
       surplus(i) = deflection(step, i, motion(i)) - state.softening[at(i)] - state.structure.forces(i) / axis.stiffness();
       step.around[at(i)].arm = pose.arm[at(k)][at(k)];
     }
@@ -298,8 +308,11 @@ class Vehicle {
       }
       const Pair<S>& friction = state.gimbals[at(e)].torque;
       const Pose<S>& pose = step.poses[at(e)];
-      const S across_pitch = -pose.arm[1][0] * state.axes[at(yaw)].spring_force;
-      const S across_yaw = -pose.arm[0][1] * state.axes[at(pitch)].spring_force;
+      const GimbalBearing<S>& bearing = gimbals_[at(e)].bearing;
+      const S across_pitch = bearing.pitch_misalignment * step.thrust[at(e)] - step.torque[at(pitch)] -
+                             pose.arm[1][0] * state.axes[at(yaw)].spring_force;
+      const S across_yaw = bearing.yaw_misalignment * step.thrust[at(e)] - step.torque[at(yaw)] -
+                           pose.arm[0][1] * state.axes[at(pitch)].spring_force;
       turn_axis(state, step, turned, rate, pitch, friction.pitch, across_pitch, keep);
       turn_axis(state, step, turned, rate, yaw, friction.yaw, across_yaw, keep);
     }
@@ -328,8 +341,8 @@ class Vehicle {
     GimbalState& own = state.gimbals[at(e)];
     const Pair<S> engine{step.axes[at(pitch)].rate(AxisModel::kAngle, h_), step.axes[at(yaw)].rate(AxisModel::kAngle, h_)};
     const Pair<S> vehicle{rate(pitch), rate(yaw)};
-    const Pair<S> torsion =
-        gimbal.spring.rotation_rate(own.displacement, bearing_force(state, step.poses[at(e)], e), own.torque);
+    const Vector3<S> force = bearing_force(state, step, e);
+    const Pair<S> torsion = gimbal.spring.rotation_rate(own.displacement, force, own.torque);
     const auto& flexibility = structure_.rate_flexibility();
     const SymmetricPair<S> bearing = gimbal.spring.rate_flexibility();
     Slip<S> slip;
@@ -339,40 +352,11 @@ class Vehicle {
                        axes_[at(yaw)].engine_compliance() + flexibility(yaw, kAxes + yaw) + bearing.yaw,
                        flexibility(pitch, kAxes + yaw) + bearing.cross};
     slip.free_velocity = slip.velocity + slip.compliance.times(own.torque);
-    own.torque = gimbal.friction.torque(own.bristle, slip);
+    own.torque = gimbal.friction.torque(own.bristle, slip, {norm<S>(force), step.vibrating[at(e)]});
   }
 
   /// What the axes' states at rest do to the rest of the vehicle, and what that does to them.
-  void couple_at_rest(State& state, std::array<Coupling<S>, kAxes>& around) const {
-    typename Structure::PortVector forces = Structure::PortVector::Zero();
-    const auto flexibility = structure_.static_flexibility();
-    const auto turned = [&] { return typename Structure::PortVector(flexibility * state.structure.forces); }();
-    for (int i = 0; i < kAxes; ++i) {
-      forces(i) = state.axes[at(i)].spring_force;
-      forces(kAxes + i) =
-          axes_[at(i)].parameters().engine.duct_stiffness * (state.axes[at(i)].y(AxisModel::kAngle) - turned(kAxes + i));
-    }
-    state.structure = structure_.settled(forces);
-    const typename Structure::PortVector moved = flexibility * forces;
-    for (int e = 0; e < Engines; ++e) {
-      const Gimbal& gimbal = gimbals_[at(e)];
-      const std::array<S, 2> angles{state.axes[at(2 * e)].y(AxisModel::kAngle),
-                                    state.axes[at(2 * e + 1)].y(AxisModel::kAngle)};
-      const Pose<S> pose = gimbal.geometry.at(angles[0], angles[1]);
-      state.gimbals[at(e)].displacement = gimbal.spring.settled(bearing_force(state, pose, e), {});
-      const Vector3<S> moved_bearing = state.gimbals[at(e)].displacement.template head<3>();
-      for (int k = 0; k < 2; ++k) {
-        const int i = 2 * e + k;
-        const auto& parameters = axes_[at(i)].parameters();
-        around[at(i)].motion = pose.stroke[at(k)] - parameters.actuator.moment_arm * angles[at(k)] + moved(i) +
-                               dot<S>(pose.direction[at(k)], moved_bearing);
-        around[at(i)].arm = pose.arm[at(k)][at(k)];
-        around[at(i)].torque = -pose.arm[at(1 - k)][at(k)] * state.axes[at(2 * e + 1 - k)].spring_force -
-                               parameters.engine.duct_stiffness * moved(kAxes + i);
-        around[at(i)].other_angle = angles[at(1 - k)];
-      }
-    }
-  }
+  void couple_at_rest(State& state, std::array<Coupling<S>, kAxes>& around, const std::array<S, Engines>& thrust) const;
 
   void gather(State& state) const noexcept {
     for (std::size_t i = 0; i < kAxes; ++i) {
@@ -386,8 +370,9 @@ class Vehicle {
   std::array<AxisModel, kAxes> axes_;
   Structure structure_;
   std::array<Gimbal, Engines> gimbals_;
-  /// flexibility (1 / K_T + flexibility)^-1: what the attach points move by when the springs take up their surplus.
-  Eigen::Matrix<S, kAxes, kAxes> motion_per_surplus_;
+  /// What the attach points move by when the springs take up their surplus, under the declared thrust.
+  AxisMatrix motion_per_surplus_;
+  bool stiffens_ = false;  ///< structure or bearings are stiffer under thrust
 };
 
 /// The presets, with the modes that their memory holds.
@@ -397,3 +382,5 @@ template <class S>
 using Masv = Vehicle<S, 4, 64, MasvEffects>;
 
 }  // namespace hotfire::model
+
+#include "model/vehicle_balance.hpp"

@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -38,10 +39,10 @@ void check_same_page(const std::string& computed, const std::string& published) 
 TEST_GROUP(Findings){};
 
 TEST(Findings, AreInsideTheirTolerancesAndPublishedAsTheyCameOut) {
-  const Sets sets = load_sets(HOTFIRE_SETS);
+  const Bench bench = load_bench(HOTFIRE_SETS);
   std::vector<Row> rows;
   for (const Finding& finding : all_findings()) {
-    rows.push_back({&finding, finding.find(sets)});
+    rows.push_back({&finding, finding.find(bench)});
     for (const Figure& figure : rows.back().outcome.figures) {
       const std::string what = std::string(finding.id) + ", " + figure.what + ": " + figure_text(figure.value, figure.unit) +
                                ", allowed " + figure_text(figure.lowest, "") + " to " + figure_text(figure.highest, "");
@@ -56,17 +57,27 @@ TEST(Findings, AreInsideTheirTolerancesAndPublishedAsTheyCameOut) {
   check_same_page(markdown(rows), published);
 }
 
-TEST(Findings, AreReachedWithTheSameActuatorInEverySet) {
-  const Sets sets = load_sets(HOTFIRE_SETS);
-  const auto of = [](const ModelFile& model) { return std::get<SimplexParameters>(model.parameters); };
-  for (const ModelFile* other : {&sets.lab, &sets.hot_fire}) {
+TEST(Findings, AreReachedWithTheSameActuatorInTheLaboratoryAndOnTheStage) {
+  const Bench bench = load_bench(HOTFIRE_SETS);
+  const auto& lab = std::get<SimplexParameters>(bench.lab.parameters);
+  for (const auto& axis : std::get<TaosParameters>(bench.stage.parameters).axes) {
     for (const auto& field : model::Servovalve<double>::fields()) {
-      DOUBLES_EQUAL(of(sets.ambient).servovalve.*field.member, of(*other).servovalve.*field.member, 0.0);
+      DOUBLES_EQUAL(lab.servovalve.*field.member, axis.servovalve.*field.member, 0.0);
     }
     for (const auto& field : model::Actuator<double>::fields()) {
-      DOUBLES_EQUAL(of(sets.ambient).actuator.*field.member, of(*other).actuator.*field.member, 0.0);
+      DOUBLES_EQUAL(lab.actuator.*field.member, axis.actuator.*field.member, 0.0);
     }
   }
+}
+
+TEST(Findings, AreAtLeastTwentyWithTheirOwnNamesAndMutants) {
+  std::set<std::string_view> names;
+  for (const Finding& finding : all_findings()) {
+    names.insert(finding.id);
+    CHECK_FALSE(finding.mutants.all().empty());
+  }
+  CHECK_EQUAL(all_findings().size(), names.size());
+  CHECK_TRUE(names.size() >= 20);
 }
 
 }  // namespace hotfire::findings

@@ -19,10 +19,10 @@ inline constexpr double kSample = 1e-3;
 inline constexpr int kSamples = 1200;
 
 /// Sines from 1 to 9 Hz about both angles, a step up in pitch and one down in yaw, 0.3 deg each. Every further engine is
-/// commanded the same a little later and the other way round.
+/// commanded the same a little later and the other way round. All of it times `size_of_all`.
 template <class Vehicle>
-std::vector<std::vector<double>> command_profile() {
-  constexpr double degree = std::numbers::pi / 180.0;
+std::vector<std::vector<double>> command_profile(double size_of_all = 1.0) {
+  const double degree = size_of_all * std::numbers::pi / 180.0;
   const auto sine = [](double frequency, double t) { return std::sin(2.0 * std::numbers::pi * frequency * t); };
   std::vector<std::vector<double>> commands;
   for (int i = 0; i < kSamples; ++i) {
@@ -144,10 +144,10 @@ ReferenceVehicle::Start start_of(const State& state, int modes) {
 
 /// The model from a start on the commands, `parts` steps a sample.
 template <class Vehicle>
-VehicleRows run_model(const Vehicle& plant, typename Vehicle::State state, int parts) {
+VehicleRows run_model(const Vehicle& plant, typename Vehicle::State state, int parts, double size = 1.0) {
   VehicleRows rows;
   typename Vehicle::Inputs inputs;
-  for (const auto& commands : command_profile<Vehicle>()) {
+  for (const auto& commands : command_profile<Vehicle>(size)) {
     std::copy(commands.begin(), commands.end(), inputs.commands.begin());
     for (int part = 0; part < parts; ++part) {
       plant.step(state, inputs);
@@ -163,17 +163,17 @@ VehicleRows run_model(const Vehicle& plant, typename Vehicle::State state, int p
 }
 
 template <class Vehicle>
-VehicleRows run_model(const typename Vehicle::Parameters& parameters, int parts) {
+VehicleRows run_model(const typename Vehicle::Parameters& parameters, int parts, double size = 1.0) {
   const Vehicle plant(parameters, kSample / parts);
-  return run_model(plant, plant.steady({}), parts);
+  return run_model(plant, plant.steady({}), parts, size);
 }
 
 /// The reference from the model's steady state.
 template <class Vehicle>
-VehicleRows run_reference(const typename Vehicle::Parameters& parameters, double tolerance = 1e-10) {
+VehicleRows run_reference(const typename Vehicle::Parameters& parameters, double tolerance = 1e-10, double size = 1.0) {
   const Vehicle plant(parameters, kSample);
   return integrate_reference(reference_of(parameters, plant), start_of(plant.steady({}), parameters.modes.modes),
-                             command_profile<Vehicle>(), kSample, tolerance);
+                             command_profile<Vehicle>(size), kSample, tolerance);
 }
 
 /// The largest error of any piston or engine, rms over the signal's rms.

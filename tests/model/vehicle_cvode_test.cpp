@@ -153,4 +153,19 @@ TEST(VehicleAgreesWithCvode, WithFourEnginesOnOneStructure) {
   CHECK_TRUE(error < kLimit);
 }
 
+// The modes and axes without friction, lap, softness and thrust, under commands so small that neither the flow's root nor
+// the angles' sines count.
+TEST(VehicleAgreesWithCvode, WithFourEnginesInTheLinearLimit) {
+  Masv::Parameters parameters;
+  parameters.modes = random_modes<Masv::Modes>(12, 0.3 / 1.05e8, 7);
+  for (auto& axis : parameters.axes) {
+    axis.structure.stiffness = 1.05e8 / 0.7;
+  }
+  const VehicleRows reference = run_reference<Masv>(parameters, 1e-8, 0.01);
+  const double coarse = largest_error(run_model<Masv>(parameters, 2, 0.01), reference);
+  const double fine = largest_error(run_model<Masv>(parameters, 8, 0.01), reference);
+  std::printf("\nfour engines, linear limit: %.5f %% at 0.5 ms, %.5f %% at 0.125 ms", 100.0 * coarse, 100.0 * fine);
+  CHECK_TRUE(fine < 1e-4);
+}
+
 }  // namespace hotfire::test

@@ -8,6 +8,7 @@
 #include "model/keys.hpp"
 #include "tests/model/plants.hpp"
 #include "tests/structure/vehicle_texts.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/structure/mode_table.hpp"
 #include "tools/structure/synthetic.hpp"
@@ -291,6 +292,49 @@ TEST(VehicleFile, AddsARecordedVibrationToTheSlipOfItsBearing) {
   expect_message(refusal([&] { simulate(lowered, inputs); }), {"vibration.pitch", "two ways to the same physics"});
   inputs.channels[1].name = "vibration.yaw3";
   expect_message(refusal([&] { simulate(taos, inputs); }), {"vibration.yaw3", "no such axis"});
+}
+
+// A constant torque turns the engine by what the springs give, towards positive angles.
+TEST(VehicleFile, IsTurnedByARecordedTorque) {
+  const VehicleFile taos = load(kTaos);
+  Record inputs = commands({"command.pitch", "torque.pitch"}, 0.0);
+  std::fill(inputs.channels[1].values.begin(), inputs.channels[1].values.end(), 5e3);
+  const Record turned = simulate(taos, inputs);
+  CHECK_TRUE(turned.find("engine.pitch")->values.back() > 1e-5);
+  DOUBLES_EQUAL(0.0, turned.find("engine.yaw")->values.back(), 1e-5);
+  inputs.channels[1].name = "torque.yaw3";
+  expect_message(refusal([&] { simulate(taos, inputs); }), {"torque.yaw3", "no such axis"});
+  inputs.channels[1].name = "force.w";
+  expect_message(refusal([&] { simulate(taos, inputs); }), {"force.w", "x, y, z"});
+}
+
+// Thrust of a file, of a switch and of an input are the same thing.
+TEST(VehicleFile, HasTheThrustOfItsInputInPlaceOfItsOwn) {
+  const std::string text = kTaos +
+                           "[gimbal]\nthrust = 1.86e6\nrated_thrust = 1.86e6\nunloaded_structure = 0.4\n"
+                           "[gimbal.friction]\nlaw = \"lugre\"\ncoefficient = 0.08\nstiffness = 1e8\n";
+  const VehicleFile taos = load(text);
+  Record inputs = commands({"command.pitch", "thrust"}, 0.004);
+  std::vector<double>& thrust = inputs.channels[1].values;
+  std::fill(inputs.channels[0].values.begin(), inputs.channels[0].values.begin() + 20, 0.0);
+  const auto reached = [](const Record& record) { return record.find("engine.pitch")->values; };
+  for (const double own : {0.0, 0.5e6}) {
+    std::fill(thrust.begin(), thrust.end(), own);
+    const std::vector<double> put_in = reached(simulate(taos, inputs));
+    const Record of_command = [&] {
+      Record plain = inputs;
+      plain.channels.pop_back();
+      return plain;
+    }();
+    const std::vector<double> same = reached(simulate(with_thrust(taos, own), of_command));
+    for (std::size_t row = 0; row < put_in.size(); ++row) {
+      DOUBLES_EQUAL(same[row], put_in[row], 1e-9);
+    }
+    CHECK_TRUE(reached(simulate(taos, of_command)) != same);
+  }
+  thrust[7] = -1.0;
+  expect_message(refusal([&] { simulate(taos, inputs); }), {"row 8", "thrust", "-1", "at least 0"});
+  CHECK_THROWS(UsageError, with_thrust(taos, -2.0));
 }
 
 }  // namespace hotfire::test

@@ -10,6 +10,7 @@
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/disturbed.hpp"
+#include "tools/trials/fine_sweep.hpp"
 #include "tools/trials/profiles.hpp"
 #include "tools/trials/stiffness.hpp"
 #include "tools/trials/string_angles.hpp"
@@ -256,6 +257,38 @@ TEST(Trials, TheGreenRunProfileIsThatOfThePaperInEitherOrder) {
   DOUBLES_EQUAL(radians(0.4), yaw[0].amplitude, 1e-12);
   DOUBLES_EQUAL(0.4, yaw[0].frequencies.front(), 1e-9);
   DOUBLES_EQUAL(6.25, yaw[0].frequencies.back(), 1e-9);
+}
+
+// Half of a percent of damping: on 40 frequencies the notch lies between two of them, and two seconds leave it ringing.
+TEST(Trials, AFineGridThatIsHeldUntilItSettlesFindsANotchToATenthOfAPercent) {
+  ModelFile model = linear();
+  auto& axis = std::get<SimplexParameters>(model.parameters);
+  const double zero = pendulum(axis);
+  axis.engine.viscous_damping = 2.0 * 0.005 * axis.engine.inertia * 2.0 * std::numbers::pi * zero;
+  SweepGoal goal{.moment_arm = moment_arm_of(model)};
+  const std::vector<SineBand> bands{{1e-5, spaced(0.4, 14.0, 40)}};
+  const auto notch = [&](const std::vector<double>& command) {
+    const auto sweeps = analyse_sweep(simulate(model, command_record(command)), goal);
+    CHECK_TRUE(sweeps.front().notch.has_value());
+    return sweeps.front().notch->frequency;
+  };
+  const auto coarse = analyse_sweep(simulate(model, command_record(stepped_sines(bands))), goal);
+  CHECK_TRUE(std::abs(coarse.front().notch->frequency - zero) > 2e-3 * zero);
+  DOUBLES_EQUAL(zero, notch(fine_sines(bands, coarse, settling_time(model))), 1e-3 * zero);
+}
+
+TEST(Trials, TheSettlingTimeIsThatOfTheLeastDampedModeInTheBand) {
+  ModelFile model = linear();
+  auto& engine = std::get<SimplexParameters>(model.parameters).engine;
+  engine = {1.0, 2.0, 0.0};
+  DOUBLES_EQUAL(std::log(1000.0), settling_time(model), 1e-4);
+  VehicleFile vehicle;
+  TaosParameters parameters;
+  parameters.modes.modes = 2;
+  parameters.modes.frequency = {5.0, 30.0};
+  parameters.modes.damping_ratio = {0.005, 0.0001};
+  vehicle.parameters = parameters;
+  DOUBLES_EQUAL(std::log(1000.0) / (2.0 * std::numbers::pi * 5.0 * 0.005), settling_time(vehicle, 1.0, 20.0), 1e-3);
 }
 
 }  // namespace hotfire::trials

@@ -31,7 +31,10 @@ void run_hammer(const HammerOptions& options) {
   });
   const std::string name = record.find("position") != nullptr ? "position" : "engine";
   const Channel& channel = trials::required_channel(record, name, options.trial.axis);
-  const auto decay = analysis::free_decay(channel.values, record.period, options.blow.seconds);
+  // A simulated blow hits an engine at rest; a recorded one is about zero already.
+  const auto decay =
+      analysis::free_decay(options.trial.record.empty() ? trials::swing(record, channel.name) : channel.values,
+                           record.period, options.blow.seconds);
   if (!decay) {
     throw FileError(fmt::format("{}: {} does not ring for three cycles in {:g} s", record.path.string(), channel.name,
                                 options.blow.seconds));
@@ -92,7 +95,9 @@ void add_hammer(CLI::App& program) {
   command->add_option("--seconds", options->blow.seconds, "of the decay that are used [s]")
       ->check(CLI::Range(0.05, 1000.0))
       ->capture_default_str();
-  command->footer("Example: hotfire hammer --model ambient.toml --impulse 40 --seconds 1 --picture decay.svg");
+  command->footer(
+      "Example: hotfire hammer --model core-stage.toml --thrust 0 --axis pitch --impulse 168 --seconds 1 --picture "
+      "decay.svg");
   command->callback([options] { run_hammer(*options); });
 }
 
@@ -113,7 +118,9 @@ void add_quiescent(CLI::App& program) {
   command->add_option("--segment", options->segment, "of the spectrum's average [s]")->capture_default_str();
   command->add_option("--lowest", options->lowest, "look for the peak from here [Hz]")->capture_default_str();
   command->add_option("--highest", options->highest, "look for the peak up to here [Hz]")->capture_default_str();
-  command->footer("Example: hotfire quiescent --model ambient.toml --torque-density 1e4 --picture spectrum.svg");
+  command->footer(
+      "Example: hotfire quiescent --model core-stage.toml --thrust 0 --axis pitch --torque-density 1e4 --picture "
+      "spectrum.svg");
   command->callback([options] { run_quiescent(*options); });
 }
 

@@ -22,6 +22,7 @@ struct FindingsOptions {
   std::string pictures;
   bool markdown = false;
   bool json = false;
+  bool mutants = false;
 };
 
 std::vector<const findings::Finding*> chosen(const std::vector<std::string>& only) {
@@ -74,15 +75,53 @@ void print(const std::vector<findings::Row>& rows) {
   }
 }
 
+/// Takes out of every finding what it is about, and says which figures notice. Returns false if a finding still holds.
+bool run_mutants(const FindingsOptions& options, const findings::Bench& bench) {
+  bool all_fail = true;
+  auto all = nlohmann::ordered_json::array();
+  for (const findings::Finding* finding : chosen(options.only)) {
+    for (const findings::Physics physics : finding->mutants.all()) {
+      const findings::Outcome outcome = finding->find(findings::without(bench, physics));
+      std::vector<std::string> outside;
+      for (const findings::Figure& figure : outcome.figures) {
+        if (!figure.inside()) {
+          outside.push_back(fmt::format("{}: {}", figure.what, findings::figure_text(figure.value, figure.unit)));
+        }
+      }
+      all_fail = all_fail && !outside.empty();
+      if (options.json) {
+        all.push_back({{"id", finding->id}, {"without", findings::physics_name(physics)}, {"outside", outside}});
+      } else {
+        std::cout << fmt::format("{:<4} {:<11} without {}: {} of {} figures outside\n", finding->id,
+                                 outside.empty() ? "STILL HOLDS" : "fails", findings::physics_name(physics), outside.size(),
+                                 outcome.figures.size());
+        for (const std::string& figure : outside) {
+          std::cout << fmt::format("       {}\n", figure);
+        }
+      }
+    }
+  }
+  if (options.json) {
+    std::cout << all.dump(2) << '\n';
+  }
+  return all_fail;
+}
+
 void run_findings(const FindingsOptions& options) {
-  const findings::Sets sets = findings::load_sets(options.sets);
+  const findings::Bench bench = findings::load_bench(options.sets);
+  if (options.mutants) {
+    if (!run_mutants(options, bench)) {
+      throw CLI::RuntimeError(static_cast<int>(ExitStatus::bad_verdict));
+    }
+    return;
+  }
   std::vector<findings::Row> rows;
   bool all_found = true;
   if (!options.pictures.empty()) {
     std::filesystem::create_directories(options.pictures);
   }
   for (const findings::Finding* finding : chosen(options.only)) {
-    rows.push_back({finding, finding->find(sets)});
+    rows.push_back({finding, finding->find(bench)});
     all_found = all_found && rows.back().outcome.inside();
     if (!options.pictures.empty()) {
       trials::write_picture(rows.back().outcome.picture,
@@ -106,13 +145,19 @@ void run_findings(const FindingsOptions& options) {
 void add_findings(CLI::App& program) {
   const auto options = std::make_shared<FindingsOptions>();
   CLI::App* command = program.add_subcommand("findings", "What the papers found, reproduced: figures, tolerances, verdicts");
-  command->add_option("--sets", options->sets, "folder with lab.toml, ambient.toml and hot-fire.toml (the shipped ones)");
+  command->add_option("--sets", options->sets, "folder with lab.toml and core-stage.toml (the shipped ones)");
   command->add_option("--only", options->only, "these findings alone: F1,F9")->delimiter(',');
   command->add_option("--pictures", options->pictures, "write a picture of each into this folder (.svg)");
   command->add_flag("--markdown", options->markdown, "print the page docs/findings.md");
   command->add_flag("--json", options->json, "print the result as JSON")->excludes("--markdown");
+  command
+      ->add_flag("--mutants", options->mutants,
+                 "take out of each finding the physics that it is about: every one of these runs must fail")
+      ->excludes("--markdown")
+      ->excludes("--pictures");
   command->footer(
-      "Example: hotfire findings --only F1,F2 --pictures pictures\nExit status 1: a figure is outside its tolerance.");
+      "Example: hotfire findings --only F1,F2 --pictures pictures\nExit status 1: a figure is outside its tolerance, or a "
+      "mutant's are all inside.");
   command->callback([options] { run_findings(*options); });
 }
 

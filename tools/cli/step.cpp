@@ -80,7 +80,7 @@ void add_step(CLI::App& program) {
   command->add_option("--hold", options->hold, "each step is held so long; in a record, steps held half as long count [s]")
       ->check(CLI::Range(0.05, 100.0))
       ->capture_default_str();
-  command->footer("Example: hotfire step --model hot-fire.toml --amplitudes 0.6,0.4,0.2 --picture steps.svg");
+  command->footer("Example: hotfire step --model core-stage.toml --axis pitch --amplitudes 0.6,0.4,0.2 --picture steps.svg");
   command->callback([options] { run_steps(*options); });
 }
 

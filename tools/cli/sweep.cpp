@@ -9,6 +9,9 @@
 
 #include "tools/cli/commands.hpp"
 #include "tools/cli/trial_options.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
+#include "tools/trials/fine_sweep.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/profiles.hpp"
 #include "tools/trials/results_json.hpp"
@@ -24,9 +27,19 @@ struct SweepOptions {
   double from = 0.4;                    ///< [Hz]
   double to = 14.0;                     ///< [Hz]
   int count = 40;
+  bool coarse = false;
   double moment_arm = 0.0;
   trials::SweepGoal goal;
 };
+
+std::vector<trials::SineBand> bands_of(const SweepOptions& options) {
+  std::vector<trials::SineBand> bands;
+  bands.reserve(options.amplitudes.size());
+  for (const double amplitude : options.amplitudes) {
+    bands.push_back({trials::radians(amplitude), trials::spaced(options.from, options.to, options.count)});
+  }
+  return bands;
+}
 
 std::vector<double> command_of(const SweepOptions& options) {
   if (options.profile == "green-run") {
@@ -36,12 +49,26 @@ std::vector<double> command_of(const SweepOptions& options) {
     return trials::multisine(trials::radians(options.amplitudes.front()), options.from, options.to, options.goal.segment, 8,
                              1);
   }
-  std::vector<trials::SineBand> bands;
-  bands.reserve(options.amplitudes.size());
-  for (const double amplitude : options.amplitudes) {
-    bands.push_back({trials::radians(amplitude), trials::spaced(options.from, options.to, options.count)});
+  return trials::stepped_sines(bands_of(options));
+}
+
+/// A sweep by sines, and once more with a fine grid around the notches that it found, held until they have settled.
+Record simulate_finely(const SweepOptions& options, const Record& coarse) {
+  trials::SweepGoal goal = options.goal;
+  goal.moment_arm = moment_arm_of_trial(options.trial);
+  const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
+  const double settling = vehicle ? trials::settling_time(*vehicle, options.from, options.to)
+                                  : trials::settling_time(load_model(options.trial.model));
+  return simulate_command(options.trial,
+                          trials::fine_sines(bands_of(options), trials::analyse_sweep(coarse, goal), settling));
+}
+
+Record simulate_both(const TrialOptions& options) {
+  const std::optional<VehicleFile> vehicle = vehicle_of_trial(options);
+  if (!vehicle || !std::holds_alternative<TaosParameters>(vehicle->parameters)) {
+    throw UsageError("--profile green-run-both drives the two axes of one engine; allowed with topology \"taos\"");
   }
-  return trials::stepped_sines(bands);
+  return simulate(*vehicle, trials::green_run_record());
 }
 
 void print(const std::vector<trials::ChannelSweep>& sweeps) {
@@ -65,7 +92,11 @@ void run_sweep(SweepOptions& options) {
   options.goal.axis = options.trial.axis;
   options.goal.moment_arm = options.moment_arm > 0.0 ? options.moment_arm : 1.0;
   const Record record = record_of_trial(options.trial, [&] {
-    Record run = simulate_command(options.trial, command_of(options));
+    Record run = options.profile == "green-run-both" ? simulate_both(options.trial)
+                                                     : simulate_command(options.trial, command_of(options));
+    if (options.profile == "sines" && !options.coarse) {
+      run = simulate_finely(options, run);
+    }
     if (options.moment_arm == 0.0) {
       options.goal.moment_arm = moment_arm_of_trial(options.trial);
     }
@@ -89,8 +120,9 @@ void add_sweep(CLI::App& program) {
   add_trial_options(*command, options->trial);
   command
       ->add_option("--profile", options->profile,
-                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), sines, or multisine")
-      ->check(CLI::IsMember({"green-run", "sines", "multisine"}))
+                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), green-run-both (the other axis "
+                   "driven as well, the other way round), sines, or multisine")
+      ->check(CLI::IsMember({"green-run", "green-run-both", "sines", "multisine"}))
       ->capture_default_str();
   command->add_option("--amplitudes", options->amplitudes, "of sines, one sweep each; of a multisine, its peak [deg]")
       ->delimiter(',')
@@ -104,6 +136,8 @@ void add_sweep(CLI::App& program) {
   command->add_option("--count", options->count, "frequencies of a sweep by sines")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
+  command->add_flag("--coarse", options->coarse,
+                    "sines: these frequencies alone, without a fine grid around each notch that is held until it settles");
   command->add_option("--lowest", options->goal.lowest, "look for notch and peak from here [Hz]")->capture_default_str();
   command->add_option("--highest", options->goal.highest, "look for notch and peak up to here [Hz]")->capture_default_str();
   command->add_option("--segment", options->goal.segment, "of a broadband record's analysis [s]")

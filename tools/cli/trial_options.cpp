@@ -17,6 +17,7 @@ void add_trial_options(CLI::App& command, TrialOptions& options) {
   command.add_option("--axis", options.axis, "axis of a record or model of several: pitch, yaw2 ...; its channels end so");
   command.add_option("--output", options.output, "write the record of the test (.csv)");
   command.add_option("--picture", options.picture, "draw the result (.svg)");
+  command.add_option("--thrust", options.thrust, "of every engine, in place of the model's: 0 is ambient [N]");
   command.add_flag("--json", options.json, "print the result as JSON");
 }
 
@@ -41,13 +42,17 @@ std::string name_of_trial(const TrialOptions& options) {
 
 std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options) {
   if (!is_vehicle(options.model)) {
+    if (options.thrust) {
+      throw UsageError("--thrust: a model of one axis has no bearing; allowed with topology \"taos\" or \"masv\"");
+    }
     return {};
   }
   if (options.axis.empty()) {
     throw UsageError(
         "the model has several axes; --axis says which one the test is of, pitch or yaw, pitch1 of several engines");
   }
-  return load_vehicle(options.model);
+  VehicleFile vehicle = load_vehicle(options.model);
+  return options.thrust ? with_thrust(std::move(vehicle), *options.thrust) : vehicle;
 }
 
 Record simulate_command(const TrialOptions& options, std::vector<double> command) {

@@ -19,6 +19,7 @@ struct TrialOptions {
   std::string axis;
   std::string output;
   std::string picture;
+  std::optional<double> thrust;  ///< of every engine, in place of the model's [N]
   bool json = false;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <string>
@@ -8,7 +9,7 @@
 #include <vector>
 
 #include "tools/analysis/chart.hpp"
-#include "tools/files/model/model_file.hpp"
+#include "tools/findings/bench.hpp"
 
 namespace hotfire::findings {
 
@@ -35,16 +36,24 @@ struct Outcome {
   bool inside() const;
 };
 
-/// The shipped parameter sets: representative, tuned to the published frequencies. Each file says which numbers are.
-struct Sets {
-  std::filesystem::path folder;
-  ModelFile lab;
-  ModelFile ambient;
-  ModelFile hot_fire;
-};
+/// What has to be taken out for a finding to fail, each for itself. A finding without any does not compile.
+class Mutants {
+ public:
+  // Never for a runtime list: an empty one reaches a throw, which is no constant expression.
+  consteval Mutants(std::initializer_list<Physics> removed) {  // NOLINT(google-explicit-constructor)
+    for (const Physics physics : removed) {
+      removed_[count_++] = physics;
+    }
+    if (count_ == 0) {
+      throw "a finding needs a mutant: name the physics that it is about";
+    }
+  }
+  constexpr std::span<const Physics> all() const { return {removed_.data(), count_}; }
 
-/// Reads lab.toml, ambient.toml and hot-fire.toml of a folder. Throws FileError.
-Sets load_sets(const std::filesystem::path& folder);
+ private:
+  std::array<Physics, 4> removed_{};
+  std::size_t count_ = 0;
+};
 
 /// One finding of the papers that the model must find too.
 struct Finding {
@@ -52,7 +61,8 @@ struct Finding {
   std::string_view title;    ///< what the papers found
   std::string_view shown;    ///< when it counts as found
   std::string_view command;  ///< that shows it, beside `hotfire findings`
-  Outcome (*find)(const Sets& sets);
+  Outcome (*find)(const Bench& bench);
+  Mutants mutants;
 };
 
 /// All of them, in order.

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "tools/findings/one_axis.hpp"
+#include "tools/findings/parameters.hpp"
 #include "tools/findings/rows.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/profiles.hpp"
@@ -8,37 +8,29 @@
 
 namespace hotfire::findings {
 
-namespace {
-
-/// A notch that a row stands or falls with.
-double notch_of(const trials::ChannelSweep* sweep) {
-  return sweep != nullptr && sweep->notch ? sweep->notch->frequency : kNone;
-}
-
-}  // namespace
-
-Outcome piston_zeros(const Sets& sets) {
-  const ModelFile linear = without_effects(sets.ambient);
+Outcome piston_zeros(const Bench& bench) {
+  const ModelFile linear = without_effects(bench.lab);
   const double zero = trials::asymptote(trials::load_spring_of(linear));
   // Small, so that valve and flow law stay linear; the analysis is that of any amplitude.
   const auto sweeps =
       swept(linear, trials::stepped_sines({{trials::radians(0.02), trials::spaced(4.0, 13.0, 60)}}), 4.0, 13.0);
   Outcome outcome;
-  outcome.figures.push_back(
-      near("notch of the piston", notch_of(trials::find_sweep(sweeps, "piston", trials::radians(0.02))), zero, 0.005, "Hz"));
+  outcome.figures.push_back(near("notch of the piston",
+                                 notch_of(*trials::find_sweep(sweeps, "piston", trials::radians(0.02))), zero, 0.005, "Hz"));
   const trials::ChannelSweep* engine = trials::find_sweep(sweeps, "engine", trials::radians(0.02));
-  outcome.figures.push_back({"notches of the engine", engine->notch ? 1.0 : 0.0, 0.0, 0.0, ""});
+  const auto of_engine = analysis::find_notch(engine->response, 0.9 * zero, 1.1 * zero);
+  outcome.figures.push_back({"notches of the engine within 10 % of it", of_engine ? 1.0 : 0.0, 0.0, 0.0, ""});
   outcome.picture = trials::bode_chart("F1: the notch is in the piston and not in the engine", sweeps);
   return outcome;
 }
 
-Outcome laboratory_notch(const Sets& sets) {
-  const trials::LoadSpring spring = trials::load_spring_of(sets.lab);
+Outcome laboratory_notch(const Bench& bench) {
+  const trials::LoadSpring spring = trials::load_spring_of(bench.lab);
   std::vector<trials::SineBand> bands;
   for (const double amplitude : {0.02, 0.05, 0.1, 0.2, 0.4}) {
     bands.push_back({trials::radians(amplitude), trials::spaced(6.0, 13.0, 60)});
   }
-  const auto stiffnesses = trials::sine_stiffnesses(swept(sets.lab, trials::stepped_sines(bands), 6.0, 13.0), spring);
+  const auto stiffnesses = trials::sine_stiffnesses(swept(bench.lab, trials::stepped_sines(bands), 6.0, 13.0), spring);
   Outcome outcome;
   double before = 0.0;
   double rises = 1.0;

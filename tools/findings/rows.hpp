@@ -4,20 +4,25 @@
 
 namespace hotfire::findings {
 
-Outcome piston_zeros(const Sets& sets);
-Outcome laboratory_notch(const Sets& sets);
-Outcome locked_pendulum(const Sets& sets);
-Outcome quiescent_peaks(const Sets& sets);
-Outcome ambient_sweep(const Sets& sets);
-Outcome ambient_step(const Sets& sets);
-Outcome hot_fire_sweep(const Sets& sets);
-Outcome hot_fire_step(const Sets& sets);
-Outcome notch_and_gimbal(const Sets& sets);
-Outcome friction_vector(const Sets& sets);
-Outcome friction_under_vibration(const Sets& sets);
-Outcome lugre_reference(const Sets& sets);
-Outcome stiffness_by_location(const Sets& sets);
-Outcome string_potentiometers(const Sets& sets);
-Outcome static_or_dynamic(const Sets& sets);
+Outcome piston_zeros(const Bench& bench);
+Outcome laboratory_notch(const Bench& bench);
+Outcome locked_pendulum(const Bench& bench);
+Outcome quiescent_peaks(const Bench& bench);
+Outcome ambient_sweep(const Bench& bench);
+Outcome ambient_step(const Bench& bench);
+Outcome hot_fire_sweep(const Bench& bench);
+Outcome hot_fire_step(const Bench& bench);
+Outcome notch_and_gimbal(const Bench& bench);
+Outcome friction_vector(const Bench& bench);
+Outcome friction_under_vibration(const Bench& bench);
+Outcome stiffness_by_location(const Bench& bench);
+Outcome string_potentiometers(const Bench& bench);
+Outcome lugre_reference(const Bench& bench);
+Outcome static_or_dynamic(const Bench& bench);
+Outcome lag_and_lead(const Bench& bench);
+Outcome one_axis_alone(const Bench& bench);
+Outcome thrust_and_friction(const Bench& bench);
+Outcome one_file(const Bench& bench);
+Outcome engine_phase(const Bench& bench);
 
 }  // namespace hotfire::findings

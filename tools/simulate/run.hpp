@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hal/arithmetic/denormals.hpp"
+#include "model/axis.hpp"
 #include "model/scalar.hpp"
 #include "tools/simulate/excitation.hpp"
 
@@ -46,13 +47,29 @@ bool run(const Plant& plant, std::span<const double> input, typename Plant::Stat
       input.size(), state, steps, [&](std::size_t row, int k) { plant.step(state, S(excitation(row, k))); }, sink);
 }
 
-/// Steps the axes of a vehicle through their commands, held between rows, from the steady state under the first; hands every
-/// row's state to `sink(row, state)`. Before every plant step `disturb(row, step, state, inputs)` may change the state and
-/// what else is put in. Returns false at the first reading that is not finite or ran away.
+/// Steps one hydraulic axis through its command while a measured torque [N m] turns its engine towards positive angles,
+/// interpolated between rows; otherwise as above.
+template <class Plant, class Sink>
+bool run_under_torque(const Plant& plant, std::span<const double> input, std::span<const double> torque,
+                      typename Plant::State& state, int steps, Sink&& sink) {
+  using S = typename Plant::Scalar;
+  const Excitation disturbance(torque, steps, Excitation::Between::interpolated);
+  const S& arm = plant.parameters().actuator.moment_arm;
+  return run_rows<Plant>(
+      input.size(), state, steps,
+      [&](std::size_t row, int k) {
+        const model::Coupling<S> around{S(0.0), arm, S(-disturbance(row, k))};
+        plant.step(state, S(input[row]), [&](const S&) { return around; });
+      },
+      sink);
+}
+
+/// Steps the axes of a vehicle through their commands, held between rows, from the steady state under the first and the
+/// thrust in `inputs`; hands every row's state to `sink(row, state)`. Before every plant step `disturb(row, step, state,
+/// inputs)` may change the state and what else is put in. Returns false at the first reading that is not finite or ran away.
 template <class Plant, class Disturb, class Sink>
 bool run_vehicle(const Plant& plant, const std::array<std::span<const double>, Plant::kAxes>& commands, double start,
-                 int steps, Disturb&& disturb, Sink&& sink) {
-  typename Plant::Inputs inputs;
+                 int steps, typename Plant::Inputs inputs, Disturb&& disturb, Sink&& sink) {
   const auto set_commands = [&](std::size_t row) {
     for (std::size_t i = 0; i < commands.size(); ++i) {
       inputs.commands[i] = commands[i][row];
@@ -60,7 +77,7 @@ bool run_vehicle(const Plant& plant, const std::array<std::span<const double>, P
   };
   set_commands(0);
   // A state with delays is hundreds of kilobytes: it lives on the heap.
-  const auto state = std::make_unique<typename Plant::State>(plant.steady(inputs.commands));
+  const auto state = std::make_unique<typename Plant::State>(plant.steady(inputs.commands, inputs.thrust));
   for (auto& axis : state->axes) {
     axis.clock = start;
   }
@@ -79,7 +96,7 @@ template <class Plant, class Sink>
 bool run_vehicle(const Plant& plant, const std::array<std::span<const double>, Plant::kAxes>& commands, double start,
                  int steps, Sink&& sink) {
   const auto undisturbed = [](std::size_t, int, auto&, auto&) {};
-  return run_vehicle(plant, commands, start, steps, undisturbed, sink);
+  return run_vehicle(plant, commands, start, steps, {}, undisturbed, sink);
 }
 
 }  // namespace hotfire

@@ -86,11 +86,19 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
     outputs.channels.push_back({std::string(Plant::channels[c]), unit, {}});
     outputs.channels.back().values.reserve(inputs.rows);
   }
-  const bool finite = run(plant, input.values, state, steps, [&](std::size_t, const auto& readings) {
+  const auto keep = [&](std::size_t, const auto& readings) {
     for (std::size_t c = 0; c < readings.size(); ++c) {
       outputs.channels[c + 1].values.push_back(readings[c]);
     }
-  });
+  };
+  const bool finite = [&] {
+    if constexpr (Plant::topology == "simplex") {
+      if (const Channel* torque = inputs.find("torque")) {
+        return run_under_torque(plant, input.values, torque->values, state, steps, keep);
+      }
+    }
+    return run(plant, input.values, state, steps, keep);
+  }();
   if (!finite) {
     throw FileError(fmt::format(
         "{}: the model runs away at {:.6g} s: its parameters make it unstable for this {}", inputs.path.string(),

@@ -20,8 +20,11 @@ namespace {
 
 constexpr std::string_view kCommand = "command.";
 constexpr std::string_view kVibration = "vibration.";
+constexpr std::string_view kTorque = "torque.";
+constexpr std::string_view kForce = "force.";
 
-/// The channel `kind` of every axis; null where the record has none. Refuses one of an axis that the model has not.
+/// The channel `kind` of every axis, or whatever else it is of; null where the record has none. Refuses one of an axis that
+/// the model has not.
 std::vector<const Channel*> channels_of(const Record& inputs, std::string_view kind, const std::vector<std::string>& axes) {
   std::vector<const Channel*> channels;
   channels.reserve(axes.size());
@@ -47,37 +50,108 @@ std::vector<const Channel*> command_channels(const Record& inputs, const std::ve
   return channels;
 }
 
-/// The slip velocity that a recorded vibration adds to the bearings: a sampled signal, interpolated between rows.
-class RecordedVibration {
+/// What a record has for each of `places` beside the commands, as a sampled signal that is interpolated between rows.
+class RecordedInput {
  public:
-  /// Refuses a record of a vibration for a bearing whose law has it already.
-  template <class Parameters>
-  RecordedVibration(const Record& inputs, const std::vector<std::string>& axes, const Parameters& parameters, int steps) {
-    const std::vector<const Channel*> channels = channels_of(inputs, kVibration, axes);
+  RecordedInput(const Record& inputs, std::string_view kind, const std::vector<std::string>& places, int steps) {
+    const std::vector<const Channel*> channels = channels_of(inputs, kind, places);
     for (std::size_t i = 0; i < channels.size(); ++i) {
-      if (channels[i] == nullptr) {
-        continue;
+      if (channels[i] != nullptr) {
+        signals_.push_back({i, channels[i], Excitation(channels[i]->values, steps, Excitation::Between::interpolated)});
       }
-      if (parameters.gimbals[i / 2].friction.option == model::BearingFriction<double>::kVibrated) {
-        throw FileError(
-            fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a recorded vibration are two ways "
-                        "to the same physics; give one of them",
-                        inputs.path.string(), channels[i]->name));
-      }
-      axes_.emplace_back(i, Excitation(channels[i]->values, steps, Excitation::Between::interpolated));
     }
   }
 
-  /// Its mean over plant step `step` of a row, by axis.
-  template <class Velocities>
-  void put(std::size_t row, int step, Velocities& velocities) const {
-    for (const auto& [axis, velocity] : axes_) {
-      velocities[axis] = velocity(row, step);
+  struct Signal {
+    std::size_t place;
+    const Channel* channel;
+    Excitation mean;  ///< over plant step `step` of a row
+  };
+  const std::vector<Signal>& signals() const { return signals_; }
+
+ private:
+  std::vector<Signal> signals_;
+};
+
+/// The thrust of an engine, held between rows like a command. Refuses one below zero.
+template <class Plant>
+std::array<const Channel*, Plant::kEngines> thrust_channels(const Record& inputs, const std::vector<std::string>& engines) {
+  std::array<const Channel*, Plant::kEngines> thrust{};
+  const std::vector<const Channel*> channels =
+      Plant::kEngines == 1 ? std::vector{inputs.find("thrust")} : channels_of(inputs, "thrust.", engines);
+  std::copy(channels.begin(), channels.end(), thrust.begin());
+  for (const Channel* channel : channels) {
+    const auto below = channel == nullptr
+                           ? std::ptrdiff_t{-1}
+                           : std::find_if(channel->values.begin(), channel->values.end(), [](double n) { return n < 0.0; }) -
+                                 channel->values.begin();
+    if (channel != nullptr && below < static_cast<std::ptrdiff_t>(channel->values.size())) {
+      throw FileError(fmt::format("{}: row {}: {} = {} N; allowed: at least 0", inputs.path.string(), below + 1,
+                                  channel->name, channel->values[static_cast<std::size_t>(below)]));
+    }
+  }
+  return thrust;
+}
+
+/// Everything that works on the engines of a vehicle beside its commands: recorded vibration, torque, force and thrust.
+template <class Plant>
+class Disturbances {
+ public:
+  /// Refuses a record of a vibration for a bearing whose law has it already.
+  Disturbances(const Record& inputs, const typename Plant::Parameters& parameters, int steps)
+      : parameters_(parameters),
+        vibration_(inputs, kVibration, axis_names(Plant::kEngines), steps),
+        torque_(inputs, kTorque, axis_names(Plant::kEngines), steps),
+        force_(inputs, kForce, names_of_directions(), steps),
+        thrust_(thrust_channels<Plant>(inputs, names_of_engines())) {
+    for (const auto& signal : vibration_.signals()) {
+      if (parameters.gimbals[signal.place / 2].friction.option == model::BearingFriction<double>::kVibrated) {
+        throw FileError(
+            fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a recorded vibration are two ways "
+                        "to the same physics; give one of them",
+                        inputs.path.string(), signal.channel->name));
+      }
+    }
+  }
+
+  void put(std::size_t row, int step, typename Plant::Inputs& inputs) const {
+    for (const auto& signal : vibration_.signals()) {
+      inputs.vibration[signal.place] = signal.mean(row, step);
+    }
+    for (const auto& signal : torque_.signals()) {
+      inputs.torque[signal.place] = signal.mean(row, step);
+    }
+    for (const auto& signal : force_.signals()) {
+      inputs.force[signal.place / 3](static_cast<Eigen::Index>(signal.place % 3)) = signal.mean(row, step);
+    }
+    for (std::size_t e = 0; e < thrust_.size(); ++e) {
+      inputs.thrust[e] = thrust_[e] != nullptr ? thrust_[e]->values[row] - parameters_.gimbals[e].bearing.thrust : 0.0;
     }
   }
 
  private:
-  std::vector<std::pair<std::size_t, Excitation>> axes_;
+  static std::vector<std::string> names_of_engines() {
+    std::vector<std::string> names;
+    for (int e = 1; e <= Plant::kEngines; ++e) {
+      names.push_back(fmt::format("engine{}", e));
+    }
+    return names;
+  }
+  static std::vector<std::string> names_of_directions() {
+    std::vector<std::string> names;
+    for (int e = 1; e <= Plant::kEngines; ++e) {
+      for (const char* direction : {"x", "y", "z"}) {
+        names.push_back(Plant::kEngines == 1 ? direction : fmt::format("{}{}", direction, e));
+      }
+    }
+    return names;
+  }
+
+  const typename Plant::Parameters& parameters_;
+  RecordedInput vibration_;
+  RecordedInput torque_;
+  RecordedInput force_;
+  std::array<const Channel*, Plant::kEngines> thrust_;
 };
 
 /// A record with a channel for all that a run gives, and the commands filled in.
@@ -118,19 +192,21 @@ Record simulate_on(const typename Plant::Parameters& parameters, const VehicleFi
   for (std::size_t i = 0; i < held.size(); ++i) {
     held[i] = outputs.channels[i * kColumns].values;
   }
-  const RecordedVibration vibration(inputs, axis_names(Plant::kEngines), parameters, steps);
+  const Disturbances<Plant> disturbances(inputs, parameters, steps);
+  typename Plant::Inputs first;
+  disturbances.put(0, 0, first);
   const auto disturb = [&](std::size_t row, int step, auto& state, auto& driven) {
     for (std::size_t i = 0; step == 0 && i < run.impulses.size(); ++i) {
       state.axes[i].y(Plant::AxisModel::kAngleRate) += run.impulses[i][row] / parameters.axes[i].engine.inertia;
     }
-    vibration.put(row, step, driven.vibration);
+    disturbances.put(row, step, driven);
   };
   Normal normal(run.seed);
   const model::VehicleSensors<Plant> sensors = sensors_in_place<Plant>(model.sensors, normal);
   const std::size_t strings = model.sensors.strings.size() * VehicleSensors::Strings::kStrings;
   std::optional<model::VehicleReadings<Plant>> readings;
   std::size_t rows = 0;
-  const bool finite = run_vehicle(plant, held, inputs.start, steps, disturb, [&](std::size_t row, const auto& state) {
+  const bool finite = run_vehicle(plant, held, inputs.start, steps, first, disturb, [&](std::size_t row, const auto& state) {
     if (!readings) {
       readings.emplace(sensors, state);
     }

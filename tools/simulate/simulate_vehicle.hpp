@@ -16,8 +16,13 @@ struct VehicleRun {
 };
 
 /// Runs a model of several axes open loop on the channels `command.pitch`, `command.yaw` (several engines: `command.pitch1`
-/// ...) of `inputs`, held between rows; an axis without a channel is commanded zero. Channels `vibration.pitch` ... [rad/s]
-/// are what a recorded vibration adds to the slip of the bearings. Starts in the steady state under the first row. Returns
+/// ...) of `inputs`, held between rows; an axis without a channel is commanded zero. What else works on the engines may be
+/// in the record too, interpolated between rows:
+/// - `torque.pitch` ... [N m] turns the engine towards positive angles;
+/// - `force.x`, `.y`, `.z` (several engines: `force.x1` ...) [N] pushes it at its gimbal's centre;
+/// - `vibration.pitch` ... [rad/s] adds to the slip of the bearing;
+/// and `thrust` (several engines: `thrust.engine1` ...) [N], held between rows, in place of the declared one.
+/// Starts in the steady state under the first row. Returns
 /// time, every axis's command, its piston as its potentiometer reads it, its engine's true angle and load pressure, and, of
 /// a model with strings, `string1` .. `string4` (several engines: `string1.engine1` ...): the change of each length from
 /// zero angles. Throws FileError for a record without any command or with that of an axis the model has not, and for a model

@@ -7,6 +7,7 @@
 
 #include "tools/files/model/key_groups.hpp"
 #include "tools/files/model/model_group.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 #include "tools/structure/mode_table.hpp"
 
@@ -309,6 +310,20 @@ VehicleFile load_vehicle(const std::filesystem::path& path) {
     source.refuse_missing(source.root(), "topology",
                           fmt::format("\"{}\" is not one of several axes; allowed: \"{}\", \"{}\"", topology, kTaos, kMasv));
   }
+  return vehicle;
+}
+
+VehicleFile with_thrust(VehicleFile vehicle, double thrust) {
+  if (!(thrust >= 0.0)) {
+    throw UsageError(fmt::format("--thrust {}: allowed: at least 0 N", thrust));
+  }
+  std::visit(
+      [thrust](auto& parameters) {
+        for (auto& gimbal : parameters.gimbals) {
+          gimbal.bearing.thrust = thrust;
+        }
+      },
+      vehicle.parameters);
   return vehicle;
 }
 

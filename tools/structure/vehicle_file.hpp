@@ -52,6 +52,10 @@ bool is_vehicle(const std::filesystem::path& path);
 /// another number of engines or with more modes than the plant has room for.
 VehicleFile load_vehicle(const std::filesystem::path& path);
 
+/// The vehicle with another thrust of every engine [N]: what makes ambient and hot fire one file. Throws UsageError for one
+/// below zero.
+VehicleFile with_thrust(VehicleFile vehicle, double thrust);
+
 /// What faults can be declared on the plant of a vehicle: its actuators are its axes, in their order.
 FaultyPlant faulty_plant(const VehicleFile& vehicle);
 

@@ -174,7 +174,7 @@ class Writer {
       lines += "]\n";
     }
     text += table_text("gimbal", "", lines);
-    if (gimbal.friction.coulomb_torque > 0.0) {
+    if (gimbal.friction.rubs()) {
       lines.clear();
       append_group(lines, part_group(gimbal.friction));
       text += table_text("gimbal.friction", "", lines);

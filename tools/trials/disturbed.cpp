@@ -99,6 +99,14 @@ Record hammer(const ModelFile& model, const Hammer& blow) {
   throw UsageError("a hammer test is for a model of one axis, topology simplex or direct");
 }
 
+std::vector<double> swing(const Record& record, const std::string& channel) {
+  require_channel(record, channel, "the analysis needs it");
+  std::vector<double> values = record.find(channel)->values;
+  const double rest = values.front();
+  std::for_each(values.begin(), values.end(), [rest](double& value) { value -= rest; });
+  return values;
+}
+
 Record quiescent(const ModelFile& model, const Quiescence& ambient) {
   const auto* simplex = std::get_if<SimplexParameters>(&model.parameters);
   if (simplex == nullptr) {

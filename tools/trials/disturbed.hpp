@@ -21,6 +21,10 @@ Record hammer(const ModelFile& model, const Hammer& blow);
 /// all axes. Throws UsageError for an axis the model has not.
 Record hammer(const VehicleFile& model, const std::string& axis, const Hammer& blow);
 
+/// How far a channel is from its first row: the swing about where the engine stood before a blow. Throws FileError for a
+/// record without it.
+std::vector<double> swing(const Record& record, const std::string& channel);
+
 /// A powered actuator that nobody commands, on a vehicle that is not quite still [SD 2.2, fig. 7].
 struct Quiescence {
   double torque_density = 1.0;  ///< of the random torque on the engine, one-sided [(N m)^2 / Hz]

@@ -52,6 +52,24 @@ std::vector<SineBand> green_run_sines(bool yaw) {
   return yaw ? std::vector{low, high} : std::vector{high, low};
 }
 
+Record green_run_record() {
+  const std::vector<SineBand> bands = green_run_sines();
+  const std::vector<double> low = stepped_sines({bands.back()});
+  const double seconds = static_cast<double>(low.size()) * kPeriod;
+  std::vector<double> high = stepped_sines({bands.front()}, seconds / static_cast<double>(bands.front().frequencies.size()));
+  // Whole periods make the upper band a little longer; the lower waits.
+  const std::size_t rows = std::max(low.size(), high.size());
+  const auto joined = [rows](std::vector<double> first, const std::vector<double>& second) {
+    first.resize(rows, 0.0);
+    first.insert(first.end(), second.begin(), second.end());
+    first.resize(2 * rows, 0.0);
+    return first;
+  };
+  Record record = command_record(joined(high, low), "command.pitch");
+  record.channels.push_back({"command.yaw", "rad", joined(low, high)});
+  return record;
+}
+
 std::vector<double> multisine(double amplitude, double lowest, double highest, double length, int repeats, unsigned seed) {
   const std::size_t rows = rows_of(length);
   std::vector<double> once(rows, 0.0);

@@ -27,6 +27,11 @@ std::vector<double> stepped_sines(const std::vector<SineBand>& bands, double lea
 /// equal ratios below. Pitch was driven in this order, yaw in the other.
 std::vector<SineBand> green_run_sines(bool yaw = false);
 
+/// The whole profile, both axes at once [GF slide Green Run Hot Fire, the table]: pitch at 7 to 14 Hz and 0.8 deg beside yaw
+/// at 0.40 to 6.25 Hz and 0.4 deg, then the other way round. The upper band dwells longer on each frequency than the lower,
+/// so that both end together. Channels `command.pitch` and `command.yaw`.
+Record green_run_record();
+
 /// A multisine that repeats every `length` seconds, `repeats` times: every multiple of 1 / length between `lowest` and
 /// `highest` [Hz], equal amplitudes, random phases from `seed`, scaled to a peak of `amplitude` [rad].
 std::vector<double> multisine(double amplitude, double lowest, double highest, double length, int repeats, unsigned seed);

@@ -25,9 +25,17 @@ delay = 0.0123
 law = "table"
 load = [0.0, 1234.5, 9876.1]
 table_stiffness = [4.1e7, 7.7e7, 1.21e8]
+[gimbal]
+thrust = 1.5e6
+rated_thrust = 1.86e6
+dead_load = -3.4e4
+unloaded_structure = 0.41
+yaw_misalignment = 2e-3
 [gimbal.friction]
 law = "vibrated_lugre"
-coulomb_torque = 12.3e3
+coulomb_torque = 2.3e3
+coefficient = 0.071
+viscous = 123.0
 vibration_ratio = 0.37
 )";
 

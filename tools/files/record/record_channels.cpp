@@ -16,7 +16,7 @@ struct KnownChannel {
   std::string_view unit;  ///< empty: the channel keeps the unit it has
 };
 
-constexpr std::array<KnownChannel, 13> kKnownChannels{{{"time", "s"},
+constexpr std::array<KnownChannel, 15> kKnownChannels{{{"time", "s"},
                                                        {"command", "rad"},
                                                        {"current", "A"},
                                                        {"piston", "m"},
@@ -28,7 +28,9 @@ constexpr std::array<KnownChannel, 13> kKnownChannels{{{"time", "s"},
                                                        {"string2", "m"},
                                                        {"string3", "m"},
                                                        {"string4", "m"},
-                                                       {"vibration", "m/s^2"}}};
+                                                       {"vibration", "m/s^2"},
+                                                       {"torque", "N.m"},
+                                                       {"thrust", "N"}}};
 
 std::vector<std::string_view> known_names() {
   std::vector<std::string_view> names;
@@ -65,13 +67,24 @@ bool is_axis(std::string_view text) {
   return false;
 }
 
-/// Refuses what follows the point in a channel's name if it is neither an axis
-/// nor, of a string, an engine.
+/// What follows the point in `force.x`, `force.z3`: a direction, of an engine where there are several.
+bool is_direction(std::string_view text) {
+  return !text.empty() && text[0] >= 'x' && text[0] <= 'z' && (text.size() == 1 || is_engine(text.substr(1)));
+}
+
+/// Refuses what follows the point in a channel's name if it is neither an axis nor, of a string or a thrust, an engine, nor,
+/// of a force, a direction.
 void require_place(const CsvLines& lines, std::size_t column, std::string_view name, std::size_t point) {
   constexpr std::string_view kEngine = "engine";
   const std::string_view own = name.substr(0, point);
   const std::string_view place = name.substr(point + 1);
-  if (own.starts_with("string")) {
+  if (own == "force") {
+    if (!is_direction(place)) {
+      lines.refuse(fmt::format(
+          "column {} \"{}\": no direction; allowed after {}: .x, .y, .z, or .x1, .y1, .z1, .x2 ... of several engines",
+          column, shown(name), own));
+    }
+  } else if (own.starts_with("string") || own == "thrust") {
     if (!place.starts_with(kEngine) || !is_engine(place.substr(kEngine.size()))) {
       lines.refuse(
           fmt::format("column {} \"{}\": no engine; allowed after {}: "
@@ -98,6 +111,10 @@ KnownChannel known_channel(const CsvLines& lines, std::size_t column, std::strin
   // Of an axis it is the slip of a bearing.
   if (found != kKnownChannels.end() && own == "vibration" && point != std::string_view::npos) {
     return {"vibration", "rad/s"};
+  }
+  // Of a vehicle it is in SI.
+  if (found != kKnownChannels.end() && own == "force" && point != std::string_view::npos) {
+    return {"force", "N"};
   }
   if (found != kKnownChannels.end()) {
     return *found;

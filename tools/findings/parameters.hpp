@@ -5,9 +5,13 @@
 
 #include "model/keys.hpp"
 #include "tools/files/model/model_file.hpp"
+#include "tools/findings/finding.hpp"
 #include "tools/trials/sweep.hpp"
 
 namespace hotfire::findings {
+
+/// The axis that a test of one axis drives.
+inline const std::string kPitch = "pitch";
 
 /// The parameters of a set of one hydraulic axis. Throws FileError for any other topology.
 SimplexParameters& axis_of(ModelFile& model);
@@ -41,12 +45,26 @@ ModelFile without_effects(ModelFile model);
 std::vector<trials::ChannelSweep> swept(const ModelFile& model, const std::vector<double>& command, double lowest,
                                         double highest);
 
-/// The Green Run profile on a model: the responses of piston and engine, both amplitudes joined.
+/// Runs stepped sines on one axis of a vehicle, the others uncommanded, and analyses them.
+std::vector<trials::ChannelSweep> swept(const VehicleFile& model, const std::string& axis,
+                                        const std::vector<double>& command, double lowest, double highest);
+
+/// The Green Run profile on both axes of an engine at once: the responses of piston and engine of one axis, both amplitudes
+/// joined. `record` is what `simulate` gives for `trials::green_run_record`.
 struct GreenRun {
   trials::ChannelSweep piston;
   trials::ChannelSweep engine;
 };
-GreenRun green_run(const ModelFile& model);
+GreenRun green_run(const VehicleFile& model, const Record& record, const std::string& axis);
+
+/// A notch that a row stands or falls with [Hz].
+double notch_of(const trials::ChannelSweep& sweep);
+
+/// Phase of a response at the point nearest to a frequency less that of another, within half a turn [deg].
+double phase_between(const trials::ChannelSweep& sweep, const trials::ChannelSweep& other, double frequency);
+
+/// Gain of a response at the point nearest to a frequency over that of another [dB].
+double gain_between(const trials::ChannelSweep& sweep, const trials::ChannelSweep& other, double frequency);
 
 /// The point of a response that is nearest to a frequency.
 const analysis::ResponsePoint& nearest(const trials::ChannelSweep& sweep, double frequency);

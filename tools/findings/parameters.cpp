@@ -1,12 +1,14 @@
-#include "tools/findings/one_axis.hpp"
+#include "tools/findings/parameters.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/profiles.hpp"
 
 namespace hotfire::findings {
@@ -34,12 +36,34 @@ std::vector<trials::ChannelSweep> swept(const ModelFile& model, const std::vecto
   return trials::analyse_sweep(simulate(model, trials::command_record(command)), goal);
 }
 
-GreenRun green_run(const ModelFile& model) {
+std::vector<trials::ChannelSweep> swept(const VehicleFile& model, const std::string& axis,
+                                        const std::vector<double>& command, double lowest, double highest) {
   trials::SweepGoal goal;
+  goal.axis = axis;
+  goal.moment_arm = moment_arm_of(model, axis);
+  goal.lowest = lowest;
+  goal.highest = highest;
+  return trials::analyse_sweep(simulate(model, trials::command_record(command, "command." + axis)), goal);
+}
+
+GreenRun green_run(const VehicleFile& model, const Record& record, const std::string& axis) {
+  trials::SweepGoal goal;
+  goal.axis = axis;
+  goal.moment_arm = moment_arm_of(model, axis);
   goal.lowest = 5.0;
   goal.highest = 14.0;
-  const auto sweeps = swept(model, trials::stepped_sines(trials::green_run_sines()), goal.lowest, goal.highest);
+  const auto sweeps = trials::analyse_sweep(record, goal);
   return {trials::joined_sweep(sweeps, "piston", goal), trials::joined_sweep(sweeps, "engine", goal)};
+}
+
+double notch_of(const trials::ChannelSweep& sweep) { return sweep.notch ? sweep.notch->frequency : kNone; }
+
+double phase_between(const trials::ChannelSweep& sweep, const trials::ChannelSweep& other, double frequency) {
+  return std::arg(nearest(sweep, frequency).gain / nearest(other, frequency).gain) * 180.0 / std::numbers::pi;
+}
+
+double gain_between(const trials::ChannelSweep& sweep, const trials::ChannelSweep& other, double frequency) {
+  return analysis::gain_decibels(nearest(sweep, frequency)) - analysis::gain_decibels(nearest(other, frequency));
 }
 
 const analysis::ResponsePoint& nearest(const trials::ChannelSweep& sweep, double frequency) {
