@@ -35,7 +35,7 @@ const TaosParameters& explainable(const VehicleFile& vehicle) {
         "records of its two axes");
   }
   const auto& gimbal = taos->gimbals.front();
-  if (gimbal.friction.coulomb_torque > 0.0 || gimbal.vibration.pitch_velocity > 0.0 || gimbal.vibration.yaw_velocity > 0.0 ||
+  if (gimbal.friction.rubs() || gimbal.vibration.pitch_velocity > 0.0 || gimbal.vibration.yaw_velocity > 0.0 ||
       gimbal.compliant) {
     refuse(
         vehicle,
