@@ -104,6 +104,40 @@ TEST(WildDraws, TheSameStreamGivesTheSameLaw) {
   CHECK_TRUE(words.size() > 35);
 }
 
+// Each beside a neighbour that is no listed effect.
+TEST(WildDraws, AListedEffectAndAGainAreKnownAndTheirNeighboursAreNot) {
+  const auto law = [](WildSite site, WildArgument argument, WildMemory::Kind kind) {
+    WildLaw drawn;
+    drawn.site = site;
+    drawn.argument = argument;
+    drawn.memory.kind = kind;
+    if (kind == WildMemory::Kind::plays || kind == WildMemory::Kind::stops) {
+      drawn.memory.plays = {{0.1, 1.0}};
+    }
+    return drawn;
+  };
+  using Kind = WildMemory::Kind;
+  CHECK_TRUE(is_known_effect(law(WildSite::flow, WildArgument::spool, Kind::none)));
+  CHECK_TRUE(is_known_effect(law(WildSite::command, WildArgument::command, Kind::delay)));
+  CHECK_FALSE(is_known_effect(law(WildSite::command, WildArgument::error, Kind::delay)));
+  CHECK_TRUE(is_known_effect(law(WildSite::command, WildArgument::command, Kind::rate_limit)));
+  CHECK_FALSE(is_known_effect(law(WildSite::valve, WildArgument::spool, Kind::rate_limit)));
+  CHECK_TRUE(is_known_effect(law(WildSite::engine_sensor, WildArgument::angle, Kind::first_order)));
+  CHECK_FALSE(is_known_effect(law(WildSite::engine_sensor, WildArgument::angle, Kind::second_order)));
+  WildLaw friction = law(WildSite::engine_torque, WildArgument::angle, Kind::stops);
+  CHECK_TRUE(is_known_effect(friction));
+  friction.memory.plays.push_back({0.3, 1.0});
+  CHECK_FALSE(is_known_effect(friction));
+  WildLaw play = law(WildSite::valve_command, WildArgument::valve_command, Kind::plays);
+  play.replaces = true;
+  CHECK_TRUE(is_known_effect(play));
+  WildLaw lap = law(WildSite::valve, WildArgument::spool, Kind::none);
+  lap.curve = {WildCurve::Shape::dead_zone, 1.0, {{0.1, 0.0, 0.0}}};
+  CHECK_TRUE(is_known_effect(lap));
+  lap.curve.shape = WildCurve::Shape::stairs;
+  CHECK_FALSE(is_known_effect(lap));
+}
+
 TEST(WildDraws, AStopOverThePositionOfTheEngineContainsItsFriction) {
   WildLaw law;
   law.site = WildSite::engine_torque;

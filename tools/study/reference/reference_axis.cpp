@@ -113,6 +113,25 @@ struct Edge {
   double command = 0.0;
 };
 
+/// The changes of the axes' commands in row `i`, of what was sent until then, in order. The delayed command has its edges
+/// `offset` after the samples, and is `late` samples behind.
+std::vector<Edge> edges_of_row(const std::vector<const ReferenceAxis*>& axes, const std::vector<std::vector<double>>& sent,
+                               std::ptrdiff_t i, double sample) {
+  std::vector<Edge> edges;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    const auto earlier = [&](std::ptrdiff_t k) { return k < 0 ? 0.0 : sent[axis][static_cast<std::size_t>(k)]; };
+    const double delay = axes[axis]->delay + axes[axis]->unlisted.dead_time * std::abs(earlier(i));
+    const auto late = static_cast<std::ptrdiff_t>(delay / sample);
+    const double offset = delay - static_cast<double>(late) * sample;
+    if (offset > 0.0) {
+      edges.push_back({0.0, axis, earlier(i - late - 1)});
+    }
+    edges.push_back({std::max(0.0, offset), axis, earlier(i - late)});
+  }
+  std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.offset < b.offset; });
+  return edges;
+}
+
 /// Any number of axes together, each under its commands, or under what a controller makes of them.
 std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& axes,
                                      const std::vector<const std::vector<double>*>& commands, double sample, double settling,
@@ -139,22 +158,12 @@ std::vector<ReferenceRows> integrate(const std::vector<const ReferenceAxis*>& ax
   std::vector<std::vector<double>> sent(axes.size());
   for (std::ptrdiff_t i = 0; i < std::ssize(*commands.front()); ++i) {
     const double start = settling + static_cast<double>(i) * sample;
-    std::vector<Edge> edges;
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
       const double asked = (*commands[axis])[static_cast<std::size_t>(i)];
       const std::array<double, 3> last = rows[axis].empty() ? std::array<double, 3>{} : rows[axis].back();
       sent[axis].push_back(controller ? controller(asked, last) : asked);
-      const auto earlier = [&](std::ptrdiff_t k) { return k < 0 ? 0.0 : sent[axis][static_cast<std::size_t>(k)]; };
-      // The delayed command has its edges `offset` after the samples, and is `late` samples behind.
-      const double delay = axes[axis]->delay + axes[axis]->unlisted.dead_time * std::abs(earlier(i));
-      const auto late = static_cast<std::ptrdiff_t>(delay / sample);
-      const double offset = delay - static_cast<double>(late) * sample;
-      if (offset > 0.0) {
-        edges.push_back({0.0, axis, earlier(i - late - 1)});
-      }
-      edges.push_back({std::max(0.0, offset), axis, earlier(i - late)});
     }
-    std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.offset < b.offset; });
+    const std::vector<Edge> edges = edges_of_row(axes, sent, i, sample);
     auto edge = edges.cbegin();
     for (; edge != edges.cend() && edge->offset == 0.0; ++edge) {
       set_command(problems, edge->axis, integrator, edge->command);

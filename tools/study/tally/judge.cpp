@@ -179,6 +179,7 @@ Judgement judge(const std::filesystem::path& folder, unsigned threads, const std
   }
   if (similarity) {
     std::vector<Record> other;
+    other.reserve(records.size());
     for (const Record& record : records) {
       other.push_back(similar(record, *similarity));
     }
