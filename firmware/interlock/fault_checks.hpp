@@ -12,19 +12,29 @@
 
 namespace hotfire::firmware {
 
-/// What a lab allows. A position is that of a piston [m], a command what the profile asks of it [m], ages in ns.
-struct FaultLimits {
-  std::int64_t command_age_ns = 0;  ///< of the newest command
-  std::int64_t reading_age_ns = 0;  ///< of each reading
-  double lowest_reading = 0.0;      ///< what the sensor can give
-  double highest_reading = 0.0;
-  double disagreement = 0.0;     ///< between the two readings of one actuator
+/// What a lab allows of one actuator. A position is that of a piston [m].
+struct ActuatorLimits {
+  std::int64_t reading_age_ns = 0;
   double lowest_position = 0.0;  ///< where the piston may be, and be sent
   double highest_position = 0.0;
+  double speed = 0.0;  ///< measured over `speed_cycles` [m/s]
+};
+
+/// What a lab allows. A command is what the profile asks of a piston [m].
+struct FaultLimits {
+  static constexpr std::uint64_t kMostSpeedCycles = 64;
+
+  std::int64_t command_age_ns = 0;  ///< of the newest command
+  double lowest_reading = 0.0;      ///< what the sensor can give
+  double highest_reading = 0.0;
+  double disagreement = 0.0;    ///< between the two readings of one actuator
   double command_rate = 0.0;    ///< [m/s]
   double position_error = 0.0;  ///< between command and position
   std::uint64_t position_error_cycles =
-      0;  ///< for longer than this in a row: an actuator lags in every step it is asked for
+      0;                               ///< for longer than this in a row: an actuator lags in every step it is asked for
+  std::uint64_t speed_cycles = 1;      ///< over which a speed is measured; kMostSpeedCycles at most
+  std::uint64_t read_back_cycles = 0;  ///< for which a line may read back other than it is commanded: contactors take time
+  std::array<ActuatorLimits, hal::kMaxActuators> actuators{};
 };
 
 /// One actuator in one cycle: what it is asked for, and its two redundant readings.
@@ -48,6 +58,9 @@ struct ObservedRig {
   bool hydraulic_enable = true;
   bool bus_off = false;
   bool bus_down = false;
+  bool take_back_refused = false;       ///< a command is still before the bus, and the kernel does not take it back
+  bool supply_reads_other = false;      ///< the supply is not what its line was set to in the cycle before
+  bool fault_line_reads_other = false;  ///< as the supply
 };
 
 /// Finds what is wrong in a cycle, before anything is sent in it. A value that is not finite is that fault and no other of
@@ -71,9 +84,15 @@ class FaultChecks {
     found.add_if(!rig.hydraulic_enable, Fault::hydraulic_enable_lost);
     found.add_if(rig.bus_off, Fault::bus_off);
     found.add_if(rig.bus_down, Fault::bus_down);
+    found.add_if(rig.take_back_refused, Fault::take_back_refused);
+    supply_other_ = rig.supply_reads_other ? supply_other_ + 1 : 0;
+    fault_line_other_ = rig.fault_line_reads_other ? fault_line_other_ + 1 : 0;
+    found.add_if(supply_other_ > limits_.read_back_cycles, Fault::supply_read_back);
+    found.add_if(fault_line_other_ > limits_.read_back_cycles, Fault::fault_read_back);
     const std::size_t count = std::min(actuators.size(), hal::kMaxActuators);
     for (std::size_t i = 0; i < count; ++i) {
-      found |= look_at(actuators[i], last_[i]);
+      found |= look_at(actuators[i], limits_.actuators[i], last_[i]) |
+               look_at_speed(actuators[i], limits_.actuators[i], tracks_[i]);
     }
     return found;
   }
@@ -88,7 +107,29 @@ class FaultChecks {
     std::uint64_t error_cycles = 0;
   };
 
-  FaultSet look_at(const ObservedActuator& actuator, Last& last) noexcept {
+  /// Where an actuator was in the last cycles, that of `cycles` at the place of its remainder.
+  struct Track {
+    std::array<double, FaultLimits::kMostSpeedCycles> positions{};
+    std::uint64_t cycles = 0;
+  };
+
+  FaultSet look_at_speed(const ObservedActuator& actuator, const ActuatorLimits& limits, Track& track) const noexcept {
+    const double position = 0.5 * (actuator.readings[0] + actuator.readings[1]);
+    if (!std::isfinite(position)) {
+      track.cycles = 0;
+      return {};
+    }
+    double& before = track.positions[track.cycles % limits_.speed_cycles];
+    const bool is_known = track.cycles >= limits_.speed_cycles;
+    const double speed = std::abs(position - before) / (static_cast<double>(limits_.speed_cycles) * period_);
+    before = position;
+    ++track.cycles;
+    FaultSet found;
+    found.add_if(is_known && !(speed <= limits.speed), Fault::speed);
+    return found;
+  }
+
+  FaultSet look_at(const ObservedActuator& actuator, const ActuatorLimits& limits, Last& last) noexcept {
     const auto& [first, second] = actuator.readings;
     if (!std::isfinite(first) || !std::isfinite(second) || !std::isfinite(actuator.command)) {
       last = {};
@@ -98,26 +139,31 @@ class FaultChecks {
     for (std::size_t i = 0; i < actuator.readings.size(); ++i) {
       const double reading = actuator.readings[i];
       found.add_if(!(reading >= limits_.lowest_reading && reading <= limits_.highest_reading), Fault::out_of_range);
-      found.add_if(!(actuator.reading_ages_ns[i] <= limits_.reading_age_ns), Fault::stale_sensor);
-      found.add_if(!within(reading), Fault::limit);
+      found.add_if(!(actuator.reading_ages_ns[i] <= limits.reading_age_ns), Fault::stale_sensor);
+      found.add_if(!within(reading, limits), Fault::limit);
     }
     found.add_if(!(std::abs(first - second) <= limits_.disagreement), Fault::readings_disagree);
-    found.add_if(!within(actuator.command), Fault::limit);
+    found.add_if(!within(actuator.command, limits), Fault::limit);
     const double rate = last.has_command ? std::abs(actuator.command - last.command) / period_ : 0.0;
-    found.add_if(!(rate <= limits_.command_rate), Fault::limit);
+    // A line whose rate is the limit differs from it by the rounding of two positions.
+    constexpr double kRounding = 1.0 + 1e-9;
+    found.add_if(!(rate <= limits_.command_rate * kRounding), Fault::limit);
     const bool astray = !(std::abs(actuator.command - 0.5 * (first + second)) <= limits_.position_error);
     last = {actuator.command, true, astray ? last.error_cycles + 1 : 0};
     found.add_if(last.error_cycles > limits_.position_error_cycles, Fault::position_error);
     return found;
   }
 
-  bool within(double position) const noexcept {
-    return position >= limits_.lowest_position && position <= limits_.highest_position;
+  static bool within(double position, const ActuatorLimits& limits) noexcept {
+    return position >= limits.lowest_position && position <= limits.highest_position;
   }
 
   FaultLimits limits_;
   double period_;
   std::array<Last, hal::kMaxActuators> last_{};
+  std::array<Track, hal::kMaxActuators> tracks_{};
+  std::uint64_t supply_other_ = 0;
+  std::uint64_t fault_line_other_ = 0;
 };
 
 }  // namespace hotfire::firmware

@@ -27,13 +27,17 @@ enum class Fault : std::uint8_t {
   limit = 13,
   not_finite = 14,
   recorder_full = 15,
+  take_back_refused = 16,
+  supply_read_back = 17,
+  fault_read_back = 18,
+  speed = 19,
   second_sender = 36,
   command_not_answered = 37,
   heartbeat_lost = 38,
   not_authentic = 39,
 };
 
-/// Every number is below this.
+/// Every number is below this: a set of faults is one word.
 inline constexpr std::size_t kFaultNumbers = 64;
 
 struct FaultText {
@@ -42,8 +46,8 @@ struct FaultText {
   std::string_view meaning;  ///< one line, for a log
 };
 
-/// In the order of their numbers.
-inline constexpr std::array<FaultText, 19> kFaults{{
+/// In the order of their numbers, which may have gaps.
+inline constexpr auto kFaults = std::to_array<FaultText>({
     {Fault::stale_command, "stale command", "no new command within its age limit"},
     {Fault::stale_sensor, "stale sensor", "a reading is older than its age limit"},
     {Fault::out_of_range, "out of range", "a reading is outside what its sensor can give"},
@@ -59,16 +63,24 @@ inline constexpr std::array<FaultText, 19> kFaults{{
     {Fault::limit, "limit", "a command, its rate or a position is beyond its limit"},
     {Fault::not_finite, "non-finite state", "a value is not a number, or infinite"},
     {Fault::recorder_full, "recorder full", "cycles are no longer recorded"},
+    {Fault::take_back_refused, "take-back refused",
+     "a command is still before the bus and the kernel does not take it back"},
+    {Fault::supply_read_back, "supply read-back", "the supply is on while it is commanded off, or off while it is on"},
+    {Fault::fault_read_back, "fault-line read-back", "the fault line does not carry what it is commanded"},
+    {Fault::speed, "speed", "an actuator moves faster than its limit"},
     {Fault::second_sender, "second sender", "two nodes send the frames of one message"},
     {Fault::command_not_answered, "command not answered", "a node does not say that it has the newest commands"},
     {Fault::heartbeat_lost, "heartbeat lost", "the controller has stopped giving signs of life"},
     {Fault::not_authentic, "not authentic", "a frame comes from who has not the key, or is a replayed one"},
-}};
+});
 
 /// Of a fault of the list.
 constexpr const FaultText& text_of(Fault fault) noexcept {
   return *std::find_if(kFaults.begin(), kFaults.end(), [fault](const FaultText& text) { return text.fault == fault; });
 }
+
+/// A count for each fault, by its number.
+using FaultCounts = std::array<std::uint64_t, kFaultNumbers>;
 
 /// Some of the faults.
 class FaultSet {
@@ -88,6 +100,11 @@ class FaultSet {
     bits_ |= other.bits_;
     return *this;
   }
+  constexpr FaultSet& operator&=(FaultSet other) noexcept {
+    bits_ &= other.bits_;
+    return *this;
+  }
+  friend constexpr FaultSet operator&(FaultSet one, FaultSet other) noexcept { return one &= other; }
   friend constexpr FaultSet operator|(FaultSet one, FaultSet other) noexcept { return one |= other; }
   friend constexpr bool operator==(FaultSet one, FaultSet other) noexcept = default;
 
@@ -103,5 +120,9 @@ class FaultSet {
 
   std::uint64_t bits_ = 0;
 };
+
+/// Faults of what should be off while nothing is driven: they make a safe rig faulted too.
+inline constexpr FaultSet kFaultsOfASafeRig =
+    FaultSet(Fault::take_back_refused) | Fault::supply_read_back | Fault::fault_read_back;
 
 }  // namespace hotfire::firmware

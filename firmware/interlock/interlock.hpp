@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
 
+#include "firmware/interlock/button.hpp"
 #include "firmware/interlock/faults.hpp"
 
 namespace hotfire::firmware {
@@ -16,122 +18,160 @@ namespace hotfire::firmware {
 enum class RigState : std::uint8_t { safe, armed, running, stopping, faulted };
 inline constexpr std::array<std::string_view, 5> kRigStates{"safe", "armed", "running", "stopping", "faulted"};
 
-/// What an interlock sees in one cycle.
-struct InterlockInputs {
-  FaultSet causes;       ///< faults whose cause is present now
-  bool arm = false;      ///< a person's switch: acts when it goes on, not while it is on
-  bool start = false;    ///< as `arm`
-  bool stop = false;     ///< acts while it is on; also when the profile has ended
-  bool at_rest = false;  ///< every actuator stands still
+/// Whether commands may be sent and the supply is on.
+constexpr bool drives(RigState state) noexcept { return state != RigState::safe && state != RigState::faulted; }
+
+/// How an interlock is set up. Times are in cycles.
+struct InterlockSettings {
+  bool start_is_arm = false;        ///< there is no button to start with: the arm button is held for `start_hold`
+  std::uint32_t debounce = 0;       ///< for which a button has to say the same
+  std::uint32_t start_hold = 1;     ///< for which the start button has to be held at least
+  std::uint32_t longest_press = 1;  ///< a button that is on for longer is stuck
+  std::uint32_t least_armed = 0;    ///< before a start may begin
+  std::uint32_t most_armed = 1;     ///< after which an armed rig is safe again
+  std::uint32_t most_stopping = 0;  ///< after which a stopping rig is safe, whether it is at rest or not
 };
 
-/// What may be done in the cycle that these inputs are of.
-struct InterlockOutputs {
-  RigState state = RigState::safe;
-  bool drive = false;      ///< commands may be sent and the supply is enabled
-  bool fault_out = false;  ///< the fault line to the rest of the rig
-  FaultSet faults;         ///< kept since the last arming
-  Fault first = Fault{};   ///< the one that came first, 0 if none; of several in one cycle the lowest number
+/// What an interlock sees in one cycle.
+struct InterlockInputs {
+  FaultSet causes;             ///< faults whose cause is present now
+  bool arm = false;            ///< what the line of the arm button says
+  bool arm_changed = false;    ///< that line has changed since the cycle before, for however short a time
+  bool start = false;          ///< as `arm`
+  bool start_changed = false;  ///< as `arm_changed`
+  bool stop = false;           ///< acts while it is on; also when the profile has ended
+  bool at_rest = false;        ///< every actuator stands still
 };
+
+/// Everything that an interlock remembers from one cycle to the next. The default is what a program starts with.
+struct InterlockMemory {
+  RigState state = RigState::safe;
+  std::uint32_t cycles = 0;  ///< in a state that is timed: how many it has lasted
+  Contact arm_contact;
+  Contact start_contact;
+  Button arm;
+  Button start;
+  FaultSet faults;        ///< kept since the last arming
+  Fault first = Fault{};  ///< the one that came first, 0 if none; of several in one cycle the lowest number
+
+  friend constexpr bool operator==(const InterlockMemory&, const InterlockMemory&) noexcept = default;
+};
+
+/// What the next cycle remembers, and what of this cycle only this cycle is told.
+struct InterlockDecision {
+  InterlockMemory memory;
+  bool refused_press = false;  ///< the arm button was pressed while something forbade arming
+};
+
+namespace interlock_rules {
+
+constexpr InterlockMemory entered(InterlockMemory memory, RigState state) noexcept {
+  if (state == memory.state) {
+    const bool timed = state == RigState::armed || state == RigState::stopping;
+    memory.cycles += timed ? 1 : 0;
+    return memory;
+  }
+  // The buttons have to be seen off anew: what they showed was meant for the state before.
+  memory.arm = memory.start = {};
+  memory.cycles = state == RigState::armed || state == RigState::stopping ? 1 : 0;
+  memory.state = state;
+  return memory;
+}
+
+constexpr InterlockMemory with_faults(InterlockMemory memory, FaultSet causes) noexcept {
+  const auto* const lowest =
+      std::find_if(kFaults.begin(), kFaults.end(), [&](const FaultText& text) { return causes.has(text.fault); });
+  memory.first = memory.faults.any() ? memory.first : lowest->fault;
+  memory.faults |= causes;
+  return memory;
+}
+
+/// The state that follows if no cause is present. `arm` and `start`: a press was completed in this cycle.
+constexpr RigState next_state(const InterlockSettings& settings, const InterlockMemory& memory,
+                              const InterlockInputs& inputs, bool arm, bool start) noexcept {
+  switch (memory.state) {
+    case RigState::safe:
+    case RigState::faulted:
+      return arm ? RigState::armed : memory.state;
+    case RigState::armed:
+      if (inputs.stop || memory.cycles >= settings.most_armed) {
+        return RigState::safe;
+      }
+      return start ? RigState::running : RigState::armed;
+    case RigState::running:
+      return inputs.stop ? RigState::stopping : RigState::running;
+    case RigState::stopping:
+      return inputs.at_rest || memory.cycles > settings.most_stopping ? RigState::safe : RigState::stopping;
+  }
+  return RigState::faulted;
+}
+
+}  // namespace interlock_rules
 
 /// Decides whether anything may be driven. Rules, in this order:
 ///
 /// 1. A cause that is present while anything is driven makes the rig `faulted` in the same cycle; nothing is driven any
-/// more.
-/// 2. Nothing leaves `faulted` or `safe` but a person's arming: the switch must have been seen off in that state, and then
-/// goes
-///    on, with no cause present. So a switch left on, a program that starts anew or a cause that goes away arms nothing. An
-///    arming that is refused needs the switch off and on again.
-/// 3. `armed` to `running`: `start` goes on, having been seen off in `armed`.
+/// more. Those of `kFaultsOfASafeRig` do so in `safe` too.
+/// 2. Nothing leaves `faulted` or `safe` but a person's arming: a press of the arm button (`press`), from its beginning to
+/// its end in that state, with no cause present and no stop asked for meanwhile.
+/// 3. `armed` to `running`: a press of the start button that begins no sooner than `least_armed` after the arming. After
+/// `most_armed` the rig is `safe` again.
 /// 4. `stop` brings `armed` to `safe` and `running` to `stopping`, which ends in `safe` when the actuators are at rest, or
-/// after
-///    `most_stopping_cycles` whether they are or not.
+/// after `most_stopping` whether they are or not.
 ///
-/// Pure logic: no clock, no bus, no allocation. Starts `safe`.
+/// A function of its arguments: no clock, no bus, no allocation.
+constexpr InterlockDecision decide(const InterlockSettings& settings, InterlockMemory memory,
+                                   const InterlockInputs& inputs) noexcept {
+  using namespace interlock_rules;
+  memory.arm_contact = settled(memory.arm_contact, inputs.arm, inputs.arm_changed, settings.debounce);
+  memory.start_contact = settings.start_is_arm
+                             ? memory.arm_contact
+                             : settled(memory.start_contact, inputs.start, inputs.start_changed, settings.debounce);
+  const bool driven = drives(memory.state);
+  const bool forbidden = inputs.causes.any() || inputs.stop;
+  const Press arm =
+      driven ? Press::none : press(memory.arm, memory.arm_contact.on, true, forbidden, {1, settings.longest_press});
+  const Press start = memory.state != RigState::armed
+                          ? Press::none
+                          : press(memory.start, memory.start_contact.on, memory.cycles >= settings.least_armed, forbidden,
+                                  {settings.start_hold, settings.longest_press});
+  const FaultSet causes = memory.state == RigState::safe ? inputs.causes & kFaultsOfASafeRig : inputs.causes;
+  if (causes.any()) {
+    return {entered(with_faults(memory, inputs.causes), RigState::faulted), arm == Press::refused};
+  }
+  const RigState state = next_state(settings, memory, inputs, arm == Press::good, start == Press::good);
+  if (!driven && drives(state)) {
+    memory.faults = {};
+    memory.first = {};
+  }
+  return {entered(memory, state), arm == Press::refused};
+}
+
+/// What may be done in the cycle that a decision is of.
+struct InterlockOutputs {
+  RigState state = RigState::safe;
+  bool drive = false;          ///< commands may be sent and the supply is enabled
+  bool fault_out = false;      ///< the fault line to the rest of the rig
+  bool refused_press = false;  ///< as in `InterlockDecision`
+  FaultSet faults;             ///< as in `InterlockMemory`
+  Fault first = Fault{};
+};
+
+/// `decide`, cycle after cycle. Starts `safe`.
 class Interlock {
  public:
-  explicit Interlock(std::uint64_t most_stopping_cycles) noexcept : most_stopping_cycles_(most_stopping_cycles) {}
+  explicit Interlock(const InterlockSettings& settings) noexcept : settings_(settings) {}
 
   InterlockOutputs step(const InterlockInputs& inputs) noexcept {
-    const bool arm = arm_.goes_on(inputs.arm);
-    const bool start = start_.goes_on(inputs.start);
-    const RigState before = outputs_.state;
-    if (inputs.causes.any() && before != RigState::safe) {
-      keep(inputs.causes);
-      enter(RigState::faulted);
-    } else {
-      enter(next(inputs, arm, start));
-    }
-    return outputs_;
+    const InterlockDecision decision = decide(settings_, memory_, inputs);
+    memory_ = decision.memory;
+    return {memory_.state,          drives(memory_.state), memory_.state == RigState::faulted,
+            decision.refused_press, memory_.faults,        memory_.first};
   }
-
-  const InterlockOutputs& outputs() const noexcept { return outputs_; }
 
  private:
-  /// A switch that acts when it goes on, and only if it was seen off since the state began.
-  class Switch {
-   public:
-    bool goes_on(bool on) noexcept {
-      const bool acts = on && seen_off_;
-      seen_off_ = !on;
-      return acts;
-    }
-    void forget() noexcept { seen_off_ = false; }
-
-   private:
-    bool seen_off_ = false;
-  };
-
-  RigState next(const InterlockInputs& inputs, bool arm, bool start) noexcept {
-    switch (outputs_.state) {
-      case RigState::safe:
-      case RigState::faulted:
-        if (arm && !inputs.causes.any()) {
-          outputs_.faults = {};
-          outputs_.first = {};
-          return RigState::armed;
-        }
-        return outputs_.state;
-      case RigState::armed:
-        if (inputs.stop) {
-          return RigState::safe;
-        }
-        return start ? RigState::running : RigState::armed;
-      case RigState::running:
-        return inputs.stop ? RigState::stopping : RigState::running;
-      case RigState::stopping:
-        return inputs.at_rest || ++stopping_cycles_ > most_stopping_cycles_ ? RigState::safe : RigState::stopping;
-    }
-    return RigState::faulted;
-  }
-
-  void enter(RigState state) noexcept {
-    if (state != outputs_.state) {
-      // The switches have to be seen off anew: what they showed was meant for the state before.
-      arm_.forget();
-      start_.forget();
-      stopping_cycles_ = 0;
-    }
-    outputs_.state = state;
-    outputs_.drive = state != RigState::safe && state != RigState::faulted;
-    outputs_.fault_out = state == RigState::faulted;
-  }
-
-  void keep(FaultSet causes) noexcept {
-    for (const FaultText& text : kFaults) {
-      if (!outputs_.faults.any() && causes.has(text.fault)) {
-        outputs_.first = text.fault;
-        break;
-      }
-    }
-    outputs_.faults |= causes;
-  }
-
-  std::uint64_t most_stopping_cycles_;
-  std::uint64_t stopping_cycles_ = 0;
-  Switch arm_;
-  Switch start_;
-  InterlockOutputs outputs_;
+  InterlockSettings settings_;
+  InterlockMemory memory_;
 };
 
 }  // namespace hotfire::firmware

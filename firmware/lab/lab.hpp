@@ -27,7 +27,7 @@ struct LabSettings {
   double current_limit = 0.0;        ///< what the amplifiers are given at most [A]
   double approach_rate = 0.0;        ///< from where the pistons stand to where the profile begins [rad/s]
   double rest_speed = 0.0;           ///< a slower piston stands still [m/s]
-  double stopping_time = 0.0;        ///< how long an actuator may take to come to rest [s]
+  InterlockSettings interlock;       ///< how long an actuator may take to come to rest among them
   std::uint64_t most_overruns = 0;   ///< in a row that are no fault
 };
 
@@ -36,8 +36,10 @@ struct LabInputs {
   ObservedRig rig;
   std::array<std::array<double, 2>, hal::kMaxActuators> readings{};  ///< [m]
   std::array<std::array<std::int64_t, 2>, hal::kMaxActuators> ages_ns{};
-  bool arm = false;
+  bool arm = false;          ///< what the lines of the buttons say
+  bool arm_changed = false;  ///< since the cycle before
   bool start = false;
+  bool start_changed = false;
   bool stop = false;
 };
 
@@ -58,7 +60,7 @@ class Lab {
       : settings_(std::move(settings)),
         period_(period),
         checks_(settings_.limits, period),
-        interlock_(static_cast<std::uint64_t>(settings_.stopping_time / period)) {}
+        interlock_(settings_.interlock) {}
 
   const LabOutputs& step(LabInputs inputs) noexcept {
     overruns_ = inputs.rig.overrun ? overruns_ + 1 : 0;
@@ -74,8 +76,9 @@ class Lab {
       advance();
     }
     const bool stop = inputs.stop || (before == RigState::running && completed_);
-    outputs_.interlock = interlock_.step({look(inputs), inputs.arm, inputs.start, stop, still_cycles_ >= kStillCycles});
-    if (driven && outputs_.interlock.fault_out) {
+    outputs_.interlock = interlock_.step({look(inputs), inputs.arm, inputs.arm_changed, inputs.start, inputs.start_changed,
+                                          stop, still_cycles_ >= kStillCycles});
+    if (before != RigState::faulted && outputs_.interlock.fault_out) {
       ++fault_counts_[static_cast<std::size_t>(outputs_.interlock.first)];
     }
     if (!driven && outputs_.interlock.drive) {
@@ -100,7 +103,7 @@ class Lab {
   /// The whole profile has been run since the last arming.
   bool completed() const noexcept { return completed_; }
   std::uint64_t armings() const noexcept { return armings_; }
-  /// How often a fault was the first that ended driving.
+  /// How often a fault was the first that made the rig faulted.
   std::uint64_t times_first(Fault fault) const noexcept { return fault_counts_[static_cast<std::size_t>(fault)]; }
 
  private:
@@ -181,7 +184,7 @@ class Lab {
   std::uint64_t still_cycles_ = 0;
   std::uint64_t armings_ = 0;
   std::uint64_t overruns_ = 0;
-  std::array<std::uint64_t, kFaultNumbers> fault_counts_{};
+  FaultCounts fault_counts_{};
   double time_ = 0.0;
   bool at_begin_ = false;
   bool completed_ = false;

@@ -6,20 +6,11 @@
 #include <string_view>
 
 #include "firmware/lab/lab.hpp"
+#include "firmware/lab/lab_lines.hpp"
 
 namespace hotfire::firmware {
 
 inline constexpr std::string_view kLabTopology = "lab";
-
-/// Names of the GPIO lines of a lab.
-struct LabLines {
-  std::string emergency_stop;    ///< input: on while it is released, so that a broken wire is a stop
-  std::string hydraulic_enable;  ///< input: on while the hydraulic supply may be used
-  std::string arm;               ///< input: a person's button; the first press arms, the next starts
-  std::string supply;            ///< output: on while anything is driven
-  std::string heartbeat;         ///< output: changes every cycle
-  std::string fault;             ///< output: on while faulted
-};
 
 /// A lab, or why there is none: file, line, key, value and what is allowed.
 struct LabImage {
@@ -40,8 +31,8 @@ struct LabImage {
 ///     segment.0.duration 0x1p+2
 ///     segment.0.from 0x0p+0
 ///
-/// Every key is there; segments count from 0. What a segment asks for is a list with a number for each actuator, commas
-/// between them. As strict as a plant image. `period` in s.
+/// Every key is there but for lines that are not wired; segments count from 0. What a segment asks for, and a limit of an
+/// actuator, is a list with a number for each actuator, commas between them. As strict as a plant image. `period` in s.
 LabImage parse_lab_image(const std::string& text, const std::string& name, double period);
 
 }  // namespace hotfire::firmware

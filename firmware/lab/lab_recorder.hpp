@@ -25,15 +25,18 @@ inline const std::array<hal::RecordedChannel, 6> kLabChannels{{{"piston", "m"},
                                                                {"piston_age_b", "s"}}};
 
 /// What a lab has seen that is a yes or no, from bit `kInputsShift` of the flags of a cycle on, in this order.
-inline constexpr std::array<bool ObservedRig::*, 8> kSeenBits{
-    &ObservedRig::bad_frame,      &ObservedRig::transmit_queue_full, &ObservedRig::overrun, &ObservedRig::dropped_recording,
-    &ObservedRig::emergency_stop, &ObservedRig::hydraulic_enable,    &ObservedRig::bus_off, &ObservedRig::bus_down};
-inline constexpr std::array<bool LabInputs::*, 3> kSwitchBits{&LabInputs::arm, &LabInputs::start, &LabInputs::stop};
-
+inline constexpr auto kSeenBits = std::to_array<bool ObservedRig::*>(
+    {&ObservedRig::bad_frame, &ObservedRig::transmit_queue_full, &ObservedRig::overrun, &ObservedRig::dropped_recording,
+     &ObservedRig::emergency_stop, &ObservedRig::hydraulic_enable, &ObservedRig::bus_off, &ObservedRig::bus_down,
+     &ObservedRig::take_back_refused, &ObservedRig::supply_reads_other, &ObservedRig::fault_line_reads_other});
+inline constexpr auto kSwitchBits = std::to_array<bool LabInputs::*>(
+    {&LabInputs::arm, &LabInputs::arm_changed, &LabInputs::start, &LabInputs::start_changed, &LabInputs::stop});
 /// What it has seen of the bus beside those, from bit `kBusShift` of the flags on.
 inline constexpr std::array<bool ObservedRig::*, 3> kBusBits{&ObservedRig::second_sender, &ObservedRig::command_not_answered,
                                                              &ObservedRig::not_authentic};
-inline constexpr unsigned kBusShift = 52;
+inline constexpr unsigned kBusShift = 40;
+static_assert(hal::CycleHead::kInputsShift + kSeenBits.size() + kSwitchBits.size() <= kBusShift);
+static_assert(kBusShift + kBusBits.size() <= hal::CycleHead::kSkippedShift);
 
 /// Everything `Lab::step` is given in a cycle, taken out of its recording bit for bit.
 inline LabInputs recorded_inputs(const hal::CycleHead& head, std::span<const double> readings) noexcept {
@@ -71,14 +74,9 @@ class LabRecorder {
 
   /// Keeps the cycle, and hands on the one before it, whose end this one has seen.
   void record(const hal::CycleHead& head, std::span<const double>, std::span<const double> commands) noexcept {
+    finish();
     const std::size_t actuators = commands.size();
     const std::span<double> readings = std::span(readings_).first(actuators * kLabChannels.size());
-    if (begun_) {
-      for (std::size_t i = 0; i < actuators; ++i) {
-        readings[i * kLabChannels.size() + kPiston] = rig_.lab().positions()[i];
-      }
-      recorder_.record(head_, std::span(commands_).first(actuators), readings);
-    }
     begun_ = true;
     head_ = head;
     head_.flags |= state_bits() | input_bits();
@@ -92,6 +90,21 @@ class LabRecorder {
       own[kPistonAgeA] = static_cast<double>(rig_.inputs().ages_ns[i][0]) * 1e-9;
       own[kPistonAgeB] = static_cast<double>(rig_.inputs().ages_ns[i][1]) * 1e-9;
     }
+  }
+
+  /// Hands on the cycle that is kept, with where the pistons are now: at the end of the loop, where none sees its end, that
+  /// is what it had itself read.
+  void finish() noexcept {
+    if (!begun_) {
+      return;
+    }
+    begun_ = false;
+    const std::size_t actuators = rig_.lab().actuators();
+    for (std::size_t i = 0; i < actuators; ++i) {
+      readings_[i * kLabChannels.size() + kPiston] = rig_.lab().positions()[i];
+    }
+    recorder_.record(head_, std::span(commands_).first(actuators),
+                     std::span(readings_).first(actuators * kLabChannels.size()));
   }
 
  private:

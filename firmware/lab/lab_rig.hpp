@@ -13,6 +13,7 @@
 #include "firmware/can/message_follower.hpp"
 #include "firmware/can/periodic_frame.hpp"
 #include "firmware/lab/lab.hpp"
+#include "firmware/lab/lab_lines.hpp"
 #include "firmware/recording/recorder.hpp"
 #include "hal/can.hpp"
 #include "hal/clock.hpp"
@@ -20,10 +21,6 @@
 #include "hal/recording/fnv1a.hpp"
 
 namespace hotfire::firmware {
-
-/// Where the lines of a lab stand in its GPIO settings.
-enum LabInput : std::uint8_t { kEmergencyStopReleased, kHydraulicEnabled, kArm };
-enum LabOutput : std::uint8_t { kSupply, kHeartbeat, kFault };
 
 /// A lab on its bus and lines. For the loop it is plant and bus in one: a cycle reads the bus and the lines, looks for
 /// faults, sets the lines, and then sends the currents of that cycle if anything may be driven. `Can` has the ids of
@@ -34,21 +31,29 @@ enum LabOutput : std::uint8_t { kSupply, kHeartbeat, kFault };
 /// is a second sender.
 ///
 /// When driving ends, a command that is still before the bus one cycle later is taken back with `stop`, so that it does not
-/// leave when the bus can be used again. After bus-off, down or that, the first press of the arm button takes the bus into
-/// use again, with what is heard from then on, and the next one arms.
+/// leave when the bus can be used again. Where the kernel refuses that, it is asked again every kTakeBackEveryNs, and until
+/// it does so the rig is faulted. After bus-off, down or a command that was taken back, the first press of the arm button,
+/// which the interlock refuses, takes the bus into use again, with what is heard from then on, and the next one arms.
 template <hal::CanBus Can, hal::GpioLines Gpio, hal::Clock Clock>
 class LabRig {
  public:
-  LabRig(Lab& lab, Can& can, Gpio& gpio, Clock& clock, can::Layout layout, std::int64_t period_ns) noexcept
+  /// How often the kernel is asked for a command that it has not given back.
+  static constexpr std::int64_t kTakeBackEveryNs = 100'000'000;
+
+  /// `wiring`: where the inputs of the lab are among those of `gpio`.
+  LabRig(Lab& lab, Can& can, Gpio& gpio, const LabGpio& wiring, Clock& clock, can::Layout layout,
+         std::int64_t period_ns) noexcept
       : lab_(lab),
         can_(can),
         gpio_(gpio),
+        wiring_(wiring),
         clock_(clock),
         layout_(layout),
         messages_(can::reading_messages(layout, lab.actuators())),
         echo_(messages_),
         sync_(can::sync::kMessage, period_ns),
-        heartbeat_(can::heartbeat::kMessage, period_ns) {
+        heartbeat_(can::heartbeat::kMessage, period_ns),
+        take_back_every_(std::max<std::int64_t>(1, kTakeBackEveryNs / period_ns)) {
     for (std::size_t i = 0; i < messages_; ++i) {
       budgets_[i] = {can::reading_message(layout, i), period_ns};
     }
@@ -69,6 +74,19 @@ class LabRig {
   /// and when the profile has been run.
   void ask_to_stop_when(const std::atomic<bool>& asked) noexcept { stop_asked_ = &asked; }
   const std::atomic<bool>& ended() const noexcept { return ended_; }
+  /// Asks to stop by itself after so many cycles; 0: never.
+  void stop_after(std::uint64_t cycles) noexcept { most_cycles_ = cycles; }
+
+  /// Sets every output to off, whatever the interlock says: when the loop has ended. False if they cannot be set.
+  bool drop_lines() noexcept {
+    constexpr int kTries = 3;
+    for (int i = 0; i < kTries; ++i) {
+      if (gpio_.try_write(0)) {
+        return true;
+      }
+    }
+    return false;
+  }
 
   bool try_receive_command(hal::Command&) noexcept {
     const std::int64_t now = clock_.now_ns();
@@ -83,8 +101,11 @@ class LabRig {
     inputs_.rig.transmit_queue_full = driven && not_taken_ >= kMostNotTaken;
     inputs_.rig.dropped_recording = recorder_ != nullptr && recorder_->dropping();
     inputs_.rig.bus_off = can_.state() == hal::CanState::bus_off;
-    inputs_.rig.bus_down = can_.state() == hal::CanState::down;
-    inputs_.stop = stop_asked_ != nullptr && stop_asked_->load(std::memory_order_relaxed);
+    inputs_.rig.bus_down = can_.state() == hal::CanState::down || taken_back_;
+    inputs_.rig.take_back_refused = take_back_refused_;
+    ++cycles_;
+    inputs_.stop = (stop_asked_ != nullptr && stop_asked_->load(std::memory_order_relaxed)) ||
+                   (most_cycles_ != 0 && cycles_ > most_cycles_);
     overran_ = false;
     return heard;
   }
@@ -102,6 +123,9 @@ class LabRig {
     if (!interlock.drive) {
       take_back();
       echo_.forget();
+      if (interlock.refused_press) {
+        take_bus_into_use();
+      }
       not_taken_ = 0;
       sent_ns_ = 0;
       ended_.store(inputs_.stop || lab_.completed(), std::memory_order_relaxed);
@@ -188,42 +212,65 @@ class LabRig {
   }
 
   void take_lines() noexcept {
+    const hal::GpioLevels changed = take_changes();
     hal::GpioLevels levels = 0;
     const bool readable = gpio_.try_read(levels) && lines_set_;
-    const auto on = [&](LabInput line) { return readable && ((levels >> line) & 1U) != 0; };
-    inputs_.rig.emergency_stop = !on(kEmergencyStopReleased);
-    inputs_.rig.hydraulic_enable = on(kHydraulicEnabled);
-    // A line that cannot be read has not been seen off: a button held all the while would else arm when it can be read again.
-    const bool pressed = readable ? on(kArm) : pressed_before_;
-    if (pressed && !pressed_before_ && !lab_.outputs().interlock.drive) {
-      press_is_spent_ = takes_bus_into_use();
-    }
-    press_is_spent_ = press_is_spent_ && pressed;
-    pressed_before_ = pressed;
-    // The interlock wants a switch seen off in its state before it acts, so one button can be both.
-    inputs_.arm = inputs_.start = pressed && !press_is_spent_;
+    const auto bit = [&](hal::GpioLevels set, LabInput line) {
+      return wiring_.is_wired(line) && ((set >> wiring_.places[line]) & 1U) != 0;
+    };
+    const auto on = [&](LabInput line) { return readable && bit(levels, line); };
+    const auto reads_other = [&](LabInput line, LabOutput output) {
+      return wiring_.is_wired(line) && readable && bit(levels, line) != (((set_ >> output) & 1U) != 0);
+    };
+    inputs_.rig.emergency_stop = !on(kEmergencyStopReleased) || bit(changed, kEmergencyStopReleased);
+    inputs_.rig.hydraulic_enable = on(kHydraulicEnabled) && !bit(changed, kHydraulicEnabled);
+    inputs_.rig.supply_reads_other = reads_other(kSupplyReadBack, kSupply);
+    inputs_.rig.fault_line_reads_other = reads_other(kFaultReadBack, kFault);
+    // A line that cannot be read has not been seen off: a button held all the while would else be a press when it is let go.
+    inputs_.arm = readable ? on(kArm) : inputs_.arm;
+    inputs_.arm_changed = bit(changed, kArm);
+    inputs_.start = readable ? on(kStart) : inputs_.start;
+    inputs_.start_changed = bit(changed, kStart);
   }
 
-  /// Whether the bus was given up, which this press then is about.
-  bool takes_bus_into_use() noexcept {
-    if (can_.state() < hal::CanState::bus_off && !taken_back_) {
-      return false;
-    }
-    if (can_.rearm()) {
-      taken_back_ = false;
-      arrived_ns_.fill(0);
-      for (std::size_t i = 0; i < messages_; ++i) {
-        followers_[i].forget();
-        budgets_[i].forget();
+  /// Inputs that have changed since the cycle before. Which way is not asked: of a pulse that is over when the kernel looks,
+  /// it reports the level that it finds. More edges than can be read or kept are taken for a change of every input.
+  hal::GpioLevels take_changes() noexcept {
+    constexpr int kMostReads = 8;
+    std::array<hal::GpioEdge, 64> edges{};
+    hal::GpioLevels changed = 0;
+    bool all_read = false;
+    for (int i = 0; i < kMostReads && !all_read; ++i) {
+      const std::size_t count = gpio_.read_edges(edges);
+      for (const hal::GpioEdge& edge : std::span(edges).first(count)) {
+        changed |= hal::GpioLevels{1} << edge.input;
       }
+      all_read = count < edges.size();
     }
-    return true;
+    const std::uint64_t lost = gpio_.lost_edges();
+    const bool all_known = all_read && lost == lost_edges_;
+    lost_edges_ = lost;
+    return all_known ? changed : ~hal::GpioLevels{0};
+  }
+
+  /// If the bus was given up, which the refused press then was about.
+  void take_bus_into_use() noexcept {
+    if ((can_.state() < hal::CanState::bus_off && !taken_back_) || !can_.rearm()) {
+      return;
+    }
+    taken_back_ = false;
+    arrived_ns_.fill(0);
+    for (std::size_t i = 0; i < messages_; ++i) {
+      followers_[i].forget();
+      budgets_[i].forget();
+    }
   }
 
   void set_lines(const InterlockOutputs& interlock) noexcept {
     beat_ = !beat_;
-    lines_set_ = gpio_.try_write((interlock.drive ? 1U << kSupply : 0U) | (beat_ ? 1U << kHeartbeat : 0U) |
-                                 (interlock.fault_out ? 1U << kFault : 0U));
+    set_ =
+        (interlock.drive ? 1U << kSupply : 0U) | (beat_ ? 1U << kHeartbeat : 0U) | (interlock.fault_out ? 1U << kFault : 0U);
+    lines_set_ = gpio_.try_write(set_);
   }
 
   bool send_currents() noexcept {
@@ -250,14 +297,26 @@ class LabRig {
   }
 
   void take_back() noexcept {
+    if (take_back_refused_) {
+      ++since_take_back_;
+      if (since_take_back_ >= take_back_every_) {
+        ask_for_command();
+      }
+      return;
+    }
     if (!drove_ || ++undriven_cycles_ < 2) {
       return;
     }
     drove_ = false;
     if (pending_) {
-      can_.stop();
-      taken_back_ = true;
+      ask_for_command();
     }
+  }
+
+  void ask_for_command() noexcept {
+    since_take_back_ = 0;
+    taken_back_ = can_.stop();
+    take_back_refused_ = !taken_back_;
   }
 
   static constexpr std::int64_t kNever = std::int64_t{1} << 62;
@@ -265,12 +324,14 @@ class LabRig {
   Lab& lab_;
   Can& can_;
   Gpio& gpio_;
+  LabGpio wiring_;
   Clock& clock_;
   can::Layout layout_;
   std::size_t messages_;
   can::CommandEcho echo_;
   can::PeriodicFrame sync_;
   can::PeriodicFrame heartbeat_;
+  std::int64_t take_back_every_;  ///< cycles
   const Recorder* recorder_ = nullptr;
   const std::atomic<bool>* stop_asked_ = nullptr;
   std::atomic<bool> ended_{false};
@@ -289,12 +350,16 @@ class LabRig {
   unsigned not_taken_ = 0;
   bool overran_ = false;
   bool lines_set_ = true;
-  bool pressed_before_ = true;
-  bool press_is_spent_ = false;
+  hal::GpioLevels set_ = 0;  ///< what the outputs were set to
+  std::uint64_t lost_edges_ = 0;
+  std::uint64_t cycles_ = 0;
+  std::uint64_t most_cycles_ = 0;
   bool beat_ = false;
   bool drove_ = false;    ///< a command was sent that is not known to be out
   bool pending_ = false;  ///< at the beginning of the cycle a frame of the one before was not out
   bool taken_back_ = false;
+  bool take_back_refused_ = false;
+  std::int64_t since_take_back_ = 0;  ///< cycles
 };
 
 }  // namespace hotfire::firmware

@@ -40,6 +40,9 @@ struct LoopSettings {
   std::uint64_t cycles = 0;            ///< after warm-up; 0: until asked to stop
   std::uint64_t warm_up_cycles = 100;  ///< run like the others but counted apart, always with the policy `skip`
   OverrunPolicy policy = OverrunPolicy::catch_up;
+  /// The number of a cycle counts those that were left out before it: what the loop drives goes on without it. Else it
+  /// counts the cycles that were run, as the time of a plant that only a cycle advances.
+  bool number_skipped = false;
 };
 
 /// What a loop leaves behind.
@@ -107,7 +110,7 @@ class Loop {
         result_.ending = Ending::asked;
         return;
       }
-      if (cycle == settings_.warm_up_cycles && !warm_) {
+      if (cycle >= settings_.warm_up_cycles && !warm_) {
         warm_ = true;
         on_warm();
       }
@@ -121,9 +124,12 @@ class Loop {
       if (ended(times)) {
         return;
       }
+      skipped_ = 0;
       if (!warm_ || settings_.policy == OverrunPolicy::skip) {
         const std::uint64_t dropped = result_.account.overran(times) ? pace_.drop_overdue(times.written) : 0;
         result_.skipped += warm_ ? dropped : 0;
+        skipped_ = settings_.number_skipped ? dropped : 0;
+        cycle += skipped_;
       }
     }
   }
@@ -188,6 +194,7 @@ class Loop {
               times.stepped, times.written, command_.sequence, result_.hash.value()};
     head.flags =
         (held ? Head::kHeld : 0) | (times.slept ? Head::kSlept : 0) | (lost ? Head::kLost : 0) | (warm_ ? 0 : Head::kWarmUp);
+    head.flags |= std::min(skipped_, Head::kMostSkipped) << Head::kSkippedShift;
     recorder_->record(head, std::span(command_.values).first(plant_.actuators()),
                       std::span(result_.last_reading.values).first(result_.last_reading.count));
   }
@@ -213,6 +220,7 @@ class Loop {
   hal::Command command_;
   bool finite_ = true;
   bool warm_ = false;
+  std::uint64_t skipped_ = 0;  ///< cycles that the number of the next one counts and that were not run
   std::atomic<std::uint64_t> heartbeat_{0};
   LoopResult result_;
 };

@@ -121,7 +121,7 @@ void add_lab(Json& json, const LabAccount& lab) {
   json.add("first_fault", static_cast<int>(lab.first));
   json.open("ended_driving");
   for (const FaultText& fault : kFaults) {
-    const std::uint64_t times = lab.times_first[static_cast<std::size_t>(fault.fault) - 1];
+    const std::uint64_t times = lab.times_first[static_cast<std::size_t>(fault.fault)];
     if (times > 0) {
       json.add(fault.name, times);
     }

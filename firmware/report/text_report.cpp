@@ -106,9 +106,9 @@ std::string lab(const Session& session) {
       text("  interlock     %s, armed %llu times, profile %s\n", kRigStates[static_cast<std::size_t>(account.state)].data(),
            whole(account.armings), account.completed ? "run to its end" : "NOT run to its end");
   for (const FaultText& fault : kFaults) {
-    const std::uint64_t times = account.times_first[static_cast<std::size_t>(fault.fault) - 1];
+    const std::uint64_t times = account.times_first[static_cast<std::size_t>(fault.fault)];
     result += times == 0 ? ""
-                         : text("  fault %-8d%s: ended driving %llu times\n", static_cast<int>(fault.fault),
+                         : text("  fault %-8d%s: the first one %llu times\n", static_cast<int>(fault.fault),
                                 fault.name.data(), whole(times));
   }
   return result;

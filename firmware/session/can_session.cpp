@@ -66,18 +66,35 @@ std::optional<hal::Failure> CanSession::refuse_load() {
                       "a longer --period-us, a faster bus, or --layout fd; 'hotfire check' computes a schedule"};
 }
 
-void CanSession::leave() {
+std::optional<hal::Failure> CanSession::refuse_without_take_back() {
+  if (socket_.may_take_interface_down()) {
+    return std::nullopt;
+  }
+  return hal::Failure{
+      "a command that nobody acknowledges could not be taken back: " + options_.bus + " may not be taken down",
+      "give the program CAP_NET_ADMIN: 'setcap cap_net_admin,cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or "
+      "AmbientCapabilities= of its unit"};
+}
+
+bool CanSession::leave() {
   constexpr std::int64_t kFrameNs = 1'000'000;
   constexpr int kMostFrames = 20;
+  constexpr std::int64_t kAskAgainNs = 100'000'000;
+  constexpr int kMostAsked = 10;
   const hal::PosixClock clock;
   for (int i = 0; i < kMostFrames && socket_.anything_pending(); ++i) {
     clock.sleep_until_ns(clock.now_ns() + kFrameNs);
     socket_.receive(clock.now_ns());
   }
-  if (!socket_.stop()) {
-    complain({"a frame is still before " + options_.bus + " and cannot be taken back",
-              "'ip link set " + options_.bus + " down'; the program may do that itself with CAP_NET_ADMIN"});
+  for (int i = 0; i < kMostAsked; ++i) {
+    if (socket_.stop()) {
+      return true;
+    }
+    clock.sleep_until_ns(clock.now_ns() + kAskAgainNs);
   }
+  complain({"a frame is still before " + options_.bus + " and cannot be taken back",
+            "'ip link set " + options_.bus + " down'; the program may do that itself with CAP_NET_ADMIN"});
+  return false;
 }
 
 BusAccount CanSession::account() const {

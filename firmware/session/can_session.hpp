@@ -23,8 +23,12 @@ class CanSession {
 
   /// Sees to it that nothing that was handed to the bus leaves after the program: a command that nobody has acknowledged
   /// must not move anything when somebody does. A frame that is on its way is given the time it takes; what is left is taken
-  /// back with the interface.
-  void leave();
+  /// back with the interface, and the kernel asked for a second if it refuses that. False, and a complaint, if it still
+  /// does.
+  bool leave();
+
+  /// Whether this program may not take the interface down, which alone takes a command back: said before anything is sent.
+  std::optional<hal::Failure> refuse_without_take_back();
 
   hal::SocketCan& socket() noexcept { return socket_; }
   /// Of the key that the options name; null if they name none. Once `open` has found it good.

@@ -29,7 +29,6 @@ int run_controller(const Options& options) {
     account.unsayable = bus.unsayable();
     account.lost_syncs = bus.lost_syncs();
     result.bus = account;
-    can_session.leave();
   };
   const auto run = [&]<class Pace>(Pace pace) {
     const auto loop =
@@ -38,7 +37,9 @@ int run_controller(const Options& options) {
                     ReferenceController::channel_units};
     session.input = "readings";
     session.output = "commands";
-    return run_loop(*loop, session, nullptr, complete);
+    RunEnd end = end_with(nullptr, complete);
+    end.make_safe = [&] { can_session.leave(); };
+    return run_loop(*loop, session, end);
   };
   if (!options.lockstep) {
     return run(OwnPace<Clock>(clock, options.loop.period_ns));

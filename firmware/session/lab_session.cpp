@@ -1,4 +1,5 @@
 #include <memory>
+#include <utility>
 
 #include "firmware/image/image_entries.hpp"
 #include "firmware/lab/lab_image.hpp"
@@ -6,6 +7,8 @@
 #include "firmware/lab/lab_rig.hpp"
 #include "firmware/session/can_session.hpp"
 #include "firmware/session/run_loop.hpp"
+#include "firmware/text/text.hpp"
+#include "hal/linux/can_bit_rates.hpp"
 #include "hal/linux/gpiod_lines.hpp"
 #include "hal/linux/posix_clock.hpp"
 
@@ -18,16 +21,6 @@ using Rig = LabRig<hal::SocketCan, hal::GpiodLines, Clock>;
 constexpr std::array<std::string_view, 1> kChannels{"command"};
 constexpr std::array<std::string_view, 1> kUnits{"rad"};
 
-/// In the order of LabInput and LabOutput. A broken wire of an input reads off, which is a stop, no enable, and no arming.
-hal::GpioSettings gpio_settings(const Options& options, const LabLines& lines) {
-  hal::GpioSettings settings;
-  settings.chip = options.gpio;
-  settings.bias = hal::GpioBias::pull_down;
-  settings.inputs = {{lines.emergency_stop}, {lines.hydraulic_enable}, {lines.arm}};
-  settings.outputs = {{lines.supply}, {lines.heartbeat}, {lines.fault}};
-  return settings;
-}
-
 RecordedPlant recorded(const Lab& lab, const std::string& image) {
   RecordedPlant plant;
   plant.topology = kLabTopology;
@@ -38,12 +31,31 @@ RecordedPlant recorded(const Lab& lab, const std::string& image) {
   return plant;
 }
 
-LabAccount account_of(const Lab& lab) {
-  LabAccount account{lab.outputs().interlock.state, lab.completed(), lab.armings(), {}, lab.outputs().interlock.first};
+LabAccount account_of(const Lab& lab, bool left_the_bus) {
+  const InterlockOutputs& interlock = lab.outputs().interlock;
+  LabAccount account{interlock.state, lab.completed(), lab.armings(), {}, interlock.first, left_the_bus};
   for (const FaultText& text : kFaults) {
-    account.times_first[static_cast<std::size_t>(text.fault) - 1] = lab.times_first(text.fault);
+    account.times_first[static_cast<std::size_t>(text.fault)] = lab.times_first(text.fault);
   }
   return account;
+}
+
+/// A lab on a real bus moves real actuators: it is run with the profile that a person has looked at, or not at all.
+std::optional<hal::Failure> refuse_unconfirmed(const Options& options, const std::string& image) {
+  const std::string digest = text("%016llx", static_cast<unsigned long long>(hal::model_hash(image)));
+  if (options.rehearsal || options.confirm == digest) {
+    return std::nullopt;
+  }
+  return hal::Failure{"the digest of the profile is " + digest + "; --confirm says " + options.confirm,
+                      "read the profile, and confirm the digest that 'hotfire check' prints of it"};
+}
+
+std::optional<hal::Failure> refuse_rehearsal(const Options& options) {
+  if (!options.rehearsal || hal::is_virtual_can(options.bus)) {
+    return std::nullopt;
+  }
+  return hal::Failure{"--rehearsal: " + options.bus + " is no virtual CAN interface",
+                      "a vcan, or leave --rehearsal out: what moves real actuators is no rehearsal"};
 }
 
 BusAccount account_of(const CanSession& can_session, const Rig& rig, can::Layout layout, std::size_t messages) {
@@ -65,8 +77,16 @@ int run_lab(const Options& given) {
     std::fprintf(stderr, "hotfire-rt: %s\n", image.error.c_str());
     return kBadData;
   }
+  if (const auto refused = refuse_unconfirmed(given, image.text)) {
+    complain(*refused);
+    return kWrongUse;
+  }
   Options options = given;
   options.actuators = image.settings->actuators;
+  options.require_realtime = given.require_realtime || !given.rehearsal;
+  // The lab counts them itself, so that its interlock stops what is driven.
+  const std::uint64_t cycles = std::exchange(options.loop.cycles, 0);
+  options.loop.number_skipped = true;
   const can::Layout layout = options.frame_layout();
   Lab lab(std::move(*image.settings), period);
   if (options.actuators > can::most_actuators(layout)) {
@@ -79,13 +99,22 @@ int run_lab(const Options& given) {
   if (const int status = can_session.open(); status != kGood) {
     return status;
   }
-  hal::GpiodLines gpio(gpio_settings(options, image.lines));
+  if (const auto refused = refuse_rehearsal(options)) {
+    complain(*refused);
+    return kWrongUse;
+  }
+  if (const auto refused = can_session.refuse_without_take_back()) {
+    complain(*refused);
+    return kHardware;
+  }
+  const LabGpio wiring = lab_gpio(image.lines, options.gpio);
+  hal::GpiodLines gpio(wiring.settings);
   if (const auto refused = gpio.open()) {
     complain(*refused);
     return kHardware;
   }
   Clock clock;
-  Rig rig(lab, can_session.socket(), gpio, clock, layout, options.loop.period_ns);
+  Rig rig(lab, can_session.socket(), gpio, wiring, clock, layout, options.loop.period_ns);
   if (can::Authentication* const authentication = can_session.authentication()) {
     rig.authenticate(*authentication);
   }
@@ -100,18 +129,29 @@ int run_lab(const Options& given) {
     recorder = std::make_unique<LabRecorder<Rig>>(recording->recorder(), rig);
     rig.watch(&recording->recorder());
   }
+  stop_instead_of_suspending();
   rig.ask_to_stop_when(stop_asked);
+  rig.stop_after(cycles == 0 ? 0 : cycles + options.loop.warm_up_cycles);
   const auto loop = std::make_unique<Loop<Rig, Rig, Clock, OwnPace<Clock>, LabRecorder<Rig>>>(
       rig, rig, clock, options.loop, OwnPace<Clock>(clock, options.loop.period_ns), recorder.get());
   Session session{options, loop->result(), kLabTopology, kChannels, kUnits};
   session.input = "readings";
   session.output = "commands";
-  const auto complete = [&](Session& result) {
-    can_session.leave();
-    result.lab = account_of(lab);
+  bool left_the_bus = false;
+  RunEnd end = end_with(recording.get(), [&](Session& result) {
+    result.lab = account_of(lab, left_the_bus);
     result.bus = account_of(can_session, rig, layout, can::reading_messages(layout, options.actuators));
+  });
+  end.make_safe = [&] {
+    if (!rig.drop_lines()) {
+      complain({"the lines of " + options.gpio + " cannot be set to off", "take the supply away by hand"});
+    }
+    left_the_bus = can_session.leave();
+    if (recorder) {
+      recorder->finish();
+    }
   };
-  return run_loop(*loop, session, recording.get(), complete, rig.ended());
+  return run_loop(*loop, session, end, rig.ended());
 }
 
 }  // namespace hotfire::firmware

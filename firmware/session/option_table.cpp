@@ -84,6 +84,12 @@ constexpr OptionLine kLines[] = {
     {"--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface, can0 say; default sim", read_bus},
     {"--gpio", "CHIP", "lab: the chip with its lines, by path, name or label",
      [](const std::string& value, Options& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }},
+    {"--confirm", "DIGEST", "lab: the profile's digest, as `hotfire check` prints it to the person who has read the profile",
+     [](const std::string& value, Options& o) { return o.confirm = value, std::string(); }},
+    {"--rehearsal", "",
+     "lab: on a virtual CAN interface, also without real time, recording and --confirm, which a lab\n"
+     "has to have on a real one",
+     [](const std::string&, Options& o) { return o.rehearsal = true, std::string(); }},
     {"--layout", "L",
      "frames on a CAN bus: classic (two actuators at most), fd, classic-split or fd-split (both readings of a\n"
      "piston by frames of their own); default classic if there is room in it",

@@ -17,7 +17,7 @@ std::string help() {
       "  hotfire plant --model simplex.toml --record run.hfr\n"
       "  hotfire plant --model simplex.toml --bus can0 --sync can --actuators 8\n"
       "  hotfire plant --model vehicle.toml --bus can0 --sync can --strings\n"
-      "  hotfire lab --profile sweep.toml --bus can0 --gpio rig --record run.hfr\n"
+      "  hotfire lab --profile sweep.toml --bus can0 --gpio rig --record run.hfr --confirm DIGEST\n"
       "  hotfire-rt controller --bus can0 --actuators 8 --cycles 10000\n"
       "  hotfire-rt plant --image plant.image --period-us 500\n"
       "  hotfire-rt replay run.hfr\n\n";
@@ -33,7 +33,8 @@ std::string help() {
          "  --profile FILE         with `hotfire lab` only: the profile (docs/lab.md)\n"
          "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
          "  --help, --version\n\n"
-         "Ends on SIGINT and SIGTERM with its result. Exit status: 0 good, 2 wrong use, 3 the bus cannot be used or was "
+         "Ends on SIGINT, SIGTERM, SIGHUP and SIGQUIT with its result. Exit status: 0 good, 2 wrong use, 3 the bus cannot "
+         "be used or was "
          "lost,\n"
          "4 a limit is not met, stopped by an overrun, or no real time where it is required, 5 a lab's interlock, 6 the "
          "image\n"
@@ -121,6 +122,14 @@ std::string conflict_in(const Options& options) {
   }
   if (options.mode == Mode::lab && (options.pace != PaceKind::clock || options.loop.policy != OverrunPolicy::skip)) {
     return "lab keeps its own time and leaves out what is overdue: leave --sync and --policy out";
+  }
+  if (options.mode == Mode::lab && !options.rehearsal &&
+      (options.recording.empty() || options.confirm.empty() || options.priority == 0)) {
+    return "lab moves real actuators: it needs --record FILE, --confirm DIGEST, which 'hotfire check' prints, and real time "
+           "(no --priority 0); on a virtual bus --rehearsal does without";
+  }
+  if (options.mode != Mode::lab && (options.rehearsal || !options.confirm.empty())) {
+    return "--confirm and --rehearsal are of a lab";
   }
   if (options.mode == Mode::controller && !options.on_can()) {
     return "controller needs a bus with a plant on it: --bus can0";

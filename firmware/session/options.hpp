@@ -44,6 +44,8 @@ struct Options {
   int priority = 80;                       ///< SCHED_FIFO; 0: an ordinary process on purpose
   std::optional<int> cpu;                  ///< none: wherever the kernel puts it
   bool require_realtime = false;
+  std::string confirm;     ///< of a lab: the digest of its profile, as a person has read it
+  bool rehearsal = false;  ///< of a lab: on a virtual bus, without what a lab on a real one has to have
   std::optional<double> max_latency_us;
   std::optional<double> max_step_us;
   std::optional<std::uint64_t> max_overruns;

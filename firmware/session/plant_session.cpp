@@ -102,7 +102,7 @@ class PlantSession {
     Session session{options_,        loop->result(),       Plant::topology,
                     Plant::channels, Plant::channel_units, plant_->steps_per_cycle()};
     session.is_vehicle = actuators_of(*image_.parameters) != 0;
-    return run_loop(*loop, session, recording.get(), complete);
+    return run_loop(*loop, session, end_with(recording.get(), complete));
   }
 
   std::int64_t patience_ns() const {

@@ -26,8 +26,36 @@ std::atomic<bool> stop_asked{false};
 void stop_on_signals() {
   struct sigaction action {};
   action.sa_handler = ask_to_stop;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+    sigaction(signal, &action, nullptr);
+  }
+  action.sa_handler = SIG_IGN;
+  for (const int signal : {SIGPIPE, SIGXFSZ}) {
+    sigaction(signal, &action, nullptr);
+  }
+}
+
+void stop_instead_of_suspending() {
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  sigaction(SIGTSTP, &action, nullptr);
+}
+
+RunEnd end_with(RecordingSession* recording, std::function<void(Session&)> complete) {
+  RunEnd end;
+  end.complete = std::move(complete);
+  if (recording != nullptr) {
+    end.close_recording = [recording] { return &recording->close(); };
+  }
+  return end;
+}
+
+void end_run(Session& session, const RunEnd& end, Watchdog& watchdog) {
+  end.make_safe();
+  watchdog.stop();
+  session.ended = std::time(nullptr);
+  session.recording = end.close_recording();
+  end.complete(session);
 }
 
 bool granted(const std::optional<hal::Failure>& failure, std::vector<hal::Failure>& failures) {

@@ -12,9 +12,13 @@
 
 namespace hotfire::firmware {
 
-/// Set by SIGINT and SIGTERM once `stop_on_signals` was called.
+/// Set by SIGINT, SIGTERM, SIGHUP (the terminal is gone) and SIGQUIT once `stop_on_signals` was called, which also has a
+/// reader of the output that went away, and a file that may not grow, end no process.
 extern std::atomic<bool> stop_asked;
 void stop_on_signals();
+
+/// SIGTSTP (Ctrl-Z) asks to stop too: a loop that is suspended leaves its outputs as they are.
+void stop_instead_of_suspending();
 
 /// Keeps what was refused, prints it to standard error, and says whether the call was granted.
 bool granted(const std::optional<hal::Failure>& failure, std::vector<hal::Failure>& failures);
@@ -36,11 +40,26 @@ struct Usage {
 /// Prints the report; returns the exit status.
 int finish(const Session& session);
 
-/// Runs a loop that is set up but for real time, and reports. `complete` is called when it has ended, for what only the
-/// caller knows. `ended`: becomes true when the loop is to end, else when a signal has asked for it.
+/// How a run ends, in this order.
+struct RunEnd {
+  /// Makes the rig safe: before anything that may wait, for a disk say.
+  std::function<void()> make_safe = [] {};
+  /// Closes the recording; null if there is none.
+  std::function<const RecorderAccount*()> close_recording = [] { return nullptr; };
+  /// What only the caller knows.
+  std::function<void(Session&)> complete = [](Session&) {};
+};
+
+/// The end of a run with a recording, if it has one.
+RunEnd end_with(RecordingSession* recording, std::function<void(Session&)> complete);
+
+/// Goes through the end of a run whose loop has ended.
+void end_run(Session& session, const RunEnd& end, Watchdog& watchdog);
+
+/// Runs a loop that is set up but for real time, and reports. `ended`: becomes true when the loop is to end, else when a
+/// signal has asked for it.
 template <class Loop>
-int run_loop(Loop& loop, Session& session, RecordingSession* recording, const std::function<void(Session&)>& complete,
-             const std::atomic<bool>& ended = stop_asked) {
+int run_loop(Loop& loop, Session& session, const RunEnd& end, const std::atomic<bool>& ended = stop_asked) {
   const Options& options = session.options;
   Watchdog watchdog(hal::ServiceManager::from_environment(), loop.heartbeat());
   granted(watchdog.start(), session.failures);
@@ -55,18 +74,13 @@ int run_loop(Loop& loop, Session& session, RecordingSession* recording, const st
   session.started = std::time(nullptr);
   Usage warm = Usage::now();
   loop.run(ended, [&]() noexcept { warm = Usage::now(); });
-  const Usage end = Usage::now();
-  watchdog.stop();
-  session.ended = std::time(nullptr);
+  const Usage used = Usage::now();
   session.place = hal::cpu_place();
-  session.usage = end.resources - warm.resources;
-  if (end.allocations) {
-    session.allocations = *end.allocations - *warm.allocations;
+  session.usage = used.resources - warm.resources;
+  if (used.allocations) {
+    session.allocations = *used.allocations - *warm.allocations;
   }
-  if (recording != nullptr) {
-    session.recording = &recording->close();
-  }
-  complete(session);
+  end_run(session, end, watchdog);
   return finish(session);
 }
 

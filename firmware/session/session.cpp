@@ -11,15 +11,18 @@ Verdict judge(const Session& session) {
     return {false, std::string(kEndings[static_cast<std::size_t>(result.ending)]),
             result.ending == Ending::not_finite ? kBadData : kTiming};
   }
-  if (session.lab && !session.lab->completed) {
-    if (session.lab->first == Fault{}) {
-      return {false, "asked to stop before the profile had ended", kBadVerdict};
-    }
+  if (session.lab && session.lab->first != Fault{}) {
     const FaultText& fault = text_of(session.lab->first);
     return {false,
             text("interlock: fault %d, %s: %s; see docs/faults.md", static_cast<int>(fault.fault), fault.name.data(),
                  fault.meaning.data()),
             kInterlock};
+  }
+  if (session.lab && !session.lab->left_the_bus) {
+    return {false, "a command is still before the bus: take the interface down", kHardware};
+  }
+  if (session.lab && !session.lab->completed) {
+    return {false, "asked to stop before the profile had ended", kBadVerdict};
   }
   if (session.bus && session.bus->state >= hal::CanState::bus_off) {
     const char* const state = hal::kCanStates[static_cast<std::size_t>(session.bus->state)];

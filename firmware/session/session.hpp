@@ -22,8 +22,9 @@ struct LabAccount {
   RigState state = RigState::safe;  ///< when the loop ended
   bool completed = false;           ///< the profile was run to its end
   std::uint64_t armings = 0;
-  std::array<std::uint64_t, kFaultNumbers> times_first{};  ///< how often a fault was the first that ended driving
-  Fault first = Fault{};                                   ///< of those since the last arming; 0: none
+  FaultCounts times_first{};  ///< how often each was the first that made the rig faulted
+  Fault first = Fault{};      ///< of those since the last arming; 0: none
+  bool left_the_bus = true;   ///< no command is before the bus
 };
 
 /// All that is known when a loop has ended.

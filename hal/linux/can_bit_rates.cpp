@@ -6,10 +6,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string_view>
 
 namespace hotfire::hal {
 namespace {
@@ -64,18 +66,34 @@ Bytes ask(int socket, unsigned index, std::span<std::uint8_t> buffer) noexcept {
   return head.nlmsg_type == RTM_NEWLINK ? Bytes(buffer).subspan(kBefore, static_cast<std::size_t>(size) - kBefore) : Bytes{};
 }
 
-}  // namespace
-
-CanBitRates can_bit_rates(const std::string& interface) noexcept {
+/// What the kernel says of a link of this name, in `buffer`; empty if nothing.
+Bytes link_info(const std::string& interface, std::span<std::uint8_t> buffer) noexcept {
   const unsigned index = if_nametoindex(interface.c_str());
   const int socket = index == 0 ? -1 : ::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE);
   if (socket < 0) {
     return {};
   }
-  std::array<std::uint8_t, 16384> buffer{};
-  const Bytes can = attribute(attribute(ask(socket, index, buffer), IFLA_LINKINFO), IFLA_INFO_DATA);
+  const Bytes info = attribute(ask(socket, index, buffer), IFLA_LINKINFO);
   close(socket);
+  return info;
+}
+
+}  // namespace
+
+CanBitRates can_bit_rates(const std::string& interface) noexcept {
+  std::array<std::uint8_t, 16384> buffer{};
+  const Bytes can = attribute(link_info(interface, buffer), IFLA_INFO_DATA);
   return {bit_rate_in(attribute(can, IFLA_CAN_BITTIMING)), bit_rate_in(attribute(can, IFLA_CAN_DATA_BITTIMING))};
+}
+
+bool is_virtual_can(const std::string& interface) noexcept {
+  std::array<std::uint8_t, 16384> buffer{};
+  const Bytes kind = attribute(link_info(interface, buffer), IFLA_INFO_KIND);
+  const auto is = [&](std::string_view name) {
+    // A string of the kernel, with its zero.
+    return kind.size() == name.size() + 1 && std::equal(name.begin(), name.end(), kind.begin());
+  };
+  return is("vcan") || is("vxcan");
 }
 
 }  // namespace hotfire::hal

@@ -13,4 +13,7 @@ struct CanBitRates {
 /// Asks the kernel. Needs no permission; 0 for what cannot be had. Blocks.
 CanBitRates can_bit_rates(const std::string& interface) noexcept;
 
+/// Whether the interface is one without a wire: vcan or vxcan. False if the kernel does not say so. Blocks.
+bool is_virtual_can(const std::string& interface) noexcept;
+
 }  // namespace hotfire::hal

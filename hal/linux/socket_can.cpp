@@ -245,6 +245,12 @@ bool SocketCan::interface_is_up() noexcept {
   return ioctl(socket_, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
 }
 
+bool SocketCan::may_take_interface_down() noexcept {
+  ifreq request{};
+  settings_.interface.copy(request.ifr_name, IFNAMSIZ - 1);
+  return ioctl(socket_, SIOCGIFFLAGS, &request) == 0 && ioctl(socket_, SIOCSIFFLAGS, &request) == 0;
+}
+
 bool SocketCan::take_interface_down() noexcept {
   ifreq request{};
   settings_.interface.copy(request.ifr_name, IFNAMSIZ - 1);

@@ -51,6 +51,10 @@ class SocketCan {
   bool stop() noexcept;
   bool rearm() noexcept;
 
+  /// Whether `stop` may take the interface down: the kernel is asked to set the flags that are set, which changes nothing
+  /// and needs the same permission.
+  bool may_take_interface_down() noexcept;
+
   /// CLOCK_REALTIME minus CLOCK_MONOTONIC at the last `receive` [ns]: what a recorder needs to match a candump log with
   /// edges of GPIO lines.
   std::int64_t realtime_offset_ns() const noexcept { return realtime_offset_ns_; }

@@ -31,11 +31,15 @@ struct CycleHead {
   static constexpr unsigned kStateShift = 8;
   static constexpr unsigned kFaultShift = 16;
   static constexpr unsigned kInputsShift = 24;
+  /// How many cycles the loop left out before this one because they were overdue, at most kMostSkipped of them.
+  static constexpr unsigned kSkippedShift = 48;
+  static constexpr std::uint64_t kMostSkipped = 0xffff;
   static constexpr std::uint64_t lab_flags(std::uint64_t state, std::uint64_t fault) noexcept {
     return state << kStateShift | fault << kFaultShift;
   }
+  constexpr std::uint64_t skipped_before() const noexcept { return flags >> kSkippedShift; }
 
-  std::uint64_t cycle = 0;      ///< from 0, without gaps in the loop: a gap in a recording is what was dropped
+  std::uint64_t cycle = 0;      ///< from 0; a gap is what was dropped, or what the loop left out
   std::int64_t release_ns = 0;  ///< CLOCK_MONOTONIC, as the moments that follow
   std::int64_t woken_ns = 0;
   std::int64_t read_ns = 0;

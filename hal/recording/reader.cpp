@@ -101,7 +101,8 @@ bool RecordingReader::next(RecordedCycle& cycle) {
   std::memcpy(values_.data(), start + sizeof cycle.head, values_.size() * sizeof(double));
   cycle.commands = std::span(values_).first(header_.actuators);
   cycle.readings = std::span(values_).subspan(header_.actuators);
-  cycle.dropped_before = cycle.head.cycle - expected_;
+  cycle.skipped_before = cycle.head.skipped_before();
+  cycle.dropped_before = cycle.head.cycle - expected_ - cycle.skipped_before;
   dropped_ += cycle.dropped_before;
   expected_ = cycle.head.cycle + 1;
   ++cycles_;

@@ -13,7 +13,8 @@ namespace hotfire::hal {
 /// One cycle of a recording. The spans hold until the next one is read.
 struct RecordedCycle {
   CycleHead head;
-  std::uint64_t dropped_before = 0;  ///< cycles missing between the one before and this
+  std::uint64_t dropped_before = 0;  ///< cycles that ran between the one before and this and are not in the file
+  std::uint64_t skipped_before = 0;  ///< cycles that were due there and were not run
   std::span<const double> commands;  ///< one an actuator
   std::span<const double> readings;  ///< actuator after actuator
 };

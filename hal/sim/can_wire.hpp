@@ -75,8 +75,8 @@ class CanWire {
 
     bool stop() noexcept {
       node_.stop();
-      wire_.held_.count = 0;
-      return true;
+      wire_.held_.count = wire_.refuses_stop_ ? wire_.held_.count : 0;
+      return wire_.held_.count == 0;
     }
 
     bool rearm() noexcept {
@@ -105,6 +105,8 @@ class CanWire {
   }
 
   void set_queue_full(bool full) noexcept { full_ = full; }
+  /// What is held is not given back to `stop`.
+  void set_stop_refused(bool refused) noexcept { refuses_stop_ = refused; }
   void set_bus_off(bool bus_off) noexcept { bus_off_ = bus_off; }
   /// Down loses what is held, as a network device's queue does.
   void set_down(bool down) noexcept {
@@ -151,6 +153,7 @@ class CanWire {
   bool full_ = false;
   bool bus_off_ = false;
   bool down_ = false;
+  bool refuses_stop_ = false;
 };
 
 static_assert(CanBus<CanWire::Node>);

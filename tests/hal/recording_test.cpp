@@ -50,12 +50,14 @@ std::string with_right_hash(const std::string& text) {
   return text.substr(0, at) + key + digits + text.substr(at + key.size() + 16);
 }
 
-/// A block of cycles with these numbers, commands and readings derived from them.
-std::string block(const std::vector<std::uint64_t>& cycles) {
+/// A block of cycles with these numbers, commands and readings derived from them. Before the first the loop left out so
+/// many.
+std::string block(const std::vector<std::uint64_t>& cycles, std::uint64_t skipped = 0) {
   std::string content;
   for (const std::uint64_t cycle : cycles) {
     CycleHead head;
     head.cycle = cycle;
+    head.flags = (cycle == cycles.front() ? skipped : 0) << CycleHead::kSkippedShift;
     const auto value = static_cast<double>(cycle);
     const double values[] = {value, -value, value + 0.5, value + 0.25};
     content.append(reinterpret_cast<const char*>(&head), sizeof head);
@@ -185,6 +187,21 @@ TEST(Recording, ClosedRecordingGivesItsCyclesAndItsDrops) {
   CHECK(reader.end() == RecordingReader::End::closed);
   UNSIGNED_LONGS_EQUAL(5, reader.cycles());
   UNSIGNED_LONGS_EQUAL(4, reader.dropped());
+}
+
+TEST(Recording, CyclesThatTheLoopLeftOutAreToldFromThoseThatAreNotInTheFile) {
+  RecordingReader reader = opened(start + block({0, 1, 2}) + block({7, 8}, 3));
+  RecordedCycle cycle;
+  for (int i = 0; i < 4; ++i) {
+    CHECK(reader.next(cycle));
+  }
+  UNSIGNED_LONGS_EQUAL(7, cycle.head.cycle);
+  UNSIGNED_LONGS_EQUAL(3, cycle.skipped_before);
+  UNSIGNED_LONGS_EQUAL(1, cycle.dropped_before);
+  CHECK(reader.next(cycle));
+  UNSIGNED_LONGS_EQUAL(0, cycle.skipped_before);
+  CHECK(!reader.next(cycle));
+  UNSIGNED_LONGS_EQUAL(1, reader.dropped());
 }
 
 // A killed writer leaves any prefix of what it would have written.

@@ -34,8 +34,10 @@ const char* const kUsualImage =
     "current_limit 0.02\napproach_rate 1\nrest_speed 0.001\nstopping_time 1\n"
     "limits.command_age 1\nlimits.reading_age 1\nlimits.lowest_reading -0.15\nlimits.highest_reading 0.15\n"
     "limits.disagreement 0.001\nlimits.lowest_position -0.06\nlimits.highest_position 0.06\nlimits.command_rate 100\n"
+    "limits.speed 1000\nlimits.speed_time 0.01\nlimits.read_back_time 0.5\ninterlock.debounce 0.03\n"
+    "interlock.start_hold 0\ninterlock.longest_press 60\ninterlock.least_armed 1\ninterlock.arming_timeout 60\n"
     "limits.position_error 0.005\nlimits.position_error_time 5\nlimits.overruns 1000000\n"
-    "line.emergency_stop estop\nline.hydraulic_enable hydraulic\nline.arm arm\nline.supply supply\n"
+    "line.emergency_stop estop\nline.hydraulic_enable hydraulic\nline.arm arm\nline.start start\nline.supply supply\n"
     "line.heartbeat heartbeat\nline.fault fault\n"
     "segment.0.duration 100000\nsegment.0.from 0\nsegment.0.to 0\nsegment.0.amplitude 0.05\nsegment.0.frequency 0.5\n"
     "segment.0.last_frequency 0.5\n";
@@ -163,8 +165,8 @@ LabProgram::LabProgram(const std::string& changes, const std::string& options) {
   process_ = fork();
   if (process_ == 0) {
     const std::string command =
-        "exec hotfire-rt lab --image /tmp/lab.image --bus can0 --gpio rig --period-us 10000 --warm-up 0 --overwrite "
-        "--record " +
+        "exec hotfire-rt lab --rehearsal --image /tmp/lab.image --bus can0 --gpio rig --period-us 10000 --warm-up 0 "
+        "--overwrite --record " +
         std::string(kRecording) + " " + options + " >/tmp/lab.out 2>&1";
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
@@ -263,11 +265,13 @@ void wait_for_beats(int beats) {
   });
 }
 
-void press() {
-  pull(kArmLine, true);
-  wait_for_beats(3);
-  pull(kArmLine, false);
-  wait_for_beats(3);
+void press(Line button) {
+  // The debounce, and some cycles that the heartbeat may not be seen in.
+  constexpr int kSettled = 8;
+  pull(button, true);
+  wait_for_beats(kSettled);
+  pull(button, false);
+  wait_for_beats(kSettled);
 }
 
 }  // namespace hotfire::test

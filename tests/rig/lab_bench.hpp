@@ -85,14 +85,23 @@ class LabProgram {
   int process_ = -1;
 };
 
-enum Line : std::uint8_t { kStopLine, kHydraulicLine, kArmLine, kSupplyLine, kHeartbeatLine, kFaultLine };
+enum Line : std::uint8_t {
+  kStopLine,
+  kHydraulicLine,
+  kArmLine,
+  kSupplyLine,
+  kHeartbeatLine,
+  kFaultLine,
+  kStartLine,
+  kContactorLine
+};
 
 /// What a line carries, and drives an input.
 bool carries(Line line);
 void pull(Line line, bool up);
 /// Waits for so many changes of the heartbeat line, which changes every cycle.
 void wait_for_beats(int beats);
-/// Presses and releases the arm button, each for some cycles.
-void press();
+/// Presses and releases a button, each for some cycles.
+void press(Line button = kArmLine);
 
 }  // namespace hotfire::test

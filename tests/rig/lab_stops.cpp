@@ -61,6 +61,13 @@ bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
       return in.rig.dropped_recording;
     case Fault::position_error:
       return std::abs(given.command - 0.5 * (first + second)) > 0.005;
+    case Fault::take_back_refused:
+      return in.rig.take_back_refused;
+    case Fault::supply_read_back:
+      return in.rig.supply_reads_other;
+    case Fault::fault_read_back:
+      return in.rig.fault_line_reads_other;
+    case Fault::speed:           // is of many cycles
     case Fault::not_finite:      // is never handed on
     case Fault::heartbeat_lost:  // is a plant's
       break;
@@ -78,9 +85,12 @@ LabRecord read_lab_record(const std::string& path, const LabLimits& limits) {
   hal::RecordingReader reader(path);
   STRCMP_EQUAL("", reader.error().c_str());
   hal::RecordedCycle cycle;
-  std::array<std::uint64_t, firmware::kFaultNumbers> shown_since{};
+  firmware::FaultCounts shown_since{};
   Stop now;
+  // Of the cycles that were run: what lasts is counted in these.
+  std::uint64_t run = 0;
   while (reader.next(cycle)) {
+    ++run;
     const auto state = static_cast<RigState>((cycle.head.flags >> Head::kStateShift) & 0xff);
     const LabInputs inputs = firmware::recorded_inputs(cycle.head, cycle.readings);
     const bool drives = state != RigState::safe && state != RigState::faulted;
@@ -88,7 +98,7 @@ LabRecord read_lab_record(const std::string& path, const LabLimits& limits) {
       for (const firmware::FaultText& text : firmware::kFaults) {
         std::uint64_t& since = shown_since[static_cast<std::size_t>(text.fault)];
         since = !shows(text.fault, {inputs, kPistonPerCommand * cycle.commands[0]}, limits.age_ns) ? 0
-                : since == 0                                                                       ? cycle.head.cycle
+                : since == 0                                                                       ? run
                                                                                                    : since;
       }
     }
@@ -103,7 +113,7 @@ LabRecord read_lab_record(const std::string& path, const LabLimits& limits) {
         now.fault = static_cast<Fault>((cycle.head.flags >> Head::kFaultShift) & 0xff);
         now.seen = shown_since[static_cast<std::size_t>(now.fault)] +
                    (now.fault == Fault::position_error ? limits.position_error_cycles : 0);
-        now.safe = cycle.head.cycle;
+        now.safe = run;
         result.stops.push_back(now);
       }
       now = {};

@@ -62,7 +62,9 @@ TEST_GROUP(Lab) {
 
   void run_profile() {
     arm();
-    press();
+    // The least time in `armed`, in cycles of 10 ms and some that the heartbeat may not be seen in.
+    wait_for_beats(110);
+    press(test::kStartLine);
     wait_until("the profile to run", [&] { return node->state == RigState::running; });
     const std::uint64_t before = node->commands;
     wait_until("commands", [&] { return node->commands > before + 5; });
@@ -111,7 +113,7 @@ TEST_GROUP(Lab) {
     is_safe();
     const std::string output = lab->output();
     for (const Fault fault : faults) {
-      STRCMP_CONTAINS((std::string(text_of(fault).name) + ": ended driving ").c_str(), output.c_str());
+      STRCMP_CONTAINS((std::string(text_of(fault).name) + ": the first one ").c_str(), output.c_str());
     }
     const test::LabRecord record = look_at_recording(verdict);
     UNSIGNED_LONGS_EQUAL(provoked.size(), record.stops.size());
@@ -261,6 +263,82 @@ TEST(Lab, Overrun) {
   LONGS_EQUAL(5, lab->wait());
   STRCMP_CONTAINS("interlock: fault 11, overrun", lab->output().c_str());
   CHECK(!look_at_recording().stops.empty());
+}
+
+// How a lab ends, and what its lines say: a case of its own.
+TEST_GROUP_BASE(LabEnds, TEST_GROUP_CppUTestGroupLab){};
+
+TEST(LabEnds, SignalsOfATerminalThatGoesAwayStopARunningProfile) {
+  for (const int signal : {SIGHUP, SIGQUIT, SIGTSTP}) {
+    start();
+    run_profile();
+    lab->signal(signal);
+    LONGS_EQUAL(1, lab->wait());
+    STRCMP_CONTAINS("asked to stop before the profile had ended", lab->output().c_str());
+    is_safe();
+    lab.reset();
+  }
+}
+
+TEST(LabEnds, EndOfItsCyclesStopsARunningProfileThroughTheInterlock) {
+  start("", "--cycles 300");
+  run_profile();
+  LONGS_EQUAL(1, lab->wait());
+  is_safe();
+  const test::LabRecord record = look_at_recording();
+  UNSIGNED_LONGS_EQUAL(0, record.stops.size());
+}
+
+TEST(LabEnds, EmergencyStopWhileStoppingIsTheVerdictAndInTheRecording) {
+  start("stopping_time 5\nrest_speed 1e-9\n");
+  run_profile();
+  lab->signal(SIGTERM);
+  wait_until("stopping", [&] { return node->state == RigState::stopping; });
+  pull(test::kStopLine, false);
+  LONGS_EQUAL(5, lab->wait());
+  STRCMP_CONTAINS("interlock: fault 9, emergency stop", lab->output().c_str());
+  is_safe();
+  const test::LabRecord record = look_at_recording();
+  UNSIGNED_LONGS_EQUAL(1, record.stops.size());
+  CHECK(record.stops[0].fault == Fault::emergency_stop);
+}
+
+TEST(LabEnds, StopPulseThatIsShorterThanAPeriodIsAStop) {
+  start();
+  run_profile();
+  // The loop is between two looks, so that neither sees the line off.
+  lab->signal(SIGSTOP);
+  pull(test::kStopLine, false);
+  pull(test::kStopLine, true);
+  lab->signal(SIGCONT);
+  wait_until("the fault line", [] { return carries(test::kFaultLine); });
+  is_safe();
+  lab->signal(SIGTERM);
+  LONGS_EQUAL(5, lab->wait());
+  STRCMP_CONTAINS("interlock: fault 9, emergency stop", lab->output().c_str());
+}
+
+TEST(LabEnds, ButtonThatBouncesArmsAndStartsNothing) {
+  start();
+  for (int bounce = 0; bounce < 20; ++bounce) {
+    pull(test::kArmLine, bounce % 2 == 0);
+    pull(test::kStartLine, bounce % 3 == 0);
+    wait_for_beats(1);
+  }
+  pull(test::kArmLine, false);
+  pull(test::kStartLine, false);
+  wait_for_beats(150);
+  CHECK(node->state != RigState::running);
+}
+
+TEST(LabEnds, SupplyThatDoesNotFollowItsLineIsAFault) {
+  start("line.supply_read_back contactor\n");
+  press();
+  wait_until("the fault line", [] { return carries(test::kFaultLine); });
+  is_safe();
+  lab->signal(SIGTERM);
+  LONGS_EQUAL(5, lab->wait());
+  STRCMP_CONTAINS("interlock: fault 17, supply read-back", lab->output().c_str());
 }
 
 TEST(Lab, RecorderFull) {

@@ -97,7 +97,10 @@ Json describe_schedule(const std::filesystem::path& path) {
 
 Json describe_profile(const std::filesystem::path& path) {
   const LabProfile profile = load_profile(path);
-  return {{"kind", "profile"}, {"actuators", profile.actuators}, {"duration", profile.duration}};
+  return {{"kind", "profile"},
+          {"actuators", profile.actuators},
+          {"duration", profile.duration},
+          {"digest", fmt::format("{:016x}", profile.digest)}};
 }
 
 Json describe(const std::filesystem::path& path) {
@@ -141,8 +144,9 @@ std::string line_of(const Json& result) {
                        joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].get<std::size_t>());
   }
   if (result["kind"] == "profile") {
-    return fmt::format("profile of {} actuators, {:g} s long", result["actuators"].get<unsigned>(),
-                       result["duration"].get<double>());
+    return fmt::format("profile of {} actuators, {:g} s long, digest {}; to run it: hotfire lab --confirm {}",
+                       result["actuators"].get<unsigned>(), result["duration"].get<double>(),
+                       result["digest"].get<std::string>(), result["digest"].get<std::string>());
   }
   if (result["kind"] == "schedule") {
     return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",

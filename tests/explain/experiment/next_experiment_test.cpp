@@ -102,7 +102,7 @@ TEST(NextExperiment, ALabRunsEveryProfileAsItsRecordHasIt) {
   test::Scratch files;
   const std::filesystem::path lab = HOTFIRE_LAB_PROFILE;
   constexpr double kPeriod = 1e-3;
-  for (const auto& profile : explain::test_profiles({-0.02, 0.02}, 20.0)) {
+  for (const auto& profile : explain::test_profiles({-0.02, 0.02, load_profile(lab).command_rate}, 20.0)) {
     const LabProfile read = load_profile(files.write("next.toml", profile_with_parts(lab, profile.parts)));
     const auto image = firmware::parse_lab_image(read.image, "next.toml", kPeriod);
     STRCMP_EQUAL("", image.error.c_str());

@@ -14,7 +14,8 @@ TEST_GROUP(ProfileFile) {
       "current_per_error = 0\ncurrent_limit = \"20 mA\"\napproach_rate = 0.5\nrest_speed = \"1 mm/s\"\n"
       "stopping_time = 2\n[limits]\ncommand_age = \"2 ms\"\nreading_age = \"2 ms\"\nlowest_reading = -0.5\n"
       "highest_reading = 0.5\ndisagreement = 0.001\nlowest_position = -0.0625\nhighest_position = 0.0625\n"
-      "command_rate = 40\nposition_error = 0.02\nposition_error_time = 0.3\n[lines]\nemergency_stop = \"estop\"\n"
+      "command_rate = 40\nspeed = 50\nposition_error = 0.02\nposition_error_time = 0.3\n[lines]\nemergency_stop = "
+      "\"estop\"\n"
       "hydraulic_enable = \"hydraulic\"\narm = \"arm\"\nsupply = \"supply\"\nheartbeat = \"heartbeat\"\nfault = \"fault\"\n";
 
   std::string lines(const std::string& profile) const { return load_profile(scratch.write("p.toml", head + profile)).image; }
@@ -37,11 +38,83 @@ TEST(ProfileFile, ProfileBecomesLinesOfAnImageInSi) {
       "frequencies = [1, 2]\nperiods = 3\n[[profile]]\nkind = \"table\"\ntimes = [0, 1, 3]\ncommands = [0, 0.125, 0]\n"
       "[[profile]]\nkind = \"rest\"\nduration = 1\n");
   test::expect_message(
-      text, {"topology lab\nactuators 1\npiston_per_command 0x1p-1\n", "limits.command_age 0x1.0624dd2f1a9fcp-9\n",
-             "limits.overruns 0\nline.emergency_stop estop\n", "segment.1.duration 0x1p-1\nsegment.1.from 0x1p-4\n",
-             "segment.2.amplitude 0x1p-4\nsegment.2.frequency 0x1p-2\nsegment.2.last_frequency 0x1p+3\n",
-             "segment.4.duration 0x1.8p+0\n", "segment.6.duration 0x1.8p+0\nsegment.6.from 0x0p+0\n",
-             "segment.8.duration 0x1p+1\nsegment.8.from 0x1p-3\nsegment.8.to 0x0p+0\n", "segment.9.duration 0x1p+0\n"});
+      text,
+      {"topology lab\nactuators 1\npiston_per_command 0x1p-1\n", "limits.command_age 0x1.0624dd2f1a9fcp-9\n",
+       "limits.overruns 0\nline.emergency_stop estop\n", "interlock.debounce 0x1.eb851eb851eb8p-6\n",
+       "interlock.arming_timeout 0x1.ep+5\ninterlock.start_hold 0x1p+0\n", "segment.2.from 0x1p-4\nsegment.2.to 0x1p-4\n",
+       "segment.4.amplitude 0x1p-4\nsegment.4.frequency 0x1p-2\nsegment.4.last_frequency 0x1p+3\n",
+       "segment.11.duration 0x1p+1\nsegment.11.from 0x1p-3\nsegment.11.to 0x0p+0\n", "segment.12.duration 0x1p+0\n"});
+}
+
+TEST(ProfileFile, WhereAStretchDoesNotBeginWhereTheOneBeforeHasEndedAStraightLineAtTheSlewRateLeadsThere) {
+  head.replace(head.find("approach_rate"), 0, "slew_rate = 0.25\n");
+  const std::string text = lines(
+      "[[profile]]\nkind = \"steps\"\nlevels = [0, 0.0625]\nhold = 1\n[[profile]]\nkind = \"sweep\"\namplitude = 0.0625\n"
+      "from = 1\nto = 1\nduration = \"250 ms\"\n[[profile]]\nkind = \"rest\"\nduration = 1\n");
+  // Up 1/16 rad in 1/4 s of the level's own time; down again to where the sweep begins; the sweep ends at its peak, and the
+  // rest is 1/4 s away.
+  test::expect_message(
+      text, {"segment.1.duration 0x1p-2\nsegment.1.from 0x0p+0\nsegment.1.to 0x1p-4\n",
+             "segment.2.duration 0x1.8p-1\nsegment.2.from 0x1p-4\nsegment.2.to 0x1p-4\n",
+             "segment.3.duration 0x1p-2\nsegment.3.from 0x1p-4\nsegment.3.to 0x0p+0\n",
+             "segment.4.duration 0x1p-2\nsegment.4.from 0x0p+0\n",
+             "segment.5.duration 0x1p-2\nsegment.5.from 0x1p-4\nsegment.5.to 0x0p+0\n", "segment.6.duration 0x1.8p-1\n"});
+}
+
+TEST(ProfileFile, RateBeyondALimitIsRefusedBeforeAnythingIsDriven) {
+  head.replace(head.find("command_rate = 40"), 17, "command_rate = 0.5");
+  // 0.5 m/s are 1 rad/s; of the line, of the sine at its fastest, and of both together.
+  lines("[[profile]]\nkind = \"table\"\ntimes = [0, 1]\ncommands = [-0.1, 0.1]\n");
+  refused("[[profile]]\nkind = \"table\"\ntimes = [0, 0.1]\ncommands = [-0.06, 0.06]\n",
+          {"profile.0", "by up to 1.2 rad/s", "limits.command_rate", "1 rad/s"});
+  lines("[[profile]]\nkind = \"sweep\"\namplitude = 0.1\nfrom = 0.1\nto = 1.5\nduration = 10\n");
+  refused("[[profile]]\nkind = \"sweep\"\namplitude = 0.1\nfrom = 0.1\nto = 1.6\nduration = 10\n",
+          {"profile.0", "limits.command_rate"});
+  refused("[[profile]]\nkind = \"sines\"\namplitudes = [0.1]\nfrequencies = [1, 1.6]\nperiods = 1\n",
+          {"limits.command_rate"});
+  refused_head("approach_rate = 0.5", "approach_rate = 1.5", {"lab.approach_rate", "allow 1 rad/s"});
+  refused_head("approach_rate = 0.5", "approach_rate = 0.5\nslew_rate = 1.01", {"lab.slew_rate", "allow 1 rad/s"});
+  refused_head("speed = 50", "speed = 0.2", {"lab.approach_rate", "allow 0.4 rad/s"});
+}
+
+TEST(ProfileFile, LimitsOfAnActuatorAreOneForAllOrAListWithOneForEach) {
+  head.replace(head.find("actuators = 1"), 13, "actuators = 2");
+  head.replace(head.find("speed = 50"), 10, "speed = [50, 25]");
+  head.replace(head.find("highest_position = 0.0625"), 25, "highest_position = [0.0625, 0.03125]");
+  const std::string text = lines("[[profile]]\nkind = \"rest\"\nduration = 1\n");
+  test::expect_message(text, {"limits.speed 0x1.9p+5,0x1.9p+4\n", "limits.highest_position 0x1p-4,0x1p-5\n",
+                              "limits.lowest_position -0x1p-4,-0x1p-4\n"});
+  refused("[[profile]]\nkind = \"steps\"\nlevels = [0, 0.0626]\nhold = 1\n", {"the commands of actuator 2, "});
+  refused_head("[50, 25]", "[50]", {"limits.speed", "for all actuators, or a list of 2, one for each"});
+}
+
+TEST(ProfileFile, InterlockAndLinesThatNeedNotBeSaidAreReadWhereTheyAre) {
+  head += "start = \"go\"\nsupply_read_back = \"contactor\"\nfault_read_back = \"lamp\"\n";
+  const std::string rest = "[[profile]]\nkind = \"rest\"\nduration = 1\n";
+  test::expect_message(lines(rest), {"line.start go\n", "line.supply_read_back contactor\n", "line.fault_read_back lamp\n",
+                                     "interlock.start_hold 0x0p+0\n"});
+  test::expect_message(lines("[interlock]\ndebounce = \"50 ms\"\nleast_armed = 4\narming_timeout = 32\nlongest_press = 8\n"
+                             "start_hold = 2\n" +
+                             rest),
+                       {"interlock.debounce 0x1.999999999999ap-5\ninterlock.longest_press 0x1p+3\ninterlock.least_armed "
+                        "0x1p+2\ninterlock.arming_timeout 0x1p+5\ninterlock.start_hold 0x1p+1\n"});
+  refused("[interlock]\nleast_armed = \"999 ms\"\n" + rest, {"interlock.least_armed", "1 to 600 s"});
+  refused("[interlock]\ndebounce = \"4 ms\"\n" + rest, {"interlock.debounce", "0.005 to 1 s"});
+  refused("[interlock]\nbounce = 1\n" + rest, {"bounce"});
+  refused_head("start = \"go\"", "start = \"arm\"", {"lines.start", "a line of its own"});
+  head.erase(head.find("start = \"go\"\n"), 13);
+  refused("[interlock]\nstart_hold = 0.5\n" + rest, {"interlock.start_hold", "1 to 60 s"});
+}
+
+TEST(ProfileFile, DigestIsOfAllThatTheRealTimeSideIsTold) {
+  const std::string rest = "[[profile]]\nkind = \"rest\"\nduration = 1\n";
+  const auto digest = [&] { return load_profile(scratch.write("p.toml", head + rest)).digest; };
+  const std::uint64_t before = digest();
+  CHECK_EQUAL(before, digest());
+  head += "# a remark\n";
+  CHECK_EQUAL(before, digest());
+  head.replace(head.find("disagreement = 0.001"), 20, "disagreement = 0.002");
+  CHECK(before != digest());
 }
 
 TEST(ProfileFile, ASineOrASweepSwingsAboutItsBiasAndIsHeldToTheLimitsThere) {
@@ -49,7 +122,7 @@ TEST(ProfileFile, ASineOrASweepSwingsAboutItsBiasAndIsHeldToTheLimitsThere) {
       "[[profile]]\nkind = \"sines\"\namplitudes = [0.0625]\nfrequencies = [1]\nperiods = 3\nbias = -0.0625\n"
       "[[profile]]\nkind = \"sweep\"\namplitude = 0.0625\nfrom = 1\nto = 2\nduration = 4\nbias = 0.03125\n");
   test::expect_message(text, {"segment.0.from -0x1p-4\nsegment.0.to -0x1p-4\nsegment.0.amplitude 0x1p-4\n",
-                              "segment.1.from 0x1p-5\nsegment.1.to 0x1p-5\nsegment.1.amplitude 0x1p-4\n"});
+                              "segment.2.from 0x1p-5\nsegment.2.to 0x1p-5\nsegment.2.amplitude 0x1p-4\n"});
   refused("[[profile]]\nkind = \"sines\"\namplitudes = [0.0625]\nfrequencies = [1]\nperiods = 3\nbias = 0.0635\n",
           {"limits.highest_position"});
 }
@@ -74,8 +147,8 @@ TEST(ProfileFile, AnAngleIsOneForAllActuatorsOrAListWithOneForEach) {
       "amplitudes = [[0.125, 0.0625]]\nfrequencies = [1, 2]\nperiods = 3\n[[profile]]\nkind = \"table\"\ntimes = [0, 1]\n"
       "commands = [0, [0.125, 0.0625]]\n");
   test::expect_message(
-      text, {"segment.0.from 0x1p-4,0x1p-4\n", "segment.1.to 0x1p-4,-0x1p-3\n", "segment.2.amplitude 0x0p+0,0x1p-4\n",
-             "segment.4.amplitude 0x1p-3,0x1p-4\n", "segment.5.from 0x0p+0,0x0p+0\nsegment.5.to 0x1p-3,0x1p-4\n"});
+      text, {"segment.0.from 0x1p-4,0x1p-4\n", "segment.2.to 0x1p-4,-0x1p-3\n", "segment.4.amplitude 0x0p+0,0x1p-4\n",
+             "segment.7.amplitude 0x1p-3,0x1p-4\n", "segment.8.from 0x0p+0,0x0p+0\nsegment.8.to 0x1p-3,0x1p-4\n"});
   refused("[[profile]]\nkind = \"steps\"\nlevels = [[0, 0, 0]]\nhold = 1\n",
           {"profile.0.levels", "for all actuators, or a list of 2, one for each"});
   refused("[[profile]]\nkind = \"steps\"\nlevels = [[0, 0.126]]\nhold = 1\n", {"the commands of actuator 2, ", "0.126 rad"});
@@ -83,7 +156,7 @@ TEST(ProfileFile, AnAngleIsOneForAllActuatorsOrAListWithOneForEach) {
 
 TEST(ProfileFile, WhatCannotBeIsRefusedWithItsLineAndWhatIsAllowed) {
   refused("", {"profile: missing; declare at least one"});
-  refused("[[profile]]\nkind = \"swep\"\n", {"p.toml:30", "profile.0.kind", "did you mean \"sweep\"?"});
+  refused("[[profile]]\nkind = \"swep\"\n", {"p.toml:31", "profile.0.kind", "did you mean \"sweep\"?"});
   refused("[[profile]]\nkind = \"rest\"\n", {"profile.0.duration: missing"});
   refused("[[profile]]\nkind = \"rest\"\nduration = \"1 m\"\n", {"profile.0.duration"});
   refused("[[profile]]\nkind = \"steps\"\nlevels = []\nhold = 1\n",
@@ -108,8 +181,9 @@ TEST(ProfileFile, PositionBeyondTheLimitsIsRefusedBeforeAnythingIsDriven) {
 TEST(ProfileFile, TheProfileOfTheDocumentationIsGood) {
   CHECK(is_profile(HOTFIRE_LAB_PROFILE));
   const LabProfile profile = load_profile(HOTFIRE_LAB_PROFILE);
-  // A sweep, five steps, nine sines and a table.
-  DOUBLES_EQUAL(60.0 + 10.0 + 3 * (20.0 + 10.0 + 5.0) + 3.0, profile.duration, 1e-9);
+  // A sweep, five steps, nine sines and a table; the lines to where a level is are in its own time.
+  const double parts = 60.0 + 10.0 + 3 * (20.0 + 10.0 + 5.0) + 3.0;
+  DOUBLES_EQUAL(parts, profile.duration, 1e-9);
   test::expect_message(profile.image, {"topology lab\n", "segment.0.amplitude", "line.arm arm\n"});
 }
 

@@ -15,7 +15,12 @@ namespace hotfire::firmware {
 namespace {
 
 constexpr double kPeriod = 1e-3;
-constexpr FaultLimits kLimits{5'000'000, 3'000'000, -0.2, 0.2, 1e-3, -0.1, 0.1, 1.0, 0.01, 20};
+constexpr ActuatorLimits kActuatorLimits{3'000'000, -0.1, 0.1, 1000.0};
+constexpr FaultLimits kLimits = [] {
+  FaultLimits limits{5'000'000, -0.2, 0.2, 1e-3, 1.0, 0.01, 20, 5, 3};
+  limits.actuators.fill(kActuatorLimits);
+  return limits;
+}();
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The sections of docs/faults.md below its second level headings, each with its heading first.
@@ -41,10 +46,11 @@ TEST_GROUP(Faults) {
   void expect(FaultSet faults) { CHECK(checks.look(rig, actuators) == faults); }
 };
 
-TEST(Faults, NumbersAreThoseOfTheListAndNamesAreDifferent) {
+TEST(Faults, NumbersRiseAndNamesAreDifferentAndEachIsFoundByItsNumber) {
   for (std::size_t i = 0; i < kFaults.size(); ++i) {
     CHECK(static_cast<std::size_t>(kFaults[i].fault) < kFaultNumbers);
-    POINTERS_EQUAL(&kFaults[i], &firmware::text_of(kFaults[i].fault));
+    CHECK(&firmware::text_of(kFaults[i].fault) == &kFaults[i]);
+    CHECK(FaultSet::all().has(kFaults[i].fault));
     for (std::size_t j = 0; j < i; ++j) {
       CHECK(kFaults[i].fault > kFaults[j].fault);
       CHECK(kFaults[i].name != kFaults[j].name);
@@ -69,7 +75,7 @@ TEST(Faults, EveryFaultHasASectionThatSaysWhatItMeansWhatTheRigDidAndWhatToDo) {
 TEST(Faults, NothingIsFoundOnAHealthyRigNotEvenAtTheLimits) {
   expect({});
   rig.command_age_ns = kLimits.command_age_ns;
-  actuators[7].reading_ages_ns = {kLimits.reading_age_ns, kLimits.reading_age_ns};
+  actuators[7].reading_ages_ns = {kActuatorLimits.reading_age_ns, kActuatorLimits.reading_age_ns};
   actuators[7].readings = {0.0, kLimits.disagreement};
   expect({});
 }
@@ -87,6 +93,7 @@ TEST(Faults, EachSignalOfTheRigIsItsOwnFault) {
       {Fault::emergency_stop, [](ObservedRig& r) { r.emergency_stop = true; }},
       {Fault::hydraulic_enable_lost, [](ObservedRig& r) { r.hydraulic_enable = false; }},
       {Fault::overrun, [](ObservedRig& r) { r.overrun = true; }},
+      {Fault::take_back_refused, [](ObservedRig& r) { r.take_back_refused = true; }},
       {Fault::recorder_full, [](ObservedRig& r) { r.dropped_recording = true; }}};
   for (const auto& [fault, set] : signals) {
     rig = {};
@@ -96,7 +103,7 @@ TEST(Faults, EachSignalOfTheRigIsItsOwnFault) {
 }
 
 TEST(Faults, OldReadingOfAnyActuatorIsStale) {
-  actuators[5].reading_ages_ns[1] = kLimits.reading_age_ns + 1;
+  actuators[5].reading_ages_ns[1] = kActuatorLimits.reading_age_ns + 1;
   expect(Fault::stale_sensor);
 }
 
@@ -125,6 +132,67 @@ TEST(Faults, PositionCommandAndItsRateAreLimited) {
   expect({});
   actuators[0].command = 1.001e-3;
   expect(Fault::limit);
+}
+
+TEST(Faults, EveryActuatorHasItsOwnLimitsOfPositionSpeedAndAge) {
+  FaultLimits own = kLimits;
+  own.actuators[3] = {1'000'000, -0.01, 0.02, 0.5};
+  checks = FaultChecks(own, kPeriod);
+  for (const std::size_t i : {2, 3}) {
+    const bool narrow = i == 3;
+    actuators[i].readings = {0.03, 0.03};
+    expect(narrow ? FaultSet(Fault::limit) : FaultSet());
+    actuators[i].readings = {-0.02, -0.02};
+    expect(narrow ? FaultSet(Fault::limit) : FaultSet());
+    actuators[i] = {};
+    actuators[i].reading_ages_ns[0] = 2'000'000;
+    expect(narrow ? FaultSet(Fault::stale_sensor) : FaultSet());
+    actuators[i] = {};
+  }
+}
+
+TEST(Faults, MeasuredSpeedIsThatOverItsTimeAndLimited) {
+  FaultLimits own = kLimits;
+  own.actuators[1].speed = 0.5;
+  own.position_error = 1.0;
+  checks = FaultChecks(own, kPeriod);
+  const auto move = [&](double speed, int cycles) {
+    FaultSet found;
+    for (int i = 0; i < cycles; ++i) {
+      for (double& reading : actuators[1].readings) {
+        reading += speed * kPeriod;
+      }
+      found |= checks.look(rig, actuators);
+    }
+    return found;
+  };
+  CHECK(!move(0.49, 40).any());
+  CHECK(!move(-0.49, 40).any());
+  CHECK(move(0.51, 4) == FaultSet());
+  // A single step of the reading is no speed; what lasts is.
+  CHECK(!move(0.0, 10).any());
+  CHECK(!move(2.4, 1).any());
+  CHECK(!move(0.0, 10).any());
+  CHECK(move(0.51, 5) == FaultSet(Fault::speed));
+  CHECK(!move(0.0, 10).has(Fault::readings_disagree));
+  CHECK(move(-0.51, 5) == FaultSet(Fault::speed));
+}
+
+TEST(Faults, LineThatReadsBackOtherThanItIsSetIsAFaultOnceAContactorHasHadItsTime) {
+  const std::vector<std::pair<Fault, bool ObservedRig::*>> lines{
+      {Fault::supply_read_back, &ObservedRig::supply_reads_other},
+      {Fault::fault_read_back, &ObservedRig::fault_line_reads_other}};
+  for (const auto& [fault, line] : lines) {
+    for (int again = 0; again < 2; ++again) {
+      rig = {};
+      expect({});
+      rig.*line = true;
+      for (std::uint64_t i = 0; i < kLimits.read_back_cycles; ++i) {
+        expect({});
+      }
+    }
+    expect(fault);
+  }
 }
 
 TEST(Faults, ActuatorThatLagsIsNoFaultUntilItHasLaggedForLongerThanAllowed) {

@@ -19,11 +19,19 @@ class LabOnWire {
   using Wire = hal::sim::CanWire;
   using Rig = LabRig<Wire::Node, hal::sim::GpioBoard, hal::sim::ManualClock>;
 
-  explicit LabOnWire(LabSettings made, can::Layout frames = can::Layout::classic)
-      : layout(frames), actuators(made.actuators), lab(std::move(made), kPeriod) {
-    board.drive(kEmergencyStopReleased, true);
-    board.drive(kHydraulicEnabled, true);
+  explicit LabOnWire(LabSettings made, can::Layout frames = can::Layout::classic, const LabLines& lines = usual_lines())
+      : layout(frames),
+        actuators(made.actuators),
+        wiring(lab_gpio(lines, "board")),
+        board(wiring.settings),
+        lab(std::move(made), kPeriod) {
+    drive(kEmergencyStopReleased, true);
+    drive(kHydraulicEnabled, true);
   }
+
+  static LabLines usual_lines() { return {"estop", "hydraulic", "arm", "", "", "", "supply", "heartbeat", "fault"}; }
+
+  void drive(LabInput input, bool on) { board.drive(wiring.places[input], on, clock.now_ns()); }
 
   /// One cycle of the loop.
   void cycle() {
@@ -52,11 +60,11 @@ class LabOnWire {
     }
   }
 
-  void press() {
-    board.drive(kArm, true);
-    cycles(2);
-    board.drive(kArm, false);
-    cycles(2);
+  void press(LabInput button = kArm, int held = 2) {
+    drive(button, true);
+    cycles(held);
+    drive(button, false);
+    cycles(held);
   }
 
   /// What the plant says in reading message `which` under this counter.
@@ -84,13 +92,6 @@ class LabOnWire {
   bool on(LabOutput line) const { return ((board.outputs() >> line) & 1U) != 0; }
 
  private:
-  static hal::GpioSettings lines() {
-    hal::GpioSettings made;
-    made.inputs = {{"estop"}, {"hydraulic"}, {"arm"}};
-    made.outputs = {{"supply"}, {"heartbeat"}, {"fault"}};
-    return made;
-  }
-
   hal::Command unused_;
 
  public:
@@ -108,11 +109,12 @@ class LabOnWire {
   bool hears_commands = true;
   Wire wire;
   hal::sim::ManualClock clock;
-  hal::sim::GpioBoard board{lines()};
+  LabGpio wiring;
+  hal::sim::GpioBoard board;
   Lab lab;
   Wire::Node node{wire, own_.subscriptions, own_.senders};
   Wire::Node plant{wire, of_plant_.subscriptions, of_plant_.senders};
-  Rig rig{lab, node, board, clock, layout, kPeriodNs};
+  Rig rig{lab, node, board, wiring, clock, layout, kPeriodNs};
   double piston = 0.0;                        ///< what both of its readings say [m]
   std::uint64_t commands = 0;                 ///< that have reached the plant
   std::function<void()> before_lab = [] {};   ///< after the plant has sent

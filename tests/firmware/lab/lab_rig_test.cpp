@@ -1,3 +1,5 @@
+#include <atomic>
+
 #include "tests/firmware/lab/lab_on_wire.hpp"
 #include "tests/firmware/recording/recorded_run.hpp"
 #include "tests/support/allocation_guard.hpp"
@@ -22,12 +24,12 @@ TEST(LabRig, LinesFollowTheInterlockAndNoCommandIsSentUntilArmed) {
   press();
   CHECK(on(kSupply));
   CHECK(commands > 0);
-  board.drive(kEmergencyStopReleased, false);
+  drive(kEmergencyStopReleased, false);
   const std::uint64_t sent = commands;
   cycle();
   CHECK(!on(kSupply));
   CHECK(on(kFault));
-  board.drive(kEmergencyStopReleased, true);
+  drive(kEmergencyStopReleased, true);
   cycles(10);
   UNSIGNED_LONGS_EQUAL(sent, commands);
   press();
@@ -47,12 +49,12 @@ TEST(LabRig, CommandThatIsStillBeforeTheBusAtAFaultNeverLeaves) {
   press();
   wire.hold();
   cycle();
-  board.drive(kEmergencyStopReleased, false);
+  drive(kEmergencyStopReleased, false);
   const std::uint64_t sent = commands;
   cycles(3);
   wire.release();
   plant.rearm();
-  board.drive(kEmergencyStopReleased, true);
+  drive(kEmergencyStopReleased, true);
   cycles(10);
   UNSIGNED_LONGS_EQUAL(sent, commands);
   press();
@@ -65,12 +67,12 @@ TEST(LabRig, EmergencyStopWhileTheBusIsDownAndBothReleasedLetsNoCommandOutUntilA
   cycle();
   press();
   wire.set_down(true);
-  board.drive(kEmergencyStopReleased, false);
+  drive(kEmergencyStopReleased, false);
   const std::uint64_t sent = commands;
   cycles(5);
   wire.set_down(false);
   plant.rearm();
-  board.drive(kEmergencyStopReleased, true);
+  drive(kEmergencyStopReleased, true);
   cycles(10);
   UNSIGNED_LONGS_EQUAL(sent, commands);
   press();
@@ -106,6 +108,188 @@ TEST(LabRig, CycleTakesNothingFromTheHeap) {
   const test::AllocationGuard guard;
   cycles(100);
   UNSIGNED_LONGS_EQUAL(0, guard.allocations() + guard.releases());
+}
+
+TEST(LabRig, StopThatComesAndGoesBetweenTwoCyclesIsAStop) {
+  cycle();
+  press();
+  for (const LabInput line : {kEmergencyStopReleased, kHydraulicEnabled}) {
+    press();
+    CHECK(on(kSupply));
+    drive(line, false);
+    drive(line, true);
+    cycle();
+    CHECK(!on(kSupply));
+    CHECK(lab.outputs().interlock.first ==
+          (line == kEmergencyStopReleased ? Fault::emergency_stop : Fault::hydraulic_enable_lost));
+    press();
+  }
+}
+
+TEST(LabRig, MoreEdgesThanTheKernelKeepsAreTakenForAStop) {
+  cycle();
+  press();
+  CHECK(on(kSupply));
+  // An even number, of a line that is no stop.
+  for (std::size_t i = 0; i < hal::sim::GpioBoard::kMaxEdges + 2; ++i) {
+    drive(kArm, i % 2 == 0);
+  }
+  cycle();
+  CHECK(lab.outputs().interlock.first == Fault::emergency_stop);
+  CHECK(!on(kSupply));
+}
+
+TEST(LabRig, FaultWhileStoppingIsTheOneThatIsNamed) {
+  cycle();
+  press();
+  press();
+  piston = 0.0;
+  std::atomic<bool> asked{false};
+  rig.ask_to_stop_when(asked);
+  asked = true;
+  cycle();
+  CHECK(lab.outputs().interlock.state == RigState::stopping);
+  CHECK(!rig.ended());
+  drive(kEmergencyStopReleased, false);
+  cycle();
+  CHECK(lab.outputs().interlock.first == Fault::emergency_stop);
+  CHECK(!on(kSupply));
+  CHECK(rig.ended());
+}
+
+TEST(LabRig, EndOfItsCyclesStopsWhatRunsThroughTheInterlock) {
+  rig.stop_after(20);
+  cycle();
+  press();
+  press();
+  for (int i = 0; i < 30 && lab.outputs().interlock.state == RigState::running; ++i) {
+    cycle();
+  }
+  CHECK(lab.outputs().interlock.state == RigState::stopping);
+  CHECK(on(kSupply));
+  for (int i = 0; i < 200 && on(kSupply); ++i) {
+    CHECK(!rig.ended());
+    cycle();
+  }
+  CHECK(rig.ended());
+  CHECK(lab.outputs().interlock.state == RigState::safe);
+}
+
+TEST(LabRig, LinesAreDroppedWhateverTheInterlockSays) {
+  cycle();
+  press();
+  CHECK(on(kSupply));
+  CHECK(rig.drop_lines());
+  UNSIGNED_LONGS_EQUAL(0, board.outputs());
+  board.set_broken(true);
+  CHECK(!rig.drop_lines());
+}
+
+TEST(LabRig, TakeBackThatTheKernelRefusesIsAFaultThatIsHeldUntilItIsGranted) {
+  cycle();
+  press();
+  wire.hold();
+  wire.set_stop_refused(true);
+  cycle();
+  const std::uint64_t sent = commands;
+  std::atomic<bool> asked{true};
+  rig.ask_to_stop_when(asked);
+  cycles(2);
+  // It was not driven any more for any fault: the stop was asked for.
+  CHECK(!on(kSupply));
+  cycles(3);
+  CHECK(lab.outputs().interlock.first == Fault::take_back_refused);
+  CHECK(on(kFault));
+  asked = false;
+  press();
+  CHECK(!on(kSupply));
+  cycles(200);
+  CHECK(on(kFault));
+  wire.set_stop_refused(false);
+  // Asked again within a tenth of a second.
+  cycles(100);
+  wire.release();
+  plant.rearm();
+  cycles(10);
+  UNSIGNED_LONGS_EQUAL(sent, commands);
+  press();
+  UNSIGNED_LONGS_EQUAL(sent, commands);
+  press();
+  CHECK(commands > sent);
+}
+
+namespace {
+
+LabLines lines_that_read_back() {
+  LabLines lines = test_lab::LabOnWire::usual_lines();
+  lines.supply_read_back = "contactor";
+  lines.fault_read_back = "lamp";
+  return lines;
+}
+
+LabSettings settings_that_read_back() {
+  LabSettings made = test_lab::settings();
+  made.limits.read_back_cycles = 5;
+  return made;
+}
+
+class ReadBackGroup : public Utest, public test_lab::LabOnWire {
+ public:
+  ReadBackGroup() : LabOnWire(settings_that_read_back(), can::Layout::classic, lines_that_read_back()) {
+    after_cycle = [this] {
+      drive(kSupplyReadBack, welded || (on(kSupply) && !stuck));
+      drive(kFaultReadBack, on(kFault) != lamp_is_wrong);
+    };
+  }
+
+  bool welded = false;
+  bool stuck = false;
+  bool lamp_is_wrong = false;
+};
+
+}  // namespace
+
+TEST_GROUP_BASE(LabReadBack, ReadBackGroup){};
+
+TEST(LabReadBack, LinesThatFollowAreNoFault) {
+  cycles(20);
+  press();
+  cycles(20);
+  CHECK(on(kSupply));
+  drive(kEmergencyStopReleased, false);
+  cycles(20);
+  CHECK(lab.outputs().interlock.faults == FaultSet(Fault::emergency_stop));
+}
+
+TEST(LabReadBack, ContactorThatDoesNotPullInIsAFaultWhileDriven) {
+  stuck = true;
+  cycles(20);
+  press();
+  CHECK(on(kSupply));
+  cycles(10);
+  CHECK(!on(kSupply));
+  CHECK(lab.outputs().interlock.first == Fault::supply_read_back);
+}
+
+TEST(LabReadBack, ContactorThatIsWeldedIsAFaultOfASafeRigAndForbidsArming) {
+  cycles(20);
+  welded = true;
+  cycles(10);
+  CHECK(on(kFault));
+  CHECK(lab.outputs().interlock.first == Fault::supply_read_back);
+  press();
+  CHECK(!on(kSupply));
+  welded = false;
+  cycles(2);
+  press();
+  CHECK(on(kSupply));
+}
+
+TEST(LabReadBack, FaultLineThatDoesNotFollowIsAFault) {
+  cycles(20);
+  lamp_is_wrong = true;
+  cycles(10);
+  CHECK(lab.outputs().interlock.first == Fault::fault_read_back);
 }
 
 }  // namespace hotfire::firmware

@@ -21,8 +21,10 @@ inline LabSettings settings() {
   made.current_limit = 0.02;
   made.approach_rate = 1.0;
   made.rest_speed = 0.01;
-  made.stopping_time = 0.1;
-  made.limits = {5 * kPeriodNs, 5 * kPeriodNs, -0.15, 0.15, 0.001, -0.06, 0.06, 10.0, 0.004, 10};
+  // The arm button starts too, and a press is one as soon as it is let go.
+  made.interlock = {true, 0, 1, 1'000'000, 0, 1'000'000, 100};
+  made.limits = {5 * kPeriodNs, -0.15, 0.15, 0.001, 10.0, 0.004, 10};
+  made.limits.actuators.fill({5 * kPeriodNs, -0.06, 0.06, 100.0});
   return made;
 }
 

@@ -143,8 +143,10 @@ TEST(Lab, EveryActuatorIsGivenItsOwnCommand) {
   };
   for (int press = 0; press < 2; ++press) {
     follow({});
+    follow({});
     follow(pressed);
   }
+  follow({});
   // 20 cycles to where the profile begins, then all of it: its sine ends at its peak.
   for (int i = 0; i < 1019; ++i) {
     follow({});

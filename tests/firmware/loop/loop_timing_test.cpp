@@ -109,6 +109,39 @@ TEST(LoopTiming, SkipLeavesOutTheCyclesAlreadyDueAndKeepsThePhase) {
   LONGS_EQUAL(13 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
 }
 
+TEST(LoopTiming, NumberOfACycleCountsWhatWasLeftOutBeforeItWhereTheWorldGoesOnWithoutTheLoop) {
+  for (const bool number_skipped : {false, true}) {
+    world = ScriptedWorld{};
+    world.delays[3].step_ns = 3 * kPeriod + 500'000;
+    world.delays[5].step_ns = kPeriod;
+    LoopSettings asked = settings(20, OverrunPolicy::skip);
+    asked.number_skipped = number_skipped;
+    struct Heads {
+      void record(const hal::CycleHead& head, std::span<const double>, std::span<const double>) noexcept {
+        all[count++] = head;
+      }
+      std::array<hal::CycleHead, 20> all{};
+      std::size_t count = 0;
+    } heads;
+    test::ScriptedPlant plant(world);
+    test::ScriptedBus bus(world);
+    using Clock = hal::sim::ManualClock;
+    Loop<test::ScriptedPlant, test::ScriptedBus, Clock, OwnPace<Clock>, Heads> loop(
+        plant, bus, world.clock, asked, OwnPace<Clock>(world.clock, asked.period_ns), &heads);
+    loop.run(std::atomic<bool>(false), []() noexcept {});
+    std::uint64_t skipped = 0;
+    for (std::size_t i = 0; i < heads.count; ++i) {
+      skipped += heads.all[i].skipped_before();
+      UNSIGNED_LONGS_EQUAL(i + skipped, heads.all[i].cycle);
+      // The number says when the cycle was due.
+      const std::int64_t due = heads.all[0].release_ns + static_cast<std::int64_t>(heads.all[i].cycle) * kPeriod;
+      CHECK(!number_skipped || heads.all[i].release_ns == due);
+    }
+    UNSIGNED_LONGS_EQUAL(number_skipped ? 4 : 0, skipped);
+    UNSIGNED_LONGS_EQUAL(4, loop.result().skipped);
+  }
+}
+
 TEST(LoopTiming, StopEndsTheLoopWithTheFirstOverrun) {
   world.delays[3].step_ns = 2 * kPeriod;
   const LoopResult result = run_scripted(world, settings(10, OverrunPolicy::stop));

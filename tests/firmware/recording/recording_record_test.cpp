@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 #include "hal/recording/header.hpp"
@@ -118,11 +119,25 @@ TEST(RecordingAsRecord, SeveralActuatorsAreRefusedWithTheMendAndOneCanBeChosen) 
   UNSIGNED_LONGS_EQUAL(kCycles + 1, second.rows);
 }
 
+TEST(RecordingAsRecord, CyclesThatTheLoopLeftOutAreRefusedAsTheyAreRealTimeThatPassed) {
+  record_axis();
+  scratch.write("run.hfr", firmware::test_recording::rewritten(path, [](std::uint64_t cycle, std::string& bytes) {
+                  if (cycle == 120) {
+                    hal::CycleHead head;
+                    std::memcpy(&head, bytes.data(), sizeof head);
+                    head.flags |= std::uint64_t{20} << hal::CycleHead::kSkippedShift;
+                    std::memcpy(bytes.data(), &head, sizeof head);
+                  }
+                  return cycle < 100 || cycle >= 120;
+                }));
+  STRCMP_CONTAINS("0 cycles were dropped and 20 skipped before cycle 120", refusal([&] { load_record(path); }).c_str());
+}
+
 TEST(RecordingAsRecord, DroppedCyclesAreRefusedAndBothSidesOfThemCanBeRead) {
   record_axis();
   const Record whole = load_record(path);
   drop([](std::uint64_t cycle) { return cycle >= 100 && cycle < 120; });
-  STRCMP_CONTAINS("20 cycles were dropped before cycle 120", refusal([&] { load_record(path); }).c_str());
+  STRCMP_CONTAINS("20 cycles were dropped and 0 skipped before cycle 120", refusal([&] { load_record(path); }).c_str());
   const Record before = load_recording(path, {0, 0, true});
   UNSIGNED_LONGS_EQUAL(101, before.rows);
   const Record after = load_recording(path, {0, 110, true});

@@ -92,6 +92,24 @@ TEST(Report, CycleMissingInTheRecordingIsBadUnlessAllowed) {
   STRCMP_CONTAINS("the recording failed: the disk is full", judge(with_recording()).reason.c_str());
 }
 
+TEST(Report, FaultOfALabIsItsVerdictAlsoIfTheProfileHadBeenRunToItsEnd) {
+  const auto verdict = [&](const LabAccount& account) {
+    Session of_lab = session();
+    of_lab.lab = account;
+    return judge(of_lab);
+  };
+  LabAccount account{RigState::safe, true, 1};
+  CHECK(verdict(account).good);
+  account.first = Fault::emergency_stop;
+  LONGS_EQUAL(kInterlock, verdict(account).status);
+  STRCMP_CONTAINS("interlock: fault 9, emergency stop", verdict(account).reason.c_str());
+  account = {RigState::safe, false, 1};
+  LONGS_EQUAL(kBadVerdict, verdict(account).status);
+  account = {RigState::safe, true, 1};
+  account.left_the_bus = false;
+  LONGS_EQUAL(kHardware, verdict(account).status);
+}
+
 TEST(Report, LoopStoppedByAnOverrunIsBadWhateverTheLimits) {
   options.max_overruns = 10;
   options.loop.policy = OverrunPolicy::stop;

@@ -124,6 +124,24 @@ TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
   refused({"timing", "--priority", "0", "--require-realtime"}, "exclude each other");
 }
 
+TEST(Options, LabThatMovesRealActuatorsNeedsARecordingADigestAndRealTime) {
+  const std::vector<std::string> lab{"lab", "--image", "p", "--bus", "can0", "--gpio", "rig"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), lab.begin(), lab.end());
+    return more;
+  };
+  const Options options = accepted(with({"--record", "run.hfr", "--confirm", "0123456789abcdef"}));
+  STRCMP_EQUAL("0123456789abcdef", options.confirm.c_str());
+  CHECK(!options.rehearsal);
+  refused(with({}), "it needs --record FILE, --confirm DIGEST");
+  refused(with({"--record", "run.hfr"}), "--confirm DIGEST");
+  refused(with({"--confirm", "0123456789abcdef"}), "--record FILE");
+  refused(with({"--record", "run.hfr", "--confirm", "0123456789abcdef", "--priority", "0"}), "real time");
+  CHECK(accepted(with({"--rehearsal", "--priority", "0"})).rehearsal);
+  refused({"plant", "--image", "p", "--rehearsal"}, "of a lab");
+  refused({"timing", "--confirm", "1"}, "of a lab");
+}
+
 TEST(Options, RecordingAndItsLimitsAreRead) {
   const Options options =
       accepted({"plant", "--image", "p", "--record", "run.hfr", "--record-buffer-s", "2.5", "--record-max-mib=64",

@@ -89,9 +89,9 @@ class RecordedRows {
 
 [[noreturn]] void refuse_gap(const std::filesystem::path& path, const hal::RecordedCycle& cycle) {
   throw FileError(fmt::format(
-      "{}: {} cycles were dropped before cycle {}, and a record has no gaps; write what lies before or after with 'hotfire "
-      "replay {} --csv part.csv [--from {}]'",
-      path.string(), cycle.dropped_before, cycle.head.cycle, path.string(), cycle.head.cycle));
+      "{}: {} cycles were dropped and {} skipped before cycle {}, and a record has no gaps; write what lies before or after "
+      "with 'hotfire replay {} --csv part.csv [--from {}]'",
+      path.string(), cycle.dropped_before, cycle.skipped_before, cycle.head.cycle, path.string(), cycle.head.cycle));
 }
 
 void read_rows(hal::RecordingReader& reader, const std::filesystem::path& path, const RecordingPart& part,
@@ -105,7 +105,7 @@ void read_rows(hal::RecordingReader& reader, const std::filesystem::path& path, 
   }
   hal::RecordedCycle cycle;
   while (reader.next(cycle)) {
-    if (begun && cycle.dropped_before > 0) {
+    if (begun && cycle.dropped_before + cycle.skipped_before > 0) {
       if (!part.up_to_gap) {
         refuse_gap(path, cycle);
       }

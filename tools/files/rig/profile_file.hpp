@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -12,6 +13,7 @@ struct LabProfile {
   double lowest_command = 0.0;  ///< [rad] that [limits] allow as a position
   double highest_command = 0.0;
   double command_rate = 0.0;  ///< [rad/s] that they allow
+  std::uint64_t digest = 0;   ///< of the image: what a person confirms
   std::string image;          ///< lines `key value` in SI, which hotfire-rt reads bit for bit
 };
 
