@@ -45,7 +45,7 @@ constexpr std::array<ProfileNumber, 4> kActuatorLimits{{{"reading_age", "s", 0.0
 /// A number that need not be said, and what it then is.
 struct Default {
   ProfileNumber number;
-  double value;
+  double value = 0.0;
 };
 /// Over which a speed is measured: long against a step of a reading, short against what a piston needs to get anywhere. And
 /// how long a contactor may take to follow its line.
