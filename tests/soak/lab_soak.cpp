@@ -120,15 +120,14 @@ class Soak {
   }
 
   void happen() {
-    hal::sim::GpioBoard& board = bench_->board;
-    board.drive(kEmergencyStopReleased, !stop_.now(random_));
-    board.drive(kHydraulicEnabled, !hydraulic_.now(random_));
+    bench_->drive(kEmergencyStopReleased, !stop_.now(random_));
+    bench_->drive(kHydraulicEnabled, !hydraulic_.now(random_));
     // A press that bounces: on, with short breaks.
     const bool pressed = press_.now(random_) && !bounce_.now(random_);
-    board.drive(kArm, pressed);
+    bench_->drive(kArm, pressed);
     arm_on_ = pressed;
     broken_ = lines_.now(random_);
-    board.set_broken(broken_);
+    bench_->board.set_broken(broken_);
     bench_->wire.set_bus_off(bus_off_.now(random_));
     bench_->wire.set_down(down_.now(random_));
     bench_->wire.set_queue_full(full_.now(random_));
@@ -198,7 +197,7 @@ class Soak {
   static bool may_follow(RigState before, RigState now) {
     switch (before) {
       case RigState::safe:
-        return now == RigState::safe || now == RigState::armed;
+        return now == RigState::safe || now == RigState::armed || now == RigState::faulted;
       case RigState::armed:
         return now != RigState::stopping;
       case RigState::running:
@@ -217,16 +216,17 @@ class Soak {
     expect(may_follow(state_, interlock.state),
            "came from " + std::string(kRigStates[static_cast<std::size_t>(state_)]) + ", which does not lead here");
     seen_on_after_off_ = seen_on_after_off_ || (seen_off_ && arm_on_ && !broken_);
-    seen_off_ = seen_off_ || !arm_on_ || broken_;
+    seen_off_ = seen_off_ || (!arm_on_ && !broken_);
     if (interlock.state != state_) {
       expect(interlock.state != RigState::armed || seen_on_after_off_, "armed though nobody pressed in the state before");
       completed_ += state_ == RigState::running && interlock.state == RigState::stopping ? 1 : 0;
       forget_switch();
       state_ = interlock.state;
     }
-    const bool cause = seen.emergency_stop || !seen.hydraulic_enable || seen.bus_off || seen.bus_down || seen.bad_frame ||
-                       seen.transmit_queue_full ||
-                       bench_->rig.inputs().ages_ns[0] > test_lab::settings().limits.reading_age_ns;
+    const bool cause =
+        seen.emergency_stop || !seen.hydraulic_enable || seen.bus_off || seen.bus_down || seen.bad_frame ||
+        seen.second_sender || seen.transmit_queue_full ||
+        std::ranges::max(bench_->rig.inputs().ages_ns[0]) > test_lab::settings().limits.actuators[0].reading_age_ns;
     expect(!interlock.drive || !cause, "drives in a cycle that has a cause of a fault");
     expect(interlock.fault_out == (interlock.state == RigState::faulted), "its fault output is not its state");
     if (!broken_) {
@@ -245,7 +245,8 @@ class Soak {
     const double command = bench_->lab.outputs().commands[0];
     expect(std::isfinite(current) && std::abs(current) <= test_lab::settings().current_limit, "a current beyond its limit");
     expect(std::isfinite(command), "a command that is no number");
-    expect(!interlock.drive || std::abs(command * kPistonPerCommand) <= test_lab::settings().limits.highest_position,
+    expect(!interlock.drive ||
+               std::abs(command * kPistonPerCommand) <= test_lab::settings().limits.actuators[0].highest_position,
            "a command beyond its limit");
   }
 
