@@ -93,7 +93,7 @@ class Vehicle {
         axes_(axes_of(parameters, h, std::make_index_sequence<kAxes>{})),
         structure_(parameters.modes, h),
         gimbals_(gimbals_of(parameters, h, std::make_index_sequence<Engines>{})) {
-    std::array<S, Engines> thrust;
+    std::array<S, Engines> thrust{};
     for (int e = 0; e < Engines; ++e) {
       const GimbalBearing<S>& bearing = gimbals_[at(e)].bearing;
       thrust[at(e)] = bearing.thrust;

@@ -108,15 +108,8 @@ bool read_mode(const std::string& word, Options& options) {
   return word == "plant" || options.mode != Mode::plant;
 }
 
-/// What options that are each allowed say together that cannot be.
-std::string conflict_in(const Options& options) {
-  const can::Layout layout = options.frame_layout();
-  if (options.mode == Mode::plant && options.image.empty()) {
-    return "plant needs --image FILE, or start it as: hotfire plant --model M.toml";
-  }
-  if (options.mode == Mode::timing && options.on_can()) {
-    return "timing needs no bus: leave --bus out";
-  }
+/// What options of a lab say together that cannot be.
+std::string conflict_in_lab(const Options& options) {
   if (options.mode == Mode::lab && (options.image.empty() || !options.on_can() || options.gpio.empty())) {
     return "lab needs a profile, a bus and lines: hotfire lab --profile P.toml --bus can0 --gpio CHIP";
   }
@@ -130,6 +123,21 @@ std::string conflict_in(const Options& options) {
   }
   if (options.mode != Mode::lab && (options.rehearsal || !options.confirm.empty())) {
     return "--confirm and --rehearsal are of a lab";
+  }
+  return {};
+}
+
+/// What options that are each allowed say together that cannot be.
+std::string conflict_in(const Options& options) {
+  const can::Layout layout = options.frame_layout();
+  if (options.mode == Mode::plant && options.image.empty()) {
+    return "plant needs --image FILE, or start it as: hotfire plant --model M.toml";
+  }
+  if (options.mode == Mode::timing && options.on_can()) {
+    return "timing needs no bus: leave --bus out";
+  }
+  if (std::string conflict = conflict_in_lab(options); !conflict.empty()) {
+    return conflict;
   }
   if (options.mode == Mode::controller && !options.on_can()) {
     return "controller needs a bus with a plant on it: --bus can0";

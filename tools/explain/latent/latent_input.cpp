@@ -203,8 +203,8 @@ LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fi
   const Eigen::VectorXd residual = evaluator.residuals(prediction);
   for (const Experiment& experiment : data.experiments) {
     const auto rows = static_cast<Eigen::Index>(experiment.rows());
-    problem.left.push_back(Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(kReadState.size()),
-                                                     std::numeric_limits<double>::quiet_NaN()));
+    problem.left.emplace_back(Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(kReadState.size()),
+                                                        std::numeric_limits<double>::quiet_NaN()));
     problem.sensitivity.emplace_back(kReadState.size(), Eigen::MatrixXd::Zero(count, rows));
   }
   for (const Stretch& s : evaluator.stretches()) {

@@ -26,8 +26,8 @@ struct RowFlow {
 struct FlowScales {
   Eigen::Matrix<double, kFlowStates, 1> state;
   Eigen::Matrix<double, kPorts, 1> input;
-  std::array<double, 3> reading;  ///< by channel
-  double time = 0.0;              ///< time constant of the position servo [s]
+  std::array<double, 3> reading{};  ///< by channel
+  double time = 0.0;                ///< time constant of the position servo [s]
 };
 
 FlowScales flow_scales(const model::Simplex<double>::Parameters& parameters);

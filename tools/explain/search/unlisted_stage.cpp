@@ -17,6 +17,9 @@ constexpr double kUnlistedAdvantage = 0.7;
 constexpr double kLittleExplained = 0.5;
 /// ... and give way to a term of unknown law that is only a little better.
 constexpr double kAdvantageOverLittle = 0.9;
+/// Held-out data agree that a model leaves clearly less where their error is below this share: from 1 to 0.7 of the noise
+/// beyond it is 0.87 of the whole.
+constexpr double kHeldOutAgrees = 0.9;
 /// A model that leaves less than this many times the noise is near enough to it for its names to stand.
 constexpr double kNearNoise = 3.0;
 /// A name beside a term of unknown law has to carry its weight: without it the held-out error grows by this factor.
@@ -64,7 +67,7 @@ template <class Family>
 bool UnlistedStage<Family>::leaves_clearly_less(const Assessed<Family>& model, double share) const {
   const double left = excess_over_noise(data_, result_.explained.prediction);
   return left > kLargerThanNoise && excess_over_noise(data_, model.prediction) < share * left &&
-         held_out_ratio(model, result_.explained) < 1.0 - kLeastHeldOutDrop;
+         held_out_ratio(model, result_.explained) < kHeldOutAgrees;
 }
 
 /// The share of what the listed effects leave that a term of unknown law has to stay below.

@@ -8,6 +8,8 @@ namespace {
 
 constexpr std::size_t kMostClosingQuotes = 5;  ///< two of the text itself, then three
 
+bool is_beyond_ascii(char letter) { return static_cast<unsigned char>(letter) > 127; }
+
 /// Behind a string of one line that begins at `at`; at the end of its line if it has no end.
 std::size_t behind_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
@@ -35,7 +37,7 @@ std::size_t behind_long_string(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-std::size_t line_of_long_key(std::string_view text) {
+KeyFault key_fault_of(std::string_view text) {
   std::size_t parts = 0;
   bool joined = false;  // the last thing was a point, which joins what follows to the key
   const auto part = [&] {
@@ -43,15 +45,16 @@ std::size_t line_of_long_key(std::string_view text) {
     joined = false;
     return parts > kMostKeyParts;
   };
-  const auto line = [&](std::size_t at) {
-    return 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  const auto fault = [&](KeyFault::Kind kind, std::size_t at) {
+    const auto ends = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    return KeyFault{kind, 1 + static_cast<std::size_t>(ends)};
   };
   constexpr std::string_view kBreaks = "=,[]{}\n#\"'. \t";
   for (std::size_t at = 0; at < text.size();) {
     const char letter = text[at];
     if (letter == '"' || letter == '\'') {
       if (part()) {
-        return line(at);
+        return fault(KeyFault::Kind::long_key, at);
       }
       const bool is_long = text.substr(at).starts_with(letter == '"' ? "\"\"\"" : "'''");
       at = is_long ? behind_long_string(text, at) : behind_string(text, at);
@@ -67,12 +70,18 @@ std::size_t line_of_long_key(std::string_view text) {
       ++at;
     } else {
       if (part()) {
-        return line(at);
+        return fault(KeyFault::Kind::long_key, at);
       }
-      at = std::min(text.find_first_of(kBreaks, at), text.size());
+      const std::size_t end = std::min(text.find_first_of(kBreaks, at), text.size());
+      // A mark of the byte order may begin the file.
+      const std::size_t mark = at == 0 && text.starts_with("\xef\xbb\xbf") ? 3 : 0;
+      if (std::ranges::any_of(text.substr(at + mark, end - at - mark), is_beyond_ascii)) {
+        return fault(KeyFault::Kind::foreign_letter, at);
+      }
+      at = end;
     }
   }
-  return 0;
+  return {};
 }
 
 }  // namespace hotfire

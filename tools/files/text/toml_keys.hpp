@@ -10,8 +10,19 @@ namespace hotfire {
 /// far below a megabyte.
 inline constexpr std::size_t kMostKeyParts = 16;
 
-/// The line, from 1, of the first key of a TOML text that has more than `kMostKeyParts` parts; 0: there is none. It reads
-/// strings and comments as TOML 1.0.0 has them, so that points in them are no parts.
-std::size_t line_of_long_key(std::string_view text);
+/// What a parser of a TOML text must not be given.
+struct KeyFault {
+  enum class Kind {
+    none,
+    long_key,       ///< a key has more than `kMostKeyParts` parts
+    foreign_letter  ///< a letter beyond ASCII stands outside of strings and comments, where TOML 1.0.0 has none
+  };
+  Kind kind = Kind::none;
+  std::size_t line = 0;  ///< from 1
+};
+
+/// The first of them. It reads strings and comments as TOML 1.0.0 has them, so that points in them are no parts and letters
+/// in them are free. The parser's own table of letters has undefined behaviour on some that it should refuse.
+KeyFault key_fault_of(std::string_view text);
 
 }  // namespace hotfire

@@ -99,10 +99,12 @@ std::string wanted_unit(std::string_view unit) {
 
 TomlSource::TomlSource(const std::filesystem::path& path)
     : path_(path), content_(read_small_file(path)), lines_(split_lines(content_)) {
-  if (const std::size_t line = line_of_long_key(content_); line != 0) {
-    refuse_at({static_cast<toml::source_index>(line), 0},
-              fmt::format("a key of more than {} parts; allowed: up to {}, as in limits.command_rate", kMostKeyParts,
-                          kMostKeyParts));
+  if (const KeyFault fault = key_fault_of(content_); fault.kind != KeyFault::Kind::none) {
+    refuse_at({static_cast<toml::source_index>(fault.line), 0},
+              fault.kind == KeyFault::Kind::long_key
+                  ? fmt::format("a key of more than {} parts; allowed: up to {}, as in limits.command_rate", kMostKeyParts,
+                                kMostKeyParts)
+                  : std::string("a letter beyond ASCII outside of a string or a comment; put it in quotes or remove it"));
   }
   try {
     root_ = toml::parse(std::string_view{content_}, path.string());
