@@ -8,7 +8,12 @@ namespace {
 
 constexpr std::size_t kMostClosingQuotes = 5;  ///< two of the text itself, then three
 
-bool is_beyond_ascii(char letter) { return static_cast<unsigned char>(letter) > 127; }
+/// True if the word from `at` to `end` has a letter beyond ASCII. A mark of the byte order may begin the file.
+bool is_foreign(std::string_view text, std::size_t at, std::size_t end) {
+  const std::size_t mark = at == 0 && text.starts_with("\xef\xbb\xbf") ? 3 : 0;
+  return std::ranges::any_of(text.substr(at + mark, end - at - mark),
+                             [](char letter) { return static_cast<unsigned char>(letter) > 127; });
+}
 
 /// Behind a string of one line that begins at `at`; at the end of its line if it has no end.
 std::size_t behind_string(std::string_view text, std::size_t at) {
@@ -73,9 +78,7 @@ KeyFault key_fault_of(std::string_view text) {
         return fault(KeyFault::Kind::long_key, at);
       }
       const std::size_t end = std::min(text.find_first_of(kBreaks, at), text.size());
-      // A mark of the byte order may begin the file.
-      const std::size_t mark = at == 0 && text.starts_with("\xef\xbb\xbf") ? 3 : 0;
-      if (std::ranges::any_of(text.substr(at + mark, end - at - mark), is_beyond_ascii)) {
+      if (is_foreign(text, at, end)) {
         return fault(KeyFault::Kind::foreign_letter, at);
       }
       at = end;
