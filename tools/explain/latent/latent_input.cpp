@@ -119,10 +119,7 @@ class Filter {
         if (row + 1 < experiment.rows()) {
           const FilterMatrix moves = transition(problem_.flows[e][row], kept);
           means = moves * means;
-          const FilterMatrix spread = moves * covariance;
-          covariance.noalias() = spread * moves.transpose();
-          covariance(kSignal, kSignal) += variance_ * (1.0 - kept * kept);
-          covariance = 0.5 * (covariance + covariance.transpose()).eval();
+          advance(moves, kept, covariance);
         }
       }
     }
@@ -161,16 +158,21 @@ class Filter {
       if (row + 1 < experiment.rows()) {
         const FilterMatrix moves = transition(problem_.flows[e][row], kept);
         mean = moves * mean;
-        const FilterMatrix spread = moves * covariance;
-        covariance.noalias() = spread * moves.transpose();
-        covariance(kSignal, kSignal) += variance_ * (1.0 - kept * kept);
-        covariance = 0.5 * (covariance + covariance.transpose()).eval();
+        advance(moves, kept, covariance);
       }
     }
     return steps;
   }
 
  private:
+  /// The covariance a row later.
+  void advance(const FilterMatrix& moves, double kept, FilterMatrix& covariance) const {
+    const FilterMatrix spread = moves * covariance;
+    covariance.noalias() = spread * moves.transpose();
+    covariance(kSignal, kSignal) += variance_ * (1.0 - kept * kept);
+    covariance = 0.5 * (covariance + covariance.transpose()).eval();
+  }
+
   const LatentProblem& problem_;
   const std::optional<LatentPlace> place_;
   double variance_;
