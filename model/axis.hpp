@@ -8,6 +8,7 @@
 #include "model/exact_hold.hpp"
 #include "model/parts.hpp"
 #include "model/root.hpp"
+#include "model/surroundings.hpp"
 
 namespace hotfire::model {
 
@@ -37,7 +38,7 @@ struct Uncoupled {};
 /// One step costs the same whatever the state: the passes are two, and no loop depends on data. No allocation, no lock, no
 /// exception after construction. `State` is one flat block that the caller owns; copying it is a checkpoint.
 template <class S, class List>
-class Axis {
+class Axis : public AxisStates {
  public:
   using Scalar = S;
   using Effects = List;
@@ -74,7 +75,6 @@ class Axis {
     std::array<S, 3> measured{};
   };
 
-  enum Index { kOpening, kOpeningRate, kPressure, kWashout, kPiston, kPistonRate, kAngle, kAngleRate };
   /// What acts on them, held over a step: piston command [m], valve command [-], flow into the extend chamber [m^3/s], force
   /// against the piston [N], force of the load spring [N], torque against the engine [N m].
   enum Input { kCommand, kValveCommand, kFlow, kPistonForce, kSpringForce, kEngineTorque };
@@ -175,8 +175,10 @@ class Axis {
     flow_at(root_of_decreasing<S>(state.inputs(kCommand), kWidth, flow_at));
     evaluate(state, at_rest(state), around, Keep::no);
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
+    const Surroundings<S> seen = around_state(state, state.y, state.clock);
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
-      settle_channel<S, List>(static_cast<int>(channel), parameters_.effects, state.effects, Signal<S>{truth[channel], h_});
+      settle_channel<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
+                              Signal<S>{truth[channel], h_, state.clock, S{0.0}, &seen});
     }
     measure(state);
     return state;
@@ -184,8 +186,10 @@ class Axis {
 
   /// Opens a step with the command [rad] held.
   void begin(State& state, const S& command, Advance& advance) const noexcept {
-    const Signal<S> angle =
-        pass_through<Site::command>(parameters_.effects, state.effects, Signal<S>{command, h_, mid_step(state)}, Keep::yes);
+    const S time = mid_step(state);
+    const Surroundings<S> seen = around_state(state, state.y, time);
+    const Signal<S> angle = pass_through<Site::command>(parameters_.effects, state.effects,
+                                                        Signal<S>{command, h_, time, S{0.0}, &seen}, Keep::yes);
     state.inputs(kCommand) = parameters_.actuator.moment_arm * angle.value;
     advance.start = state.y;
     advance.free = times(hold_.transition, state.y);
@@ -205,15 +209,18 @@ class Axis {
     const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
     const auto& effects = parameters_.effects;
     const S time = mid_step(state);
+    const Surroundings<S> seen = around_state(state, mean, time);
 
     const S linear_command = torque_motor(state, mean);
     const S change = saturated(torque_motor(state, advance.end)) - saturated(torque_motor(state, advance.start));
-    state.inputs(kValveCommand) = pass_through<Site::valve_command>(
-                                      effects, state.effects, Signal<S>{saturated(linear_command), h_, time, change}, keep)
-                                      .value -
-                                  linear_command;
+    state.inputs(kValveCommand) =
+        pass_through<Site::valve_command>(effects, state.effects,
+                                          Signal<S>{saturated(linear_command), h_, time, change, &seen}, keep)
+            .value -
+        linear_command;
 
-    const Hydraulics<S> oil = hydraulics(state, mean(kOpening), mean(kPressure), keep);
+    Hydraulics<S> oil = hydraulics(state, mean(kOpening), mean(kPressure), keep);
+    oil.seen = &seen;
     state.inputs(kFlow) =
         oil.flow - valve.rated_flow * mean(kOpening) + sum_over<Site::flow>(effects, state.effects, oil, keep);
 
@@ -225,6 +232,7 @@ class Axis {
     state.inputs(kFlow) += state.built_up;
     Motion<S> motion{mean(kPiston), piston_rate, piston_rate, piston_compliance_, h_, time};
     motion.load = actuator.piston_area * mean(kPressure);
+    motion.seen = &seen;
     state.inputs(kPistonForce) = sum_over<Site::piston>(effects, state.effects, motion, keep);
 
     const S attach_motion = sum_over<Site::structure>(effects, state.effects, AttachPoint<S>{state.spring_force, h_}, keep);
@@ -233,10 +241,11 @@ class Axis {
         effects, state.effects,
         spring_around(around,
                       Spring<S>{linear_deflection - attach_motion, mean(kAngle), actuator.moment_arm, actuator.moment_arm,
-                                stiffness_, actuator.stiffness, parameters_.structure.stiffness, h_, time}),
+                                stiffness_, actuator.stiffness, parameters_.structure.stiffness, h_, time, &seen}),
         keep);
     state.spring_force = stiffness_ * spring.deflection;
     state.inputs(kSpringForce) = state.spring_force - stiffness_ * linear_deflection;
+    spring.seen = nullptr;
     return spring;
   }
 
@@ -245,8 +254,12 @@ class Axis {
   void evaluate_engine(State& state, const Advance& advance, const Spring<S>& spring, const Around& around,
                        Keep keep) const noexcept {
     const S angle_rate = advance.rate(kAngle, h_);
-    Motion<S> motion{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, mid_step(state)};
+    const S time = mid_step(state);
+    const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
+    const Surroundings<S> seen = around_state(state, mean, time);
+    Motion<S> motion{mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, time};
     motion.load = state.spring_force;
+    motion.seen = &seen;
     const S own = sum_over<Site::engine_torque>(parameters_.effects, state.effects, motion_around(around, motion), keep);
     state.inputs(kEngineTorque) =
         torque_around(around, own) - (spring.arm - parameters_.actuator.moment_arm) * state.spring_force;
@@ -288,6 +301,10 @@ class Axis {
   static S torque_around(const Uncoupled&, const S& own) noexcept { return own; }
   static S torque_around(const Coupling<S>& around, const S& own) noexcept { return own + around.torque; }
 
+  Surroundings<S> around_state(const State& state, const Eigen::Matrix<S, 8, 1>& y, const S& time) const noexcept {
+    return {y, state.inputs(kCommand), parameters_.servovalve, parameters_.actuator, time};
+  }
+
   /// The command of the torque motor before saturation, with the axis at `y`.
   S torque_motor(const State& state, const Eigen::Matrix<S, 8, 1>& y) const noexcept {
     const Servovalve<S>& valve = parameters_.servovalve;
@@ -318,13 +335,16 @@ class Axis {
     const auto& effects = parameters_.effects;
     const S nominal = parameters_.actuator.moment_arm;
     state.y(kAngle) = angle;
+    const S time = mid_step(state);
+    const Surroundings<S> seen = around_state(state, state.y, time);
     // Keeps what the springs remember of their force, so that the search in them starts near it.
-    const Spring<S> still = spring_around(
-        around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
-                          parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, mid_step(state)});
+    const Spring<S> still =
+        spring_around(around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
+                                        parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, time, &seen});
     settle<Site::load_spring>(effects, state.effects, still);
     const Spring<S> geometry = pass_through<Site::load_spring>(effects, state.effects, still, Keep::yes);
-    const Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_};
+    Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_, time};
+    motion.seen = &seen;
     const S torque = sum_over<Site::engine_torque>(effects, state.effects, motion_around(around, motion), Keep::no);
     const S needed = (parameters_.engine.duct_stiffness * angle + torque_around(around, torque)) / geometry.arm;
     state.spring_force = needed;
@@ -350,9 +370,10 @@ class Axis {
 
   void measure(State& state) const noexcept {
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
+    const Surroundings<S> seen = around_state(state, state.y, state.clock);
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
       state.measured[channel] = pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
-                                                             Signal<S>{truth[channel], h_, state.clock});
+                                                             Signal<S>{truth[channel], h_, state.clock, S{0.0}, &seen});
     }
   }
 

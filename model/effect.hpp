@@ -93,6 +93,20 @@ enum class Keep { no, yes };
 
 namespace detail {
 
+/// The channel that a sensor's effect acts on: its option, unless it is made for one.
+template <class E, class Params>
+constexpr int channel_of(const Params& params) noexcept {
+  if constexpr (requires { E::sensor_channel; }) {
+    return E::sensor_channel;
+  } else {
+    return params.option;
+  }
+}
+
+}  // namespace detail
+
+namespace detail {
+
 template <class S>
 void pass_on(Signal<S>& input, const S& output) noexcept {
   input.value = output;
@@ -185,7 +199,7 @@ S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, 
                       Signal<S> input) noexcept {
   List::for_each([&]<class E, std::size_t I>() {
     if constexpr (E::site == Site::sensor) {
-      if (parameters.active[I] && std::get<I>(parameters.values).option == channel) {
+      if (parameters.active[I] && detail::channel_of<E>(std::get<I>(parameters.values)) == channel) {
         input.value = E::step(std::get<I>(parameters.values), std::get<I>(states.values), input);
       }
     }
@@ -200,7 +214,7 @@ void settle_channel(int channel, const EffectParameters<S, List>& parameters, Ef
                     Signal<S> input) noexcept {
   List::for_each([&]<class E, std::size_t I>() {
     if constexpr (E::site == Site::sensor) {
-      if (parameters.active[I] && std::get<I>(parameters.values).option == channel) {
+      if (parameters.active[I] && detail::channel_of<E>(std::get<I>(parameters.values)) == channel) {
         if constexpr (requires { E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input); }) {
           E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input);
         }

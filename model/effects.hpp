@@ -21,6 +21,7 @@
 #include "model/effects/sliding_friction.hpp"
 #include "model/effects/soft_stiffness.hpp"
 #include "model/effects/structural_mode.hpp"
+#include "model/effects/term.hpp"
 #include "model/effects/torque_offset.hpp"
 #include "model/effects/unlisted_cross_torque.hpp"
 #include "model/effects/unlisted_deflection.hpp"
@@ -40,12 +41,14 @@ namespace hotfire::model {
 /// Every effect a hydraulic axis knows. At serial sites the order is the order of application: along the signal path for
 /// command and valve; at the load spring geometry first, then play, then the spring itself.
 using SimplexEffects =
-    EffectList<CommandScale, RateLimit, CommandDelay, UnlistedSignal<Site::command>, UnlistedSignal<Site::valve_command>,
-               ValveHysteresis, UnlistedOpening, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, UnlistedPressure,
-               PistonFriction, UnlistedMotion<Site::piston>, UnlistedDeflection, VariableMomentArm, Backlash, SoftStiffness,
-               StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening, TorqueOffset, CrossAxis,
-               UnlistedMotion<Site::engine_torque>, UnlistedCrossTorque, SensorNonlinearity, UnlistedWiperPlay,
-               UnlistedReading, UnlistedDrift, UnlistedRipple, SensorLag, SensorDelay, SensorScale>;
+    EffectList<CommandScale, RateLimit, CommandDelay, UnlistedSignal<Site::command>, Term<Site::command>,
+               UnlistedSignal<Site::valve_command>, Term<Site::valve_command>, ValveHysteresis, UnlistedOpening,
+               ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, Term<Site::flow>, UnlistedPressure, PistonFriction,
+               UnlistedMotion<Site::piston>, Term<Site::piston>, UnlistedDeflection, Term<Site::load_spring>,
+               VariableMomentArm, Backlash, SoftStiffness, StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening,
+               TorqueOffset, CrossAxis, UnlistedMotion<Site::engine_torque>, Term<Site::engine_torque>, UnlistedCrossTorque,
+               SensorNonlinearity, UnlistedWiperPlay, UnlistedReading, UnlistedDrift, UnlistedRipple, Term<Site::sensor, 0>,
+               Term<Site::sensor, 1>, SensorLag, SensorDelay, SensorScale>;
 
 /// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
 /// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <string_view>
 
 namespace hotfire::model {
@@ -36,7 +38,16 @@ struct TableField {
   std::string_view meaning;
   Table Owner::*member;
   unsigned options = ~0U;
-  double y_typical = 0.0;  ///< size of what a fit looks for; 0 where no fit moves the points
+  double y_typical = 0.0;    ///< size of what a fit looks for; 0 where no fit moves the points
+  bool is_optional = false;  ///< a file may leave the curve out: it has no points then
+};
+
+/// A further choice of an effect beside its option: its key, what it may be, and where it is kept.
+template <class Owner>
+struct Choice {
+  std::string_view key;
+  std::span<const std::string_view> names;
+  int Owner::*member;
 };
 
 /// True if a search moves the field under an option: one without a typical value it does not.

@@ -66,7 +66,7 @@ void visit_owner(std::string_view prefix, bool is_effect, std::string_view secti
 /// - `table(x_key, y_key, field, table)`: a curve; its point i has the keys followed by ".i";
 /// - `effect<E>(prefix, active)`: before an effect's own parameters, which are shown if it returns true; `prefix` is
 ///   "effects.gimbal_friction.";
-/// - `option(key, options, option)`: an effect's law or channel.
+/// - `option(key, options, option)`: an effect's law or channel, and its further choices.
 /// Set-up only. The values that the visitor sees are const if `parameters` is. Every key begins with `prefix`.
 template <class Parameters, class Visitor>
 void visit_keys(Parameters& parameters, Visitor& visitor, std::string_view prefix = {}) {
@@ -78,6 +78,11 @@ void visit_keys(Parameters& parameters, Visitor& visitor, std::string_view prefi
     }
     if constexpr (E::options.size() > 0) {
       visitor.option(KeyText(prefix, true, E::name, E::option_key), E::options, values.option);
+    }
+    if constexpr (requires { std::remove_cvref_t<decltype(values)>::choices(); }) {
+      for (const auto& choice : std::remove_cvref_t<decltype(values)>::choices()) {
+        visitor.option(KeyText(prefix, true, E::name, choice.key), choice.names, values.*choice.member);
+      }
     }
     detail::visit_owner(prefix, true, E::name, values, visitor);
   });

@@ -33,6 +33,9 @@ constexpr bool is_serial(Site site) noexcept {
          site == Site::sensor;
 }
 
+template <class S>
+struct Surroundings;
+
 /// What an effect sees at the sites `command`, `valve_command`, `valve` and `sensor`, over one step of `h` [s].
 /// The effect returns what the value becomes.
 template <class S>
@@ -40,8 +43,9 @@ struct Signal {
   using Scalar = S;
   S value;  ///< mean over the step
   double h = 0.0;
-  S time{0.0};    ///< of the record, mean over the step [s]
-  S change{0.0};  ///< end of the step less its start; known at `valve_command` only
+  S time{0.0};                            ///< of the record, mean over the step [s]
+  S change{0.0};                          ///< end of the step less its start; known at `valve_command` only
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
 /// What an effect sees at the site `flow`: it returns flow added into the extend chamber [m^3/s].
@@ -54,6 +58,7 @@ struct Hydraulics {
   double h = 0.0;
   S time{0.0};  ///< of the record, mean over the step [s]
   S flow{0.0};  ///< through the valve's orifices into the extend chamber, mean over the step [m^3/s]
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
 /// What an effect sees at the site `pressure`: it returns flow added to the flow that builds up pressure [m^3/s].
@@ -88,6 +93,7 @@ struct Motion {
   S other_angle{0.0};  ///< of the engine about its other axis, mean over the step [rad]; known at `engine_torque` only
   S other_rate{0.0};   ///< its rate [rad/s]; both zero for an axis alone
   S load{0.0};         ///< A p_L at `piston`, the load spring's force at `engine_torque`, mean over the step [N]
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
 /// What an effect sees at the site `load_spring`, and returns with its change. The spring's force is
@@ -103,7 +109,8 @@ struct Spring {
   S actuator_stiffness;  ///< K_act [N/m]
   S load_stiffness;      ///< K_L [N/m]
   double h = 0.0;
-  S time{0.0};  ///< of the record, mean over the step [s]
+  S time{0.0};                            ///< of the record, mean over the step [s]
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
 /// What an effect sees at the site `structure`: it returns the further motion of the attach point, mean over the step [m].

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "model/effect.hpp"
+#include "model/scalar.hpp"
 #include "model/table.hpp"
 
 /// What no listed effect is: a term of unknown law at a known site, as a table that the plant can run. `hotfire explain`

@@ -47,10 +47,10 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
 /// that tells: nothing follows the mass, and with the force turned something does.
 void refuse_turned_sign(const Dataset& data, const ModelFile& model, const SearchOptions& options,
                         const SearchResult<DirectFamily>& found) {
-  constexpr double kFollows = 50.0;  // percent of the motion
+  constexpr double kFollowsMass = 50.0;  // percent of the motion
   constexpr double kClearlyLess = 0.5;
   const ChannelFit& left = found.explained.goodness.held_out.front();
-  if (!found.searched || found.interrupted || left.fit_percent >= kFollows) {
+  if (!found.searched || found.interrupted || left.fit_percent >= kFollowsMass) {
     return;
   }
   options.watch.progress("nothing follows the mass: the same with its force turned");

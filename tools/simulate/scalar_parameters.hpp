@@ -7,10 +7,15 @@
 
 namespace hotfire {
 
-/// Copies what is not a scalar field of an effect: its option and its tables.
+/// Copies what is not a scalar field of an effect: its option, its further choices and its tables.
 template <class FromValues, class ToValues>
 void copy_choices(const FromValues& from, ToValues& to) {
   to.option = from.option;
+  if constexpr (requires { FromValues::choices(); }) {
+    for (std::size_t i = 0; i < FromValues::choices().size(); ++i) {
+      to.*ToValues::choices()[i].member = from.*FromValues::choices()[i].member;
+    }
+  }
   if constexpr (requires { FromValues::tables(); }) {
     const auto from_tables = FromValues::tables();
     const auto to_tables = ToValues::tables();

@@ -115,7 +115,7 @@ TEST(LatentInput, TheFlowOfARowIsThatOfTheSimulation) {
   const explain::FlowScales scales = explain::flow_scales(parameters);
   const auto flows = explain::linear_flow(data, parameters, scales, 1);
   LONGS_EQUAL(1, flows.size());
-  LONGS_EQUAL(data.experiments[0].rows() - 1, flows[0].size());
+  LONGS_EQUAL(data.experiments[0].rows() - 1, flows[0].rows.size());
   // A hundred rows under a constant torque, by the flow and by the model's own torque.
   ModelFile truth = model;
   auto& loaded = std::get<SimplexParameters>(truth.parameters);
@@ -133,7 +133,8 @@ TEST(LatentInput, TheFlowOfARowIsThatOfTheSimulation) {
   Eigen::Matrix<double, 8, 1> deviation = Eigen::Matrix<double, 8, 1>::Zero();
   const double input = kTorque / scales.input(static_cast<int>(Port::engine));
   for (std::size_t row = 0; row < 100; ++row) {
-    deviation = flows[0][row].transition * deviation + flows[0][row].response.col(static_cast<int>(Port::engine)) * input;
+    deviation =
+        flows[0].rows[row].transition * deviation + flows[0].rows[row].response.col(static_cast<int>(Port::engine)) * input;
   }
   const double angle = scales.state(model::Simplex<double>::kAngle) * deviation(model::Simplex<double>::kAngle);
   const double simulated = modelled.find("engine")->values[100];

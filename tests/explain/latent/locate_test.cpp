@@ -1,88 +1,18 @@
 #include "tools/explain/latent/locate.hpp"
 
-#include <cmath>
-#include <numbers>
-#include <random>
-
 #include <CppUTest/TestHarness.h>
 
-#include "tools/explain/terms/candidates.hpp"
-#include "tools/simulate/simulate.hpp"
+#include "tests/explain/latent/missing_effect.hpp"
 
 namespace {
 
 using namespace hotfire;
-using explain::Dataset;
-using explain::Fitted;
+using namespace hotfire::test;
 using explain::Located;
-using explain::SimplexFamily;
-
-constexpr double kPistonNoise = 8e-6;
-constexpr double kEngineNoise = 6e-5;
-
-/// A swept sine and steps of up to half a degree, 20 s at 500 Hz, read from `truth` with sensor noise.
-Record record_of(const ModelFile& truth, double scale = 1.0) {
-  Record record;
-  record.name = "sweep.csv";
-  record.path = record.name;
-  record.period = 2e-3;
-  record.rows = 10000;
-  Channel command{"command", "rad", {}};
-  for (std::size_t row = 0; row < record.rows; ++row) {
-    const double t = static_cast<double>(row) * record.period;
-    const double sweep = 5e-3 * std::sin(2.0 * std::numbers::pi * (0.3 * t + 0.2 * t * t));
-    const double step = t > 12.0 ? 4e-3 * (std::fmod(t, 4.0) < 2.0 ? 1.0 : -1.0) : 0.0;
-    command.values.push_back(scale * (t < 0.5 ? 0.0 : sweep + step));
-  }
-  record.channels.push_back(command);
-  const Record modelled = simulate(truth, record);
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> normal;
-  for (const auto& [name, noise] : {std::pair{"piston", kPistonNoise}, std::pair{"engine", kEngineNoise}}) {
-    record.channels.push_back(*modelled.find(name));
-    for (double& value : record.channels.back().values) {
-      value += noise * normal(random);
-    }
-  }
-  return record;
-}
-
-ModelFile declared() {
-  ModelFile model;
-  model.parameters = SimplexParameters{};
-  model.noise = {{"piston", kPistonNoise}, {"engine", kEngineNoise}};
-  model.tolerance = {{"servovalve.position_gain", 0.03}, {"engine.inertia", 0.02}, {"structure.stiffness", 0.05}};
-  return model;
-}
-
-/// The declared model with one effect, its first fields at `values`.
-template <class E>
-ModelFile with_effect(std::initializer_list<double> values, int option = 0) {
-  ModelFile model = declared();
-  auto& parameters = std::get<SimplexParameters>(model.parameters);
-  model::visit_effects(parameters, [&]<class Own>(std::size_t index, auto& effect) {
-    if constexpr (std::is_same_v<Own, E>) {
-      parameters.effects.active[index] = true;
-      effect.option = option;
-      auto value = values.begin();
-      for (const auto& field : std::remove_cvref_t<decltype(effect)>::fields()) {
-        if (value != values.end() && (field.options >> option & 1U) != 0) {
-          effect.*field.member = *value++;
-        }
-      }
-    }
-  });
-  return model;
-}
 
 Located located_in(const ModelFile& truth, std::size_t copies = 1) {
-  const ModelFile model = declared();
-  const Dataset data = explain::make_dataset(model, std::vector<Record>(copies, record_of(truth)));
-  Fitted<SimplexFamily> about;
-  about.base = std::get<SimplexParameters>(model.parameters);
-  about.free = explain::declared_parameters<SimplexFamily>(about.base, model.tolerance);
-  about.u.assign(about.free.size(), 0.0);
-  return explain::locate(data, about, 2);
+  const explain::Dataset data = data_of(truth, copies);
+  return explain::locate(data, about_declared(), 2);
 }
 
 }  // namespace

@@ -74,8 +74,8 @@ template <class E>
 bool depends_on_time(int option) {
   if constexpr (is_unlisted<E>()) {
     const std::string_view law = E::options[static_cast<std::size_t>(option)];
-    return law.ends_with("time") || law == "periodic" || std::is_same_v<E, model::UnlistedDrift> ||
-           std::is_same_v<E, model::UnlistedRipple>;
+    return law.ends_with("time") || (law == "periodic" && !requires { E::is_term; }) ||
+           std::is_same_v<E, model::UnlistedDrift> || std::is_same_v<E, model::UnlistedRipple>;
   }
   return false;
 }
@@ -105,6 +105,52 @@ void lay_table(ParamsOf<E, S>& params, int option, double size) {
   }
 }
 
+template <class E>
+constexpr bool is_term() {
+  return requires { E::is_term; };
+}
+
+/// True for a memory that loses information: its output jumps, and has no derivative by where it does.
+template <class E>
+bool jumps(int option) {
+  if constexpr (is_term<E>()) {
+    const auto kind = static_cast<model::Memory>(option);
+    return kind == model::Memory::hold || kind == model::Memory::quantise || kind == model::Memory::periodic;
+  }
+  return false;
+}
+
+/// A term as it may be found: over a quantity of its own site, of a usual size there.
+template <class E, class S>
+void set_term(ParamsOf<E, S>& params) {
+  using model::Argument;
+  using model::Site;
+  struct Usual {
+    Argument argument;
+    double gain;
+    double width;
+  };
+  const Usual usual = E::site == Site::command         ? Usual{Argument::command, 0.05, 0.01}
+                      : E::site == Site::valve_command ? Usual{Argument::valve_command, 0.05, 0.05}
+                      : E::site == Site::flow          ? Usual{Argument::load_pressure, -2e-11, 5e5}
+                      : E::site == Site::piston        ? Usual{Argument::rate, 2e4, 0.02}
+                      : E::site == Site::load_spring   ? Usual{Argument::deflection, 0.1, 5e-5}
+                      : E::site == Site::engine_torque ? Usual{Argument::angle_rate, 1e4, 0.02}
+                      : E::sensor_channel == 0         ? Usual{Argument::position, 0.05, 5e-3}
+                                                       : Usual{Argument::angle, 0.05, 5e-3};
+  params.argument = static_cast<int>(usual.argument);
+  const auto kind = static_cast<model::Memory>(params.option);
+  params.gain = S(usual.gain);
+  params.direct = S(kind == model::Memory::none ? 0.0 : 0.3 * usual.gain);
+  params.width = S(kind == model::Memory::slew ? 20.0 * usual.width : usual.width);
+  params.table.points = 0;
+  if (kind == model::Memory::stops) {
+    params.table.points = 2;
+    params.table.x = {S(0.5 * usual.width), S(usual.width)};
+    params.table.y = {S(usual.gain), S(0.5 * usual.gain)};
+  }
+}
+
 /// The defaults of an effect set to one of its laws. A law given by a table gets the declared stiffness at two loads.
 template <class E, class S>
 ParamsOf<E, S> neutral(int option) {
@@ -129,7 +175,9 @@ ParamsOf<E, S> typical(int option) {
       params.*field.member = S(field.typical);
     }
   }
-  if constexpr (is_unlisted<E>()) {
+  if constexpr (is_term<E>()) {
+    set_term<E, S>(params);
+  } else if constexpr (is_unlisted<E>()) {
     lay_table<E, S>(params, option, 1.0);
   } else if constexpr (requires { params.table; }) {
     params.table.points = 4;

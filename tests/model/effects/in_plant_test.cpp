@@ -94,6 +94,9 @@ TEST(EffectInPlant, ShowsInThePlantAtItsTypicalValues) {
 // a thousandth of what is allowed, that scatter is all there is.
 TEST(EffectInPlant, ConvergesWhenTheStepIsHalved) {
   for_each_planted_law([]<class Plant, class E>(int option) {
+    if (jumps<E>(option)) {
+      return;
+    }
     typename Plant::Parameters parameters = parameters_around<Plant, E>();
     activate<E, Plant>(parameters, typical<E, double>(option));
     const auto reference = record<Plant>(parameters, 1.0, kSample, 32);

@@ -25,10 +25,6 @@ using FilterMatrix = Eigen::Matrix<double, kFilterStates, kFilterStates>;
 using FilterVector = Eigen::Matrix<double, kFilterStates, 1>;
 using Means = Eigen::Matrix<double, kFilterStates, Eigen::Dynamic>;
 
-/// Continuous states that channels read.
-constexpr std::array<int, 3> kReadState{model::Simplex<double>::kPiston, model::Simplex<double>::kAngle,
-                                        model::Simplex<double>::kPressure};
-
 /// One scalar measurement of a row and what the filter made of it.
 struct Update {
   FilterVector row;   ///< of the observation matrix
@@ -117,7 +113,7 @@ class Filter {
           count += 1.0;
         }
         if (row + 1 < experiment.rows()) {
-          const FilterMatrix moves = transition(problem_.flows[e][row], kept);
+          const FilterMatrix moves = transition(problem_.flows[e].rows[row], kept);
           means = moves * means;
           advance(moves, kept, covariance);
         }
@@ -156,7 +152,7 @@ class Filter {
         steps[row].updates.push_back(update);
       }
       if (row + 1 < experiment.rows()) {
-        const FilterMatrix moves = transition(problem_.flows[e][row], kept);
+        const FilterMatrix moves = transition(problem_.flows[e].rows[row], kept);
         mean = moves * mean;
         advance(moves, kept, covariance);
       }
@@ -184,7 +180,7 @@ LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fi
                              unsigned threads) {
   const Dataset& data = evaluator.data();
   const auto parameters = Evaluator<SimplexFamily>::with_values(around.base, around.free, around.u);
-  LatentProblem problem{data, flow_scales(parameters), {}, {}, {}, {}};
+  LatentProblem problem{data, parameters, flow_scales(parameters), {}, {}, {}, {}};
   std::vector<std::size_t> declared;
   for (std::size_t k = 0; k < around.free.size(); ++k) {
     if (around.free[k].is_declared()) {
@@ -233,7 +229,7 @@ LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& p
     Eigen::VectorXd move;
     const double likelihood = Filter(problem, place, std::exp(logarithm)).likelihood(move);
     if (best.deviation == 0.0 || likelihood > best.log_likelihood) {
-      best = {likelihood, std::exp(logarithm), move, {}, {}};
+      best = {likelihood, std::exp(logarithm), move, {}, {}, {}};
       at = logarithm;
     }
   };
@@ -259,11 +255,12 @@ void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput&
     const double kept = filter.memory(experiment);
     const std::vector<Step> steps = filter.forward(e, input.move);
     Eigen::VectorXd signal(static_cast<Eigen::Index>(experiment.rows()));
+    Eigen::MatrixXd states(kFlowStates, static_cast<Eigen::Index>(experiment.rows()));
     FilterVector adjoint = FilterVector::Zero();
     for (std::size_t row = experiment.rows(); row-- > 0;) {
       const Step& step = steps[row];
       if (row + 1 < experiment.rows()) {
-        adjoint = filter.transition(problem.flows[e][row], kept).transpose() * adjoint;
+        adjoint = filter.transition(problem.flows[e].rows[row], kept).transpose() * adjoint;
       }
       for (std::size_t i = step.updates.size(); i-- > 0;) {
         const Update& update = step.updates[i];
@@ -271,6 +268,7 @@ void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput&
       }
       const FilterVector smoothed = step.mean - step.covariance * adjoint;
       signal(static_cast<Eigen::Index>(row)) = smoothed(kSignal);
+      states.col(static_cast<Eigen::Index>(row)) = smoothed.head<kFlowStates>();
       for (std::size_t c = 0; c < kReadState.size(); ++c) {
         const double left = problem.left[e](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
         if (!std::isnan(left)) {
@@ -282,6 +280,7 @@ void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput&
       }
     }
     input.signal.push_back(std::move(signal));
+    input.states.push_back(std::move(states));
   }
   for (std::size_t c = 0; c < square.size(); ++c) {
     input.leaves.push_back(rows[c] > 0.0 ? square[c] / rows[c] : 0.0);

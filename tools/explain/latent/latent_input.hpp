@@ -18,8 +18,9 @@ struct LatentPlace {
 /// What is known before the signal is: the plant's flow, what the records leave, and how declared parameters move it.
 struct LatentProblem {
   const Dataset& data;
+  model::Simplex<double>::Parameters parameters;  ///< that the flow is simulated under
   FlowScales scales;
-  std::vector<std::vector<RowFlow>> flows;                ///< by experiment and row
+  std::vector<Flow> flows;                                ///< by experiment
   std::vector<Eigen::MatrixXd> left;                      ///< by experiment: measured minus predicted over noise, a column a
                                                           ///< channel; NaN where a row is not fitted
   std::vector<std::vector<Eigen::MatrixXd>> sensitivity;  ///< by experiment and channel: a row a parameter
@@ -35,9 +36,10 @@ struct LatentInput {
   double log_likelihood = 0.0;  ///< of the records, parameters and signal integrated out
   double deviation = 0.0;       ///< stationary rms of the signal over its scale, the most likely one
   Eigen::VectorXd move;         ///< of the declared parameters [tolerances]
-  std::vector<double>
-      leaves;  ///< by channel: mean square over noise of what the smoothed signal leaves; filled by `smoothed`
-  std::vector<Eigen::VectorXd> signal;  ///< by experiment, a value a row, over its scale; filled by `smoothed`
+  std::vector<double> leaves;  ///< by channel: mean square over noise of what the smoothed signal leaves; filled by `smooth`
+  std::vector<Eigen::VectorXd> signal;  ///< by experiment, a value a row, over its scale; filled by `smooth`
+  std::vector<Eigen::MatrixXd> states;  ///< by experiment, deviations from the simulated states over their scales, a column
+                                        ///< a row of the record; filled by `smooth`
 };
 
 /// Log likelihood of the records without any unknown signal.

@@ -83,9 +83,9 @@ FlowScales flow_scales(const PlainPlant::Parameters& parameters) {
   return scales;
 }
 
-std::vector<std::vector<RowFlow>> linear_flow(const Dataset& data, const PlainPlant::Parameters& parameters,
-                                              const FlowScales& scales, unsigned threads) {
-  std::vector<std::vector<RowFlow>> flows(data.experiments.size());
+std::vector<Flow> linear_flow(const Dataset& data, const PlainPlant::Parameters& parameters, const FlowScales& scales,
+                              unsigned threads) {
+  std::vector<Flow> flows(data.experiments.size());
   std::atomic<bool> finite{true};
   parallel_for(data.experiments.size(), threads, [&](std::size_t e) {
     const Experiment& experiment = data.experiments[e];
@@ -94,12 +94,19 @@ std::vector<std::vector<RowFlow>> linear_flow(const Dataset& data, const PlainPl
     const PortedPlant plant(with_scalar<DualPlant::Parameters>(parameters), experiment.period / steps, scales);
     const auto start = start_of<FlowDual>(data, e, {}, [](std::size_t) { return FlowDual(0.0); });
     auto state = std::make_unique<DualPlant::State>(initial_state(plant, data, experiment, start));
-    flows[e].reserve(experiment.rows());
+    flows[e].rows.reserve(experiment.rows());
+    flows[e].states.reserve(experiment.rows());
+    flows[e].piston_command.reserve(experiment.rows());
     const auto sink = [&](std::size_t row, const auto&) {
       const RowFlow flow = take_flow(*state, scales);
       if (row > 0) {
-        flows[e].push_back(flow);
+        flows[e].rows.push_back(flow);
       }
+      flows[e].states.emplace_back();
+      for (int i = 0; i < kFlowStates; ++i) {
+        flows[e].states.back()(i) = state->y(i).a;
+      }
+      flows[e].piston_command.push_back(state->inputs(DualPlant::kCommand).a);
       finite = finite && flow.transition.allFinite() && flow.response.allFinite();
     };
     if (!run_experiment(plant, data, experiment, *state, steps, sink)) {

@@ -8,8 +8,11 @@
 
 namespace hotfire::explain {
 
-/// Continuous states of a hydraulic axis, in the order of model::Axis::Index.
+/// Continuous states of a hydraulic axis, in the order of model::AxisStates.
 inline constexpr int kFlowStates = 8;
+/// Those that channels read.
+inline constexpr std::array<int, 3> kReadState{model::AxisStates::kPiston, model::AxisStates::kAngle,
+                                               model::AxisStates::kPressure};
 /// Places at which something may act on them that no combination of the others replaces: torque motor, oil, piston, load
 /// spring and engine.
 inline constexpr int kPorts = 5;
@@ -32,9 +35,16 @@ struct FlowScales {
 
 FlowScales flow_scales(const model::Simplex<double>::Parameters& parameters);
 
+/// The flow along one experiment, and the simulation that it is linear about.
+struct Flow {
+  std::vector<RowFlow> rows;                                  ///< from every row to the next
+  std::vector<Eigen::Matrix<double, kFlowStates, 1>> states;  ///< simulated, in SI units, a row each
+  std::vector<double> piston_command;                         ///< R beta_c after the effects of the command [m], a row each
+};
+
 /// The flow of every experiment along its simulation under `parameters`, by dual numbers; what effects remember is held at
 /// what it is there. Empty if a state did not stay finite.
-std::vector<std::vector<RowFlow>> linear_flow(const Dataset& data, const model::Simplex<double>::Parameters& parameters,
-                                              const FlowScales& scales, unsigned threads);
+std::vector<Flow> linear_flow(const Dataset& data, const model::Simplex<double>::Parameters& parameters,
+                              const FlowScales& scales, unsigned threads);
 
 }  // namespace hotfire::explain

@@ -80,7 +80,9 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
   std::vector<std::pair<Place, LatentInput>> tried(wanted.size());
   parallel_for(wanted.size(), threads, [&](std::size_t i) {
     tried[i].second = most_likely_input(problem, wanted[i].first);
-    tried[i].first = {wanted[i].second, tried[i].second.log_likelihood - without, {}, false};
+    const LatentInput& input = tried[i].second;
+    tried[i].first = {wanted[i].second, input.log_likelihood - without, {}, false, wanted[i].first, input.deviation,
+                      input.move};
   });
   const double best = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; }).first.gain;
   if (best < kLeastGain) {

@@ -14,6 +14,9 @@ struct Place {
   double gain = 0.0;               ///< log likelihood with the most likely signal less that without any
   std::vector<double> leaves;      ///< by channel: mean square over noise of what the signal leaves; of likely places only
   bool is_likely = false;          ///< no other place explains clearly more
+  LatentPlace where{};
+  double deviation = 0.0;  ///< of the most likely signal, over its scale
+  Eigen::VectorXd move{};  ///< of the declared parameters beside it [tolerances]
 };
 
 /// Where the term acts that a model is missing.

@@ -99,6 +99,7 @@ json effects_json(const Dataset& data, const SearchResult<Family>& found, const 
     json effect{{"name", unlisted ? "unlisted" : candidate.name}, {"site", candidate.site}, {"parameters", json::object()}};
     if (unlisted) {
       effect["key"] = candidate.name;
+      effect["sites"] = sites_of(kept);
     }
     if (!candidate.option_name.empty()) {
       effect["law"] = candidate.option_name;

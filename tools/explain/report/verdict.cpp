@@ -1,6 +1,7 @@
 #include "tools/explain/report/verdict.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -66,7 +67,7 @@ std::string terms_in_words(const SearchResult<Family>& found) {
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
     terms.push_back(is_unlisted<Family>(candidate)
-                        ? fmt::format("a term at {} {}", candidate.site, dependence_in_words(candidate))
+                        ? fmt::format("a term at {} {}", fmt::join(sites_of(kept), " or "), dependence_in_words(candidate))
                         : phrase(candidate));
   }
   return listed(terms);

@@ -75,7 +75,8 @@ Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Eff
 }
 
 template <class Family>
-Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, std::span<const double> frozen) const {
+Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, std::span<const double> frozen,
+                                              const Effort& effort) const {
   std::vector<Fitted<Family>> starts;
   for (const double share : kSharesOfMove) {
     starts.push_back(screened);
@@ -104,12 +105,13 @@ Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, st
       best = std::move(start);
     }
   }
-  return ranked(best, kRanking);
+  return ranked(best, effort);
 }
 
 template <class Family>
 Assessed<Family> Refiner<Family>::from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const {
-  if (is_done(winner)) {
+  // A term of the grammar started where the regression put it.
+  if (is_done(winner) || !candidate.choices.empty()) {
     return winner;
   }
   watch_.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));

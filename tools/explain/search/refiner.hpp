@@ -34,7 +34,8 @@ class Refiner {
   /// A screened candidate, ranked. Screening moves what was free before along its derivatives from `frozen`, which may carry
   /// it too far: where another place on that way, or a table that is nothing yet, leaves less than half as much, the fit
   /// starts at the least of them.
-  Assessed<Family> of_screened(const Fitted<Family>& screened, std::span<const double> frozen) const;
+  Assessed<Family> of_screened(const Fitted<Family>& screened, std::span<const double> frozen,
+                               const Effort& effort = kRanking) const;
   /// Fitted under fine steps, as the report says it.
   Assessed<Family> settled(const Fitted<Family>& fitted, const Effort& effort = kFinal) const {
     return refined(fine_, fine_, threads_, fitted, effort);

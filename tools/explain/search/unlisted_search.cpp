@@ -5,10 +5,15 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <limits>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "tools/explain/search/finalists.hpp"
+#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/search/term_proposals.hpp"
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 
@@ -23,6 +28,13 @@ void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<
   trial.reason = fmt::format("leaves {:.1f} % of the held-out error", 100.0 * trial.held_out_ratio);
 }
 
+/// Terms of the grammar that are fitted jointly, of those that were proposed: one of every site, or two of one.
+constexpr std::size_t kTermFinalists = 2;
+/// A term at another site is not told from the best where it leaves less than this many times as much, or no more than
+/// noise.
+constexpr double kTiedSites = 1.5;
+/// Where a term of the grammar leaves less than this share of the held-out error, tables at the same sites are not tried.
+constexpr double kFound = 0.3;
 /// A signal that falls by less than this share of its range where it should rise is flat, as in a dead band.
 constexpr double kFlat = 0.05;
 
@@ -41,34 +53,65 @@ bool falls_as_it_rises(const Fitted<Family>& model, const Candidate& candidate) 
   return std::ranges::adjacent_find(signal, [&](double here, double next) { return next < here - flat; }) != signal.end();
 }
 
-}  // namespace
-
-template <class Family>
-bool UnlistedSearch<Family>::leaves_less_than(double share) const {
-  return best && trials[*best].delta_criterion < -kStrongEvidence && trials[*best].held_out_ratio < share;
+/// Proposed terms in the order of what they leave as they were proposed, simulated: the order of a linear regression is
+/// often wrong near its top, and a term that it proposes may make the axis run away. Those that leave no less than the model
+/// without them are not among them.
+std::vector<Screened<SimplexFamily>> by_simulation(const Evaluator<SimplexFamily>& evaluator,
+                                                   const Fitted<SimplexFamily>& around,
+                                                   std::vector<Screened<SimplexFamily>> proposals, unsigned threads) {
+  const auto left_by = [&](const Fitted<SimplexFamily>& model) {
+    Prediction prediction;
+    return evaluator.predict(model.base, model.free, model.u, threads, prediction)
+               ? Goodness::combined(goodness(evaluator.data(), prediction).fitted)
+               : std::numeric_limits<double>::infinity();
+  };
+  const double without = left_by(around);
+  for (Screened<SimplexFamily>& proposal : proposals) {
+    proposal.criterion = left_by(proposal.fitted);
+  }
+  std::erase_if(proposals, [&](const auto& proposal) { return !(proposal.criterion < without); });
+  std::ranges::stable_sort(proposals, {}, [](const auto& proposal) { return proposal.criterion; });
+  // The best of every site first: which of them it is the fit decides.
+  std::vector<std::string> sites;
+  std::ranges::stable_partition(proposals, [&](const auto& proposal) {
+    const bool is_first = std::ranges::find(sites, proposal.candidate.site) == sites.end();
+    if (is_first) {
+      sites.push_back(proposal.candidate.site);
+    }
+    return is_first;
+  });
+  return proposals;
 }
 
+/// How many of them are fitted: one of every site, and two at least.
+std::size_t terms_to_fit(const std::vector<Screened<SimplexFamily>>& proposals) {
+  std::set<std::string> sites;
+  for (const auto& proposal : proposals) {
+    sites.insert(proposal.candidate.site);
+  }
+  return std::max(kTermFinalists, sites.size());
+}
+
+/// Fits the first `most` of what was screened with everything else, and files all of them. Those behind one that leaves no
+/// more than noise are not fitted: they promised less.
 template <class Family>
-UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& beside,
-                                       const Located& located, const Scales& scales, unsigned threads, const Watch& watch,
-                                       int round) {
-  const Fitted<Family> around = is_within_tolerances(beside.model) ? beside.model : with_declared_values(beside.model);
-  const Evaluator<Family> evaluator = refiner.for_screening(around);
-  const Screening<Family> screening(evaluator, around, scales, threads);
-  std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
-  std::erase_if(candidates, [&](const Candidate& candidate) {
-    return around.base.effects.active[candidate.effect] || !located.allows(candidate.site);
-  });
-  const auto screened = screening.run(candidates, "unlisted", watch);
-  const std::size_t wanted = unlisted_finalists(screened);
-  UnlistedSearch<Family> result;
-  for (const Screened<Family>& s : screened) {
+void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& beside,
+                   std::span<const double> frozen, std::vector<Screened<Family>> screened, std::size_t most,
+                   const Effort& effort, int round, const Watch& watch, UnlistedSearch<Family>& result) {
+  std::size_t fitted = 0;
+  for (Screened<Family>& s : screened) {
     Trial trial{round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "behind the finalists in screening"};
-    if (result.trials.size() < wanted && !watch.interrupted()) {
+    double left = std::numeric_limits<double>::infinity();
+    const bool is_decided = result.reaches_noise(data) && s.candidate.site == result.trials[*result.best].candidate.site;
+    if (fitted < most && !is_decided && !watch.interrupted()) {
+      ++fitted;
       watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
-      Assessed<Family> finalist = refiner.of_screened(s.fitted, around.u);
+      const Stopwatch stopwatch;
+      Assessed<Family> finalist = refiner.of_screened(s.fitted, frozen, effort);
+      trial.seconds += stopwatch.seconds();
       if (finalist.good()) {
         compare_and_say(trial, finalist, beside);
+        left = excess_over_noise(data, finalist.prediction);
         if (falls_as_it_rises(finalist.model, s.candidate)) {
           trial.reason += ", but by a signal that falls where it should rise";
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
@@ -78,8 +121,60 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
       }
     }
     result.trials.push_back(std::move(trial));
+    result.left.push_back(left);
+  }
+}
+
+/// Marks the terms at other sites that the records do not tell from the best.
+template <class Family>
+void mark_tied_sites(UnlistedSearch<Family>& result) {
+  const double most = std::max(kLargerThanNoise, kTiedSites * result.left[*result.best]);
+  for (std::size_t i = 0; i < result.trials.size(); ++i) {
+    Trial& trial = result.trials[i];
+    if (result.left[i] < most && trial.candidate.site != result.trials[*result.best].candidate.site) {
+      trial.decision = "tied";
+      trial.reason += ", no more than the one that is kept at another site";
+    }
+  }
+}
+
+}  // namespace
+
+template <class Family>
+bool UnlistedSearch<Family>::leaves_less_than(double share) const {
+  return best && trials[*best].delta_criterion < -kStrongEvidence && trials[*best].held_out_ratio < share;
+}
+
+template <class Family>
+bool UnlistedSearch<Family>::reaches_noise(const Dataset& data) const {
+  return best && excess_over_noise(data, model.prediction) < kNothingLeft;
+}
+
+template <class Family>
+UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& beside,
+                                       const Located& located, const Scales& scales, unsigned threads, const Watch& watch,
+                                       int round) {
+  const Fitted<Family> around = is_within_tolerances(beside.model) ? beside.model : with_declared_values(beside.model);
+  const Evaluator<Family> evaluator = refiner.for_screening(around);
+  UnlistedSearch<Family> result;
+  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    auto proposals = propose_terms(evaluator.data(), around, located, scales, threads, watch);
+    proposals = by_simulation(evaluator, around, std::move(proposals), threads);
+    const std::size_t wanted = terms_to_fit(proposals);
+    fit_finalists(data, refiner, beside, around.u, std::move(proposals), wanted, kCheck, round, watch, result);
+  }
+  if (!result.leaves_less_than(kFound)) {
+    const Screening<Family> screening(evaluator, around, scales, threads);
+    std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
+    std::erase_if(candidates, [&](const Candidate& candidate) {
+      return around.base.effects.active[candidate.effect] || !located.allows(candidate.site);
+    });
+    auto screened = screening.run(candidates, "unlisted", watch);
+    const std::size_t wanted = unlisted_finalists(screened);
+    fit_finalists(data, refiner, beside, around.u, std::move(screened), wanted, kRanking, round, watch, result);
   }
   if (result.best) {
+    mark_tied_sites(result);
     Trial& best = result.trials[*result.best];
     Assessed<Family> settled = refiner.settled(result.model.model);
     if (settled.good()) {

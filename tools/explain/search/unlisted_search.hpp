@@ -13,11 +13,14 @@ namespace hotfire::explain {
 template <class Family>
 struct UnlistedSearch {
   std::vector<Trial> trials;        ///< the best in screening first; none is kept yet
+  std::vector<double> left;         ///< of each beyond noise, over the noise; infinite where it was not fitted jointly
   std::optional<std::size_t> best;  ///< with the least held-out error of those that were fitted jointly
   Assessed<Family> model;           ///< with the best
 
   /// True if the best is supported and leaves less than this share of that model's held-out error.
   bool leaves_less_than(double share) const;
+  /// True if the best leaves no more than noise.
+  bool reaches_noise(const Dataset& data) const;
 };
 
 /// Screens every term of unknown law that `located` allows beside a model and fits the best jointly with everything else.

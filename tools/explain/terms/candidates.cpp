@@ -276,7 +276,14 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
 
 template <class Family>
 void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
-  visit_effect(parameters, candidate.effect, [&]<class E>(auto& values) { values.option = candidate.option; });
+  visit_effect(parameters, candidate.effect, [&]<class E>(auto& values) {
+    values.option = candidate.option;
+    if constexpr (requires { values.choices(); }) {
+      for (std::size_t i = 0; i < candidate.choices.size(); ++i) {
+        values.*values.choices()[i].member = candidate.choices[i];
+      }
+    }
+  });
   parameters.effects.active[candidate.effect] = true;
 }
 

@@ -13,9 +13,10 @@ namespace hotfire::explain {
 struct Candidate {
   std::size_t effect = 0;  ///< position in the plant's effect list
   int option = 0;
-  std::string name;         ///< "gimbal_friction"
-  std::string option_name;  ///< "lugre"; empty if the effect has nothing to choose
-  std::string site;         ///< "engine_torque", "sensor.engine"
+  std::string name;            ///< "gimbal_friction"
+  std::string option_name;     ///< "lugre"; empty if the effect has nothing to choose
+  std::string site;            ///< "engine_torque", "sensor.engine"
+  std::vector<int> choices{};  ///< what else the effect has to choose, in its order; empty: its defaults
 };
 
 /// Every variant of every effect of the family that the finder tries: all but tables (a table is what `unlisted` is for) and

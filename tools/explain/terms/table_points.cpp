@@ -236,7 +236,8 @@ Fitted<Family> reaching_over(const Dataset& data, const Fitted<Family>& fitted, 
     const std::string prefix = fmt::format("effects.{}.{}.", E::name, field.y_name);
     const auto is_own = [&](const FreeParameter& p) { return p.is_ordinate && p.key.starts_with(prefix); };
     const auto first = std::ranges::find_if(wide.free, is_own);
-    if (table.points < 2 || first == wide.free.end()) {
+    // A term's curve was laid over all rows.
+    if (table.points < 2 || first == wide.free.end() || !candidate.choices.empty()) {
       return;
     }
     visit_table(now, candidate, [&]<class>(const auto&, const auto& fitted_table) { table.y = fitted_table.y; });

@@ -2,7 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace hotfire::explain {
+
+std::vector<std::string> sites_of(const Kept& kept) {
+  std::vector<std::string> sites{kept.trial.candidate.site};
+  for (const Trial& other : kept.alternatives) {
+    if (other.decision == "tied" && std::ranges::find(sites, other.candidate.site) == sites.end()) {
+      sites.push_back(other.candidate.site);
+    }
+  }
+  return sites;
+}
 
 std::string label(const Candidate& candidate) {
   return candidate.option_name.empty() ? candidate.name : candidate.name + " (" + candidate.option_name + ")";

@@ -36,6 +36,9 @@ struct Kept {
   std::vector<Trial> alternatives;
 };
 
+/// The site of what was kept, and those of terms at other sites that the records do not tell from it.
+std::vector<std::string> sites_of(const Kept& kept);
+
 /// "gimbal_friction (lugre)".
 std::string label(const Candidate& candidate);
 

@@ -30,7 +30,7 @@ std::vector<Candidate> unlisted_candidates(const Dataset& data) {
   std::vector<Candidate> candidates;
   const PlainParameters<Family> neutral;
   model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
-    if constexpr (is_unlisted_effect<E>()) {
+    if constexpr (is_unlisted_effect<E>() && !requires { E::is_term; }) {
       for (std::size_t option = 0; option < E::options.size(); ++option) {
         if (model::needs_other_axis<E>(static_cast<int>(option)) && !data.has_other_axis()) {
           continue;

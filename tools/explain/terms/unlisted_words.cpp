@@ -104,6 +104,9 @@ std::string dependence_in_words(const Candidate& candidate) {
   if (is_periodic(candidate)) {
     return "of one frequency";
   }
+  if (!candidate.choices.empty()) {
+    return "that is a " + candidate.option_name;
+  }
   if (candidate.name == model::UnlistedWiperPlay::name) {
     return "that is a play";
   }

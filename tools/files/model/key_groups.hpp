@@ -30,7 +30,7 @@ std::vector<CurveKey> curve_keys(Values& values) {
     for (const auto& field : Values::tables()) {
       auto& table = values.*field.member;
       keys.push_back({field.x_name, field.x_unit, field.y_name, field.y_unit, field.y_lower, field.y_upper, field.meaning,
-                      table.x.data(), table.y.data(), &table.points, table.x.size(), field.options});
+                      table.x.data(), table.y.data(), &table.points, table.x.size(), field.options, field.is_optional});
     }
   }
   return keys;
@@ -56,6 +56,11 @@ KeyGroup effect_group(Values& values, bool& active) {
     group.options.assign(Effect::options.begin(), Effect::options.end());
   }
   group.option = &values.option;
+  if constexpr (requires { Values::choices(); }) {
+    for (const auto& choice : Values::choices()) {
+      group.choices.push_back({choice.key, {choice.names.begin(), choice.names.end()}, &(values.*choice.member)});
+    }
+  }
   group.active = &active;
   group.site = model::site_name(Effect::site);
   group.needs_other_axis = model::needs_other_axis<Effect>();

@@ -1,6 +1,7 @@
 #include "tools/files/model/model_group.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -42,22 +43,22 @@ void refuse_unused(const TomlSource& source, const toml::table& table, const Key
   }
 }
 
-void read_option(const TomlSource& source, const toml::table& table, const KeyGroup& group, const std::string& prefix,
+void read_choice(const TomlSource& source, const toml::table& table, const std::string& prefix, const ChoiceKey& choice,
                  Extent extent) {
-  const toml::node* node = table.get(group.option_key);
-  if (group.options.empty() || (node == nullptr && extent == Extent::difference)) {
+  const toml::node* node = table.get(choice.key);
+  if (node == nullptr && extent == Extent::difference) {
     return;
   }
-  const std::string key = prefix + std::string{group.option_key};
+  const std::string key = prefix + std::string{choice.key};
   if (node == nullptr) {
-    source.refuse_missing(table, key, fmt::format("missing; allowed: {}", options_using(group, ~0U)));
+    source.refuse_missing(table, key, fmt::format("missing; allowed: \"{}\"", fmt::join(choice.names, "\", \"")));
   }
   const std::string chosen = source.text(*node, key);
-  const auto found = std::find(group.options.begin(), group.options.end(), chosen);
-  if (found == group.options.end()) {
-    source.refuse(*node, key, suggestion(chosen, group.options));
+  const auto found = std::find(choice.names.begin(), choice.names.end(), chosen);
+  if (found == choice.names.end()) {
+    source.refuse(*node, key, suggestion(chosen, choice.names));
   }
-  *group.option = static_cast<int>(found - group.options.begin());
+  *choice.value = static_cast<int>(found - choice.names.begin());
 }
 
 std::vector<double> read_array(const TomlSource& source, const toml::table& table, const std::string& prefix,
@@ -133,6 +134,9 @@ Words keys_of(const KeyGroup& group) {
   if (!group.option_key.empty()) {
     known.push_back(group.option_key);
   }
+  for (const ChoiceKey& choice : group.choices) {
+    known.push_back(choice.key);
+  }
   return known;
 }
 
@@ -151,7 +155,12 @@ std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::t
   Words known = keys_of(group);
   known.insert(known.end(), others.begin(), others.end());
   refuse_unknown_keys(source, table, prefix, known);
-  read_option(source, table, group, prefix, extent);
+  if (!group.options.empty()) {
+    read_choice(source, table, prefix, {group.option_key, group.options, group.option}, extent);
+  }
+  for (const ChoiceKey& choice : group.choices) {
+    read_choice(source, table, prefix, choice, extent);
+  }
   std::vector<const NumberKey*> left_out;
   for (const NumberKey& number : group.numbers) {
     refuse_unused(source, table, group, prefix, number.name, number.options);
@@ -165,7 +174,7 @@ std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::t
     refuse_unused(source, table, group, prefix, curve.x_name, curve.options);
     refuse_unused(source, table, group, prefix, curve.y_name, curve.options);
     const bool said = table.contains(curve.x_name) || table.contains(curve.y_name);
-    if (group.uses(curve.options) && (said || extent == Extent::whole)) {
+    if (group.uses(curve.options) && (said || (extent == Extent::whole && !curve.is_optional))) {
       read_curve(source, table, prefix, curve);
     }
   }

@@ -33,6 +33,14 @@ struct CurveKey {
   int* points;
   std::size_t capacity;
   unsigned options;
+  bool is_optional;
+};
+
+/// A choice among names, bound to its place. As in model::Choice.
+struct ChoiceKey {
+  std::string_view key;
+  std::vector<std::string_view> names;
+  int* value;
 };
 
 /// One table of a model file: a declared part or an effect.
@@ -43,6 +51,7 @@ struct KeyGroup {
   std::string_view option_key;                        ///< "law" or "channel"; empty if there is nothing to choose
   std::vector<std::string_view> options;              ///< what `option_key` may be
   int* option = nullptr;                              ///< null for a part
+  std::vector<ChoiceKey> choices;                     ///< what else there is to choose
   bool* active = nullptr;                             ///< null for a part
   std::string_view site;                              ///< empty for a part
   bool needs_other_axis = false;                      ///< of an effect that an axis alone has no use for

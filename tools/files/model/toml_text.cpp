@@ -1,6 +1,7 @@
 #include "tools/files/model/toml_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iterator>
 
@@ -47,14 +48,21 @@ void append_line(std::string& text, const std::string& key_and_value, std::strin
   fmt::format_to(std::back_inserter(text), "{:<40} # {}{}\n", key_and_value, unit_text, meaning);
 }
 
+namespace {
+
+void append_choice(std::string& text, const ChoiceKey& choice) {
+  append_line(text, fmt::format("{} = \"{}\"", choice.key, choice.names[static_cast<std::size_t>(*choice.value)]), "",
+              fmt::format("{}", fmt::join(choice.names, " | ")));
+}
+
+}  // namespace
+
 void append_group(std::string& text, const KeyGroup& group) {
   if (!group.options.empty()) {
-    std::string others;
-    for (const std::string_view option : group.options) {
-      others += fmt::format("{}{}", others.empty() ? "" : " | ", option);
-    }
-    const auto chosen = group.options[static_cast<std::size_t>(*group.option)];
-    append_line(text, fmt::format("{} = \"{}\"", group.option_key, chosen), "", others);
+    append_choice(text, {group.option_key, group.options, group.option});
+  }
+  for (const ChoiceKey& choice : group.choices) {
+    append_choice(text, choice);
   }
   for (const NumberKey& number : group.numbers) {
     if (group.uses(number.options)) {
@@ -62,7 +70,7 @@ void append_group(std::string& text, const KeyGroup& group) {
     }
   }
   for (const CurveKey& curve : group.curves) {
-    if (group.uses(curve.options)) {
+    if (group.uses(curve.options) && !(curve.is_optional && *curve.points == 0)) {
       append_line(text, fmt::format("{} = {}", curve.x_name, array_text(curve.x, *curve.points)), curve.x_unit,
                   "points of the curve");
       append_line(text, fmt::format("{} = {}", curve.y_name, array_text(curve.y, *curve.points)), curve.y_unit,

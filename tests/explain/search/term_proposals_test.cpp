@@ -1,0 +1,99 @@
+#include "tools/explain/search/term_proposals.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include "tests/explain/latent/missing_effect.hpp"
+
+namespace {
+
+using namespace hotfire;
+using namespace hotfire::test;
+using explain::Screened;
+using explain::SimplexFamily;
+using model::Argument;
+using model::Memory;
+using model::Site;
+
+using FlowTerm = model::Term<Site::flow>;
+using TorqueTerm = model::Term<Site::engine_torque>;
+
+int factor(Argument argument) { return 1 + static_cast<int>(argument); }
+
+/// The declared model with a term, as `set` sets it.
+template <class E, class F>
+ModelFile with_term(F&& set) {
+  ModelFile model = declared();
+  auto& parameters = std::get<SimplexParameters>(model.parameters);
+  model::visit_effects(parameters, [&]<class Own>(std::size_t index, auto& values) {
+    if constexpr (std::is_same_v<Own, E>) {
+      parameters.effects.active[index] = true;
+      set(values);
+    }
+  });
+  return model;
+}
+
+template <class E>
+const auto& term_of(const explain::Fitted<SimplexFamily>& fitted) {
+  return std::get<typename E::template Params<double>>(fitted.base.effects.values);
+}
+
+std::vector<Screened<SimplexFamily>> proposed_for(const ModelFile& truth, explain::Fitted<SimplexFamily> around) {
+  const explain::Dataset data = data_of(truth);
+  const explain::Located located = explain::locate(data, about_declared(), 2);
+  const explain::Scales scales;
+  return explain::propose_terms(data, around, located, scales, 2, {});
+}
+
+ModelFile with_product() {
+  return with_term<FlowTerm>([](auto& term) {
+    term.argument = static_cast<int>(Argument::rate);
+    term.factor = factor(Argument::position);
+    term.gain = 0.3;
+  });
+}
+
+}  // namespace
+
+TEST_GROUP(TermProposals){};
+
+TEST(TermProposals, AProductOfTwoQuantitiesOfTheAxisIsFoundAsOne) {
+  const auto proposals = proposed_for(with_product(), about_declared());
+  const auto flow = std::ranges::find_if(proposals, [](const auto& p) { return p.candidate.name == FlowTerm::name; });
+  CHECK(flow != proposals.end());
+  const auto& term = term_of<FlowTerm>(flow->fitted);
+  // What the valve lets through is what the piston takes but for the oil's compression.
+  CHECK(term.argument == static_cast<int>(Argument::rate) || term.argument == static_cast<int>(Argument::flow));
+  CHECK_EQUAL(factor(Argument::position), term.factor);
+}
+
+TEST(TermProposals, AMemoryIsFoundWithItsTime) {
+  const auto proposals = proposed_for(with_term<TorqueTerm>([](auto& term) {
+                                        term.option = static_cast<int>(Memory::delay);
+                                        term.argument = static_cast<int>(Argument::command);
+                                        term.gain = 4e5;
+                                        term.time = 0.08;
+                                      }),
+                                      about_declared());
+  CHECK(!proposals.empty());
+  const Screened<SimplexFamily>& best = proposals.front();
+  STRCMP_EQUAL(std::string(TorqueTerm::name).c_str(), best.candidate.name.c_str());
+  CHECK_EQUAL(static_cast<int>(Memory::delay), term_of<TorqueTerm>(best.fitted).option);
+  CHECK_EQUAL(static_cast<int>(Argument::command), term_of<TorqueTerm>(best.fitted).argument);
+  // A comb of factors of 1.6, refined by 1.25, 1.12 and 1.06.
+  DOUBLES_EQUAL(0.08, term_of<TorqueTerm>(best.fitted).time, 0.06 * 0.08);
+}
+
+TEST(TermProposals, NothingIsProposedWhereNothingIsMissing) { CHECK(proposed_for(declared(), about_declared()).empty()); }
+
+TEST(TermProposals, ASiteThatHasATermGetsNoSecondOne) {
+  auto around = about_declared();
+  model::visit_effects(around.base, [&]<class E>(std::size_t index, auto&) {
+    if constexpr (std::is_same_v<E, FlowTerm>) {
+      around.base.effects.active[index] = true;
+    }
+  });
+  for (const auto& proposal : proposed_for(with_product(), around)) {
+    CHECK(proposal.candidate.name != FlowTerm::name);
+  }
+}

@@ -1,0 +1,124 @@
+#include "tools/explain/latent/form.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hotfire::explain {
+
+namespace {
+
+/// The hat functions of a curve at a value: a curve is linear between its points and constant beyond them.
+template <class Row>
+void add_hats(const std::vector<double>& points, double value, Row&& row) {
+  const auto above = std::upper_bound(points.begin(), points.end(), value);
+  if (above == points.begin()) {
+    row(0) = 1.0;
+  } else if (above == points.end()) {
+    row(static_cast<Eigen::Index>(points.size()) - 1) = 1.0;
+  } else {
+    const Eigen::Index k = above - points.begin();
+    const double share = (value - *(above - 1)) / (*above - *(above - 1));
+    row(k - 1) = 1.0 - share;
+    row(k) = share;
+  }
+}
+
+std::string spoken(std::string_view name) {
+  std::string words(name);
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+}  // namespace
+
+Eigen::Index Form::size() const {
+  return (points.empty() ? 1 : static_cast<Eigen::Index>(points.size())) + (has_direct() ? 1 : 0);
+}
+
+std::string in_words(const Form& form) {
+  const std::string_view memory = model::kMemoryNames[static_cast<std::size_t>(form.memory.kind)];
+  std::string of = spoken(model::kArgumentNames[static_cast<std::size_t>(form.argument)]);
+  if (form.factor) {
+    of += " x " + spoken(model::kArgumentNames[static_cast<std::size_t>(*form.factor)]);
+  }
+  const bool remembers = form.memory.kind != model::Memory::none;
+  const std::string kind = remembers ? spoken(memory) : "gain";
+  if (!form.has_curve()) {
+    return fmt::format("{} of {}", kind, of);
+  }
+  if (!remembers) {
+    return fmt::format("curve over {}", of);
+  }
+  return form.curve_first ? fmt::format("{} of a curve over {}", kind, of) : fmt::format("curve over {} of {}", kind, of);
+}
+
+Eigen::MatrixXd quantities(const LatentProblem& problem, std::size_t experiment, const Eigen::MatrixXd& deviations) {
+  const Flow& flow = problem.flows[experiment];
+  const auto rows = static_cast<Eigen::Index>(flow.states.size());
+  Eigen::MatrixXd values(rows, static_cast<Eigen::Index>(model::kArgumentNames.size()));
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    const Eigen::Matrix<double, kFlowStates, 1> state =
+        flow.states[at] + problem.scales.state.cwiseProduct(deviations.col(row));
+    const model::Surroundings<double> seen{state, flow.piston_command[at], problem.parameters.servovalve,
+                                           problem.parameters.actuator, problem.data.experiments[experiment].time_of(at)};
+    for (Eigen::Index argument = 0; argument < values.cols(); ++argument) {
+      values(row, argument) = seen.at(static_cast<model::Argument>(argument));
+    }
+  }
+  return values;
+}
+
+Eigen::VectorXd argument_of(const Form& form, const Eigen::MatrixXd& quantities) {
+  const Eigen::VectorXd argument = quantities.col(static_cast<Eigen::Index>(form.argument));
+  return form.factor ? Eigen::VectorXd(argument.cwiseProduct(quantities.col(static_cast<Eigen::Index>(*form.factor))))
+                     : argument;
+}
+
+Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& argument, double period) {
+  model::MemoryState<double> state;
+  Eigen::VectorXd output(argument.size());
+  for (Eigen::Index row = 0; row < argument.size(); ++row) {
+    output(row) = form.is_stops()
+                      ? state.stop(form.points, static_cast<int>(form.points.size()), argument(row))[form.points.size() - 1]
+                      : state.step(form.memory, argument(row), period);
+  }
+  return output;
+}
+
+Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, double period) {
+  const Eigen::VectorXd argument = argument_of(form, quantities);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(argument.size(), form.size());
+  const Eigen::Index own = form.size() - (form.has_direct() ? 1 : 0);
+  if (form.has_direct()) {
+    columns.rightCols(1) = argument;
+  }
+  if (form.curve_first) {
+    for (Eigen::Index row = 0; row < argument.size(); ++row) {
+      add_hats(form.points, argument(row), columns.row(row));
+    }
+    for (Eigen::Index k = 0; k < own; ++k) {
+      columns.col(k) = remembered(form, columns.col(k), period);
+    }
+  } else if (form.is_stops()) {
+    model::MemoryState<double> state;
+    for (Eigen::Index row = 0; row < argument.size(); ++row) {
+      const auto& stops = state.stop(form.points, static_cast<int>(form.points.size()), argument(row));
+      for (Eigen::Index k = 0; k < own; ++k) {
+        columns(row, k) = stops[static_cast<std::size_t>(k)];
+      }
+    }
+  } else if (form.has_curve()) {
+    const Eigen::VectorXd output = remembered(form, argument, period);
+    for (Eigen::Index row = 0; row < argument.size(); ++row) {
+      add_hats(form.points, output(row), columns.row(row));
+    }
+  } else {
+    columns.col(0) = remembered(form, argument, period);
+  }
+  return columns;
+}
+
+}  // namespace hotfire::explain

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/effects/term.hpp"
+#include "tools/explain/latent/latent_input.hpp"
+
+namespace hotfire::explain {
+
+/// A term of the grammar (model/effects/term.hpp) up to its linear coefficients: where it acts, and what it is a law of.
+struct Form {
+  model::Site site = model::Site::command;
+  int channel = -1;  ///< of a sensor's reading
+  model::Argument argument = model::Argument::command;
+  std::optional<model::Argument> factor{};
+  model::MemoryParameters<double> memory{};
+  bool curve_first = false;
+  std::vector<double> points{};  ///< of the curve, or the widths of the stops; none: a gain
+
+  bool is_stops() const { return memory.kind == model::Memory::stops; }
+  /// The argument itself stands beside its memory, as the last regressor.
+  bool has_direct() const { return memory.kind != model::Memory::none; }
+  /// Without points, and of stops with theirs, the curve is no function over its points.
+  bool has_curve() const { return !points.empty() && !is_stops(); }
+  /// How many linear coefficients it has.
+  Eigen::Index size() const;
+};
+
+/// "stops of spool", "curve of rate x load_pressure".
+std::string in_words(const Form& form);
+
+/// Quantities of the axis by row of an experiment, a column for each `model::Argument`: as simulated, with the deviations
+/// that a smoother gives.
+Eigen::MatrixXd quantities(const LatentProblem& problem, std::size_t experiment, const Eigen::MatrixXd& deviations);
+
+/// What the form is a law of, by row: its argument, times its factor.
+Eigen::VectorXd argument_of(const Form& form, const Eigen::MatrixXd& quantities);
+
+/// Output of the form's memory by row, without a curve; of stops that of the widest.
+Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& argument, double period);
+
+/// The form's regressors by row, a column a coefficient: what is added at its site for a coefficient of one.
+Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, double period);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,234 @@
+#include "tools/explain/latent/form_comb.hpp"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace hotfire::explain {
+
+namespace {
+
+using model::Argument;
+using model::Memory;
+using model::Site;
+
+/// Points of a curve: what a search of its shape needs; a term can hold some more.
+constexpr int kCurvePoints = 11;
+/// Share of a quantity's values on either side that its curve's ends leave out.
+constexpr double kEnds = 5e-4;
+/// Widths of stop operators, over the 99th percentile of the argument.
+constexpr std::array kStopWidths{0.05, 0.15, 0.35, 0.7};
+
+/// Sorted values of what a form is a law of, or of its memory's output.
+std::vector<double> sorted_values(const FormRegression& regression, const Form& form, bool of_output) {
+  std::vector<double> values;
+  for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
+    Eigen::VectorXd own = argument_of(form, regression.quantities()[e]);
+    if (of_output) {
+      own = remembered(form, own, regression.problem().data.experiments[e].period);
+    }
+    values.insert(values.end(), own.begin(), own.end());
+  }
+  std::ranges::sort(values);
+  return values;
+}
+
+/// The 99th percentile of the size of an argument: what its widths, quanta and pitches are measured by.
+double size_of(const FormRegression& regression, const Form& form) {
+  std::vector<double> values = sorted_values(regression, form, false);
+  std::ranges::transform(values, values.begin(), [](double x) { return std::abs(x); });
+  std::ranges::sort(values);
+  return quantile(values, 0.99);
+}
+
+/// The 99th percentile of how fast an argument changes [1/s].
+double rate_of(const FormRegression& regression, const Form& form) {
+  std::vector<double> rates;
+  for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
+    const Eigen::VectorXd own = argument_of(form, regression.quantities()[e]);
+    const double period = regression.problem().data.experiments[e].period;
+    for (Eigen::Index row = 1; row < own.size(); ++row) {
+      rates.push_back(std::abs(own(row) - own(row - 1)) / period);
+    }
+  }
+  std::ranges::sort(rates);
+  return rates.empty() ? 0.0 : quantile(rates, 0.99);
+}
+
+std::vector<double> comb(double low, double high, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    values.push_back(low * std::pow(high / low, static_cast<double>(i) / (count - 1)));
+  }
+  return values;
+}
+
+/// A curve beside a memory that is itself a curve, or a sum of operators, is no further form.
+bool bears_curve(Memory kind, bool curve_first) {
+  switch (kind) {
+    case Memory::stops:
+    case Memory::quantise:
+    case Memory::dead_zone:
+    case Memory::saturation:
+      return false;
+    case Memory::none:
+    case Memory::periodic:
+      return !curve_first;
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+Form at_place(const LatentPlace& place, Argument argument, std::optional<Argument> factor) {
+  Form form;
+  form.argument = argument;
+  form.factor = factor;
+  if (!place.port) {
+    form.site = Site::sensor;
+    form.channel = static_cast<int>(place.channel);
+    return form;
+  }
+  switch (*place.port) {
+    case Port::torque_motor:
+      form.site = argument == Argument::command && !factor ? Site::command : Site::valve_command;
+      break;
+    case Port::oil:
+      form.site = Site::flow;
+      break;
+    case Port::piston:
+      form.site = Site::piston;
+      break;
+    case Port::spring:
+      form.site = Site::load_spring;
+      break;
+    case Port::engine:
+      form.site = Site::engine_torque;
+      break;
+  }
+  return form;
+}
+
+std::vector<Form> with_memories(const FormRegression& regression, const Form& plain) {
+  std::vector<Form> forms;
+  const double size = size_of(regression, plain);
+  const double rate = rate_of(regression, plain);
+  double period = HUGE_VAL;
+  for (const Experiment& experiment : regression.problem().data.experiments) {
+    period = std::min(period, experiment.period);
+  }
+  if (!(size > 0.0) || !(rate > 0.0) || plain.argument == Argument::time) {
+    return forms;
+  }
+  const auto add = [&](Memory kind, auto&& set) {
+    Form form = plain;
+    form.memory.kind = kind;
+    set(form.memory);
+    forms.push_back(std::move(form));
+  };
+  // A delay is told from its neighbours by an eighth of a period of the fastest that the axis does, 25 Hz.
+  for (double time = 2.0 * period; time < 0.1; time += 5e-3) {
+    add(Memory::delay, [&](auto& memory) { memory.time = time; });
+  }
+  for (const double time : comb(2.0 * period, 10.0, 10)) {
+    add(Memory::lag, [&](auto& memory) { memory.time = time; });
+  }
+  for (const double time : comb(2.0 * period, 1.0, 7)) {
+    add(Memory::washout, [&](auto& memory) { memory.time = time; });
+  }
+  for (const double frequency : comb(1.0, 30.0, 12)) {
+    for (const double damping : {0.15, 0.5}) {
+      for (const Memory kind : {Memory::resonance, Memory::band_pass}) {
+        add(kind, [&](auto& memory) {
+          memory.frequency = frequency;
+          memory.damping = damping;
+        });
+      }
+    }
+  }
+  for (const double width : comb(0.03, 1.0, 7)) {
+    for (const Memory kind : {Memory::quantise, Memory::dead_zone, Memory::saturation}) {
+      add(kind, [&](auto& memory) { memory.width = width * size; });
+    }
+    add(Memory::slew, [&](auto& memory) { memory.width = width * rate; });
+  }
+  // A period is told from its neighbours by a quarter of it at the ends of the argument's range.
+  for (int quarters = 3; quarters <= 40; ++quarters) {
+    add(Memory::periodic, [&](auto& memory) { memory.width = 8.0 * size / quarters; });
+  }
+  for (int rows = 3; rows <= 48; rows = rows + 1 + rows / 4) {
+    add(Memory::hold, [&](auto& memory) { memory.time = rows * period; });
+  }
+  Form stops = plain;
+  stops.memory.kind = Memory::stops;
+  for (const double width : kStopWidths) {
+    stops.points.push_back(width * size);
+  }
+  forms.push_back(std::move(stops));
+  return forms;
+}
+
+std::optional<Form> with_curve(const FormRegression& regression, Form form, bool curve_first) {
+  if (!bears_curve(form.memory.kind, curve_first)) {
+    return std::nullopt;
+  }
+  form.curve_first = curve_first;
+  form.points.clear();
+  const std::vector<double> values = sorted_values(regression, form, !curve_first);
+  const double low = quantile(values, kEnds);
+  const double high = quantile(values, 1.0 - kEnds);
+  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high)) {
+    return std::nullopt;
+  }
+  const double least_gap = 1e-3 * (high - low);
+  for (int i = 0; i < kCurvePoints; ++i) {
+    const double place = static_cast<double>(i) / (kCurvePoints - 1);
+    const double x = 0.5 * (low + (high - low) * place + quantile(values, kEnds + (1.0 - 2.0 * kEnds) * place));
+    if (form.points.empty() || x > form.points.back() + least_gap) {
+      form.points.push_back(x);
+    }
+  }
+  return form.points.size() >= 3 ? std::optional(std::move(form)) : std::nullopt;
+}
+
+std::vector<Form> neighbours(const Form& form, double factor) {
+  std::vector<Form> forms;
+  const auto add = [&](auto&& change) {
+    for (const double by : {factor, 1.0 / factor}) {
+      Form moved = form;
+      change(moved, by);
+      forms.push_back(std::move(moved));
+    }
+  };
+  switch (form.memory.kind) {
+    case Memory::none:
+      break;
+    case Memory::delay:
+    case Memory::lag:
+    case Memory::washout:
+    case Memory::hold:
+      add([](Form& f, double by) { f.memory.time *= by; });
+      break;
+    case Memory::resonance:
+    case Memory::band_pass:
+      add([](Form& f, double by) { f.memory.frequency *= by; });
+      add([](Form& f, double by) { f.memory.damping *= by * by; });
+      break;
+    case Memory::stops:
+      add([](Form& f, double by) {
+        std::ranges::transform(f.points, f.points.begin(), [&](double width) { return width * by; });
+      });
+      break;
+    case Memory::periodic:
+    case Memory::slew:
+    case Memory::quantise:
+    case Memory::dead_zone:
+    case Memory::saturation:
+      add([](Form& f, double by) { f.memory.width *= by; });
+      break;
+  }
+  return forms;
+}
+
+}  // namespace hotfire::explain

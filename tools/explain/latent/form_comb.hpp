@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "tools/explain/latent/form_regression.hpp"
+
+namespace hotfire::explain {
+
+/// The value that a share of `sorted` values lies below.
+inline double quantile(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+/// A gain of an argument, or of a product of two, at a place.
+Form at_place(const LatentPlace& place, model::Argument argument, std::optional<model::Argument> factor = {});
+
+/// Every memory of the form's argument over the comb of its parameter: times from the plant's rows on, widths from the
+/// argument's size down. None of time, and of what does not move.
+std::vector<Form> with_memories(const FormRegression& regression, const Form& plain);
+
+/// The form with a curve over the values that it meets: points half by their range and half by how often they occur. None
+/// where its memory bears no curve in that order, or what it meets has no width.
+std::optional<Form> with_curve(const FormRegression& regression, Form form, bool curve_first);
+
+/// The form with the parameter of its memory a factor up and down.
+std::vector<Form> neighbours(const Form& form, double factor);
+
+}  // namespace hotfire::explain

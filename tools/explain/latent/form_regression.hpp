@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "tools/explain/latent/form.hpp"
+
+namespace hotfire::explain {
+
+/// How well a form explains what a model leaves.
+struct FormScore {
+  double criterion = 0.0;        ///< BIC with an unknown level of noise; less is better
+  double left = 0.0;             ///< mean square over noise of what it leaves
+  Eigen::VectorXd coefficients;  ///< in the site's unit for a unit of each regressor
+  Eigen::VectorXd move;          ///< of the declared parameters beside them [tolerances]
+};
+
+/// Regression of what a model leaves on the responses of forms at one place: every regressor acts along the linear flow,
+/// and its coefficient is that of least squares on the readings, where the noise is white. Declared parameters move beside
+/// it within their tolerances. A coefficient has the full input of its place as prior deviation (`FlowScales`).
+class FormRegression {
+ public:
+  /// Where the arguments of forms come from. What a smoother makes of the states contains the signal itself and may explain
+  /// it without being its cause; what the model simulates is off by what the signal does.
+  enum class Arguments { simulated, smoothed };
+
+  /// The problem is to outlive the regression. `input`: of the place, its signal and states.
+  FormRegression(const LatentProblem& problem, const LatentPlace& place, const LatentInput& input, Arguments arguments);
+
+  const std::vector<Eigen::MatrixXd>& quantities() const { return quantities_; }
+  const LatentProblem& problem() const { return problem_; }
+  /// The smoothed signal by experiment, a value a row.
+  const std::vector<Eigen::VectorXd>& signal() const { return signal_; }
+
+  /// Scores of forms, in their order.
+  std::vector<FormScore> score(std::span<const Form> forms, unsigned threads) const;
+
+  /// What is left without any form, as `FormScore::left` counts it.
+  double left_without() const;
+
+ private:
+  void score_some(std::span<const Form> forms, std::span<FormScore> scores) const;
+  double to_port(const Form& form) const;
+
+  const LatentProblem& problem_;
+  LatentPlace place_;
+  std::vector<Eigen::VectorXd> signal_;
+  std::vector<Eigen::MatrixXd> quantities_;  ///< by experiment
+  Eigen::MatrixXd nuisance_;                 ///< normal matrix of the declared parameters with their prior
+  Eigen::VectorXd nuisance_right_;
+  double square_ = 0.0;  ///< of what is left
+  double count_ = 0.0;
+};
+
+}  // namespace hotfire::explain

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "tools/explain/latent/form_regression.hpp"
+
+namespace hotfire::explain {
+
+/// A form with what it scored.
+struct ScoredForm {
+  Form form;
+  FormScore score;
+};
+
+/// The forms of the grammar that explain most of what a model leaves, at one place: at most `most` of them, of different
+/// arguments or memories, the best first. Every memory of every argument is screened over a comb of its parameter, with
+/// its output and the size of its output as regressors; then curves are laid over the best, and their parameters are
+/// refined.
+std::vector<ScoredForm> search_forms(const FormRegression& regression, const LatentPlace& place, std::size_t most,
+                                     unsigned threads);
+
+}  // namespace hotfire::explain

@@ -1,0 +1,188 @@
+#include "tools/explain/search/term_proposals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/explain/latent/form_search.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Rows over all records that forms are regressed on: of two minutes at 200 Hz.
+constexpr double kMostRows = 25e3;
+/// Forms of one place that are proposed.
+constexpr std::size_t kFormsOfPlace = 4;
+/// A form is not proposed that takes less than this share of what the best one takes.
+constexpr double kWorthwhile = 0.5;
+/// Mean square over noise of what the right form leaves along the linear flow.
+constexpr double kNoise = 1.5;
+/// How far a parameter of a memory may go from where the regression puts it, as a factor.
+constexpr double kReach = 100.0;
+
+/// The effect of the model that is a term at the form's site.
+std::optional<Candidate> candidate_of(const Form& form) {
+  std::optional<Candidate> candidate;
+  const PlainParameters<SimplexFamily> neutral;
+  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
+    if constexpr (requires { E::is_term; }) {
+      if (E::site == form.site && E::sensor_channel == form.channel) {
+        std::string site(model::site_name(E::site));
+        if (form.channel >= 0) {
+          site += "." + std::string(model::Simplex<double>::channels[static_cast<std::size_t>(form.channel)]);
+        }
+        candidate = Candidate{
+            index,
+            static_cast<int>(form.memory.kind),
+            std::string(E::name),
+            in_words(form),
+            std::move(site),
+            {static_cast<int>(form.argument), form.factor ? 1 + static_cast<int>(*form.factor) : 0,
+             static_cast<int>(form.curve_first ? model::term::Order::curve_first : model::term::Order::curve_last)}};
+      }
+    }
+  });
+  return candidate;
+}
+
+/// Puts a form's values into the term's parameters.
+void set_values(PlainParameters<SimplexFamily>& parameters, const Candidate& candidate, const ScoredForm& scored) {
+  const Form& form = scored.form;
+  const Eigen::VectorXd& coefficients = scored.score.coefficients;
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    if constexpr (requires { E::is_term; }) {
+      if (index != candidate.effect) {
+        return;
+      }
+      values.time = form.memory.time;
+      values.frequency = form.memory.frequency;
+      values.damping = form.memory.damping;
+      values.width = form.memory.width;
+      values.gain = form.points.empty() ? coefficients(0) : 0.0;
+      values.direct = form.has_direct() ? coefficients(coefficients.size() - 1) : 0.0;
+      values.table.points = static_cast<int>(form.points.size());
+      for (std::size_t i = 0; i < form.points.size(); ++i) {
+        values.table.x[i] = form.points[i];
+        values.table.y[i] = coefficients(static_cast<Eigen::Index>(i));
+      }
+    }
+  });
+}
+
+/// The coordinates of a term that a fit moves, each about the value that it has in `parameters`.
+std::vector<FreeParameter> free_parameters(const PlainParameters<SimplexFamily>& parameters, const Candidate& candidate,
+                                           const Form& form, const Scales& scales) {
+  std::vector<FreeParameter> free = effect_parameters<SimplexFamily>(parameters, candidate, scales);
+  const auto ends_with = [](const FreeParameter& p, std::string_view name) { return p.key.ends_with(name); };
+  std::erase_if(free, [&](const FreeParameter& p) {
+    const bool is_unused_gain = ends_with(p, ".gain") && !form.points.empty();
+    // A sampling period has no derivative.
+    return is_unused_gain || (form.memory.kind == model::Memory::hold && ends_with(p, ".time"));
+  });
+  std::vector<double> values;
+  model::visit_values(parameters, [&](const double& value) { values.push_back(value); });
+  double largest = 0.0;
+  for (const FreeParameter& p : free) {
+    largest = p.is_ordinate ? std::max(largest, std::abs(values[p.index])) : largest;
+  }
+  for (FreeParameter& p : free) {
+    const double value = values[p.index];
+    if (p.is_ordinate) {
+      p.unit_size = largest > 0.0 ? largest : p.unit_size;
+    } else if (p.scale == FreeParameter::Scale::logarithmic) {
+      p.unit_size = value;
+      p.lower = std::max(p.lower, value / kReach);
+      p.upper = std::min(p.upper, value * kReach);
+      p.prior_center = std::log(value);
+    } else if (value != 0.0) {
+      p.unit_size = std::abs(value);
+    }
+  }
+  return free;
+}
+
+std::optional<Screened<SimplexFamily>> start_of(const Fitted<SimplexFamily>& around, const ScoredForm& scored,
+                                                const Scales& scales) {
+  const std::optional<Candidate> candidate = candidate_of(scored.form);
+  if (!candidate || around.base.effects.active[candidate->effect] || !scored.score.coefficients.allFinite()) {
+    return std::nullopt;
+  }
+  Screened<SimplexFamily> start;
+  start.candidate = *candidate;
+  start.fitted = around;
+  activate<SimplexFamily>(start.fitted.base, *candidate);
+  set_values(start.fitted.base, *candidate, scored);
+  Eigen::Index declared = 0;
+  for (std::size_t k = 0; k < around.free.size(); ++k) {
+    if (around.free[k].is_declared()) {
+      start.fitted.u[k] += scored.score.move(declared++);
+    }
+  }
+  std::vector<double> values;
+  model::visit_values(start.fitted.base, [&](const double& value) { values.push_back(value); });
+  for (const FreeParameter& p : free_parameters(start.fitted.base, *candidate, scored.form, scales)) {
+    start.fitted.u.push_back(p.coordinate(std::clamp(values[p.index], p.lower, p.upper)));
+    start.fitted.free.push_back(p);
+  }
+  start.criterion = scored.score.criterion;
+  start.good = true;
+  return start;
+}
+
+}  // namespace
+
+std::vector<Screened<SimplexFamily>> propose_terms(const Dataset& data, const Fitted<SimplexFamily>& around,
+                                                   const Located& located, const Scales& scales, unsigned threads,
+                                                   const Watch& watch) {
+  double rows = 0.0;
+  double seconds = 0.0;
+  for (const Experiment& experiment : data.experiments) {
+    rows += static_cast<double>(experiment.rows());
+    seconds += static_cast<double>(experiment.rows()) * experiment.period;
+  }
+  const Dataset thin = rows > kMostRows ? thinned(data, seconds / kMostRows) : data;
+  const Evaluator<SimplexFamily> evaluator(thin, Resolution::coarse, Resolution::rough);
+  std::vector<Screened<SimplexFamily>> proposals;
+  const LatentProblem problem = latent_problem(evaluator, around, threads);
+  if (problem.flows.empty()) {
+    return proposals;
+  }
+  std::vector<ScoredForm> forms;
+  double without = 0.0;
+  for (const Place& place : located.places) {
+    if (!place.is_likely || watch.interrupted()) {
+      continue;
+    }
+    watch.progress(fmt::format("regressing what is left on terms at {}", place.sites.front()));
+    LatentInput input;
+    input.deviation = place.deviation;
+    input.move = place.move;
+    smooth(problem, place.where, input);
+    for (const auto arguments : {FormRegression::Arguments::simulated, FormRegression::Arguments::smoothed}) {
+      const FormRegression regression(problem, place.where, input, arguments);
+      without = regression.left_without();
+      double least = without;
+      for (ScoredForm& form : search_forms(regression, place.where, kFormsOfPlace, threads)) {
+        least = std::min(least, form.score.left);
+        forms.push_back(std::move(form));
+      }
+      if (least < kNoise) {
+        break;
+      }
+    }
+  }
+  std::ranges::stable_sort(forms, {}, [](const ScoredForm& s) { return s.score.criterion; });
+  for (const ScoredForm& form : forms) {
+    if (without - form.score.left < kWorthwhile * (without - forms.front().score.left)) {
+      continue;
+    }
+    if (auto start = start_of(around, form, scales)) {
+      proposals.push_back(std::move(*start));
+    }
+  }
+  return proposals;
+}
+
+}  // namespace hotfire::explain
