@@ -47,3 +47,4 @@ room(firmware report "what a run prints" session can text)
 
 room(interface plant "a plant of any topology behind tables of variables: steps, state, derivatives")
 room(interface c "the C interface and the reader of plant texts" plant)
+room(interface fmu "the functions of FMI 2.0 and 3.0 for co-simulation" c plant)
