@@ -3,7 +3,7 @@ cmake_minimum_required(VERSION 3.25)
 
 function(copy_tree)
   file(REMOVE_RECURSE ${SCRATCH})
-  foreach(room model hal firmware tools tests)
+  foreach(room model hal firmware interface tools tests)
     file(COPY ${ROOT}/${room} DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cpp")
   endforeach()
 endfunction()
