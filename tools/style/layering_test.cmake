@@ -54,6 +54,7 @@ expect_fault(hal/wrong.hpp "#include \"model/simplex.hpp\"" "includes model/simp
 expect_fault(hal/linux/wrong.cpp "#include <fmt/format.h>" "includes <fmt/format.h>")
 expect_fault(firmware/wrong.cpp "#include \"tools/files/record/record.hpp\"" "includes tools/files/record/record.hpp")
 expect_fault(firmware/wrong.cpp "#include <ceres/ceres.h>" "includes <ceres/ceres.h>")
+expect_fault(interface/c/wrong.cpp "#include \"tools/files/record/record.hpp\"" "includes tools/files/record/record.hpp")
 expect_fault(tools/files/wrong.cpp "#include \"firmware/loop/loop.hpp\"" "includes firmware/loop/loop.hpp")
 expect_fault(tools/files/wrong.cpp "#include \"hal/linux/realtime.hpp\"" "includes hal/linux/realtime.hpp")
 expect_fault(tools/files/wrong.cpp "#include \"tests/support/allocation_guard.hpp\"" "includes tests/support")
