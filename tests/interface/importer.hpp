@@ -84,10 +84,10 @@ class Fmu {
 };
 
 /// The last message that an FMU logged, after its category.
-inline std::string last_message;
+inline std::array<char, 800> last_message{};
 
 inline void log3(fmi3InstanceEnvironment, fmi3Status, fmi3String category, fmi3String message) {
-  last_message = std::string(category) + ": " + message;
+  std::snprintf(last_message.data(), last_message.size(), "%s: %s", category, message);
 }
 inline void log2(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String category, fmi2String format, ...) {
   std::va_list values;
@@ -95,7 +95,7 @@ inline void log2(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String ca
   std::array<char, 700> text{};
   std::vsnprintf(text.data(), text.size(), format, values);
   va_end(values);
-  last_message = std::string(category) + ": " + text.data();
+  std::snprintf(last_message.data(), last_message.size(), "%s: %s", category, text.data());
 }
 inline constexpr fmi2CallbackFunctions kCallbacks{log2, nullptr, nullptr, nullptr, nullptr};
 
@@ -121,7 +121,7 @@ class Run {
       set_2_ = fmu.function<Set2>("fmi2SetReal");
       step_2_ = fmu.function<Step2>("fmi2DoStep");
     }
-    CHECK_TEXT(instance_ != nullptr, last_message.c_str());
+    CHECK_TEXT(instance_ != nullptr, last_message.data());
   }
   ~Run() { fmu_.function<void(void*)>(is_3_ ? "fmi3FreeInstance" : "fmi2FreeInstance")(instance_); }
   Run(const Run&) = delete;
