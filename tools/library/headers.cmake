@@ -38,6 +38,8 @@ if(HOTFIRE_INSTALL)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/hotfireConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/hotfireConfig.cmake ${PROJECT_BINARY_DIR}/hotfireConfigVersion.cmake DESTINATION ${package}
     COMPONENT sdk)
+  # From the folder of the package files up to the prefix, so that an installation may be moved.
+  file(RELATIVE_PATH up_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   foreach(module hotfire hotfire-model)
     configure_file(${PROJECT_SOURCE_DIR}/tools/library/${module}.pc.in ${PROJECT_BINARY_DIR}/${module}.pc @ONLY)
     install(FILES ${PROJECT_BINARY_DIR}/${module}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT sdk)
