@@ -266,6 +266,21 @@ TEST(Fmu, TheDescriptionNamesEveryVariableOnceWithUnitAndMeaning) {
   }
 }
 
+TEST(Fmu, ItsSourcesCompileAloneAndGiveTheSameBits) {
+  const Case own = cases(100)[0];
+  Fmu fmu(scratch, own, 3);
+  fmu.compile();
+  const Run run(fmu, 3);
+  run.enter();
+  run.set(fmu.references(own.inputs), inputs_at(own, 0));
+  LONGS_EQUAL(0, run.call("ExitInitializationMode"));
+  for (std::size_t period = 0; period < own.periods(); ++period) {
+    check_same_bits(own.readings_at(period), run.got(fmu.references(own.outputs())));
+    run.set(fmu.references(own.inputs), inputs_at(own, period));
+    LONGS_EQUAL(0, run.step(1e-3 * static_cast<double>(period), own.period));
+  }
+}
+
 TEST(Fmu, TheSameModelGivesTheSameBytes) {
   const Case own = cases(20)[0];
   const Fmu one(scratch, own, 3);

@@ -47,12 +47,22 @@ class Fmu {
     CHECK(std::regex_search(description_, token, std::regex("(?:instantiationToken|guid)=\"([^\"]*)\"")));
     token_ = token[1];
     const std::string place = version == 3 ? "binaries/x86_64-linux/" : "binaries/linux64/";
-    library_ = dlopen((folder_ / (place + name + ".so")).c_str(), RTLD_NOW | RTLD_LOCAL);
-    CHECK_TEXT(library_ != nullptr, dlerror());
+    load(folder_ / (place + name + ".so"));
   }
   ~Fmu() { dlclose(library_); }
   Fmu(const Fmu&) = delete;
   Fmu& operator=(const Fmu&) = delete;
+
+  /// Compiles the FMU's own sources as docs/fmu.md says, and uses that binary from now on.
+  void compile() {
+    const std::string command = "cd " + (folder_ / "sources").string() +
+                                " && c++ -std=c++20 -O1 -ffp-contract=off -fPIC -shared -I. fmu.cpp -o ../own.so";
+    CHECK(std::system(command.c_str()) == 0);
+    dlclose(library_);
+    // The sources have the plant in them.
+    std::filesystem::remove(folder_ / "resources/plant.txt");
+    load(folder_ / "own.so");
+  }
 
   template <class Function>
   Function* function(const char* name) const {
@@ -75,6 +85,11 @@ class Fmu {
   std::string resource_uri() const { return "file://" + (folder_ / "resources").string(); }
 
  private:
+  void load(const std::filesystem::path& binary) {
+    library_ = dlopen(binary.c_str(), RTLD_NOW | RTLD_LOCAL);
+    CHECK_TEXT(library_ != nullptr, dlerror());
+  }
+
   int version_;
   std::filesystem::path folder_;
   std::string description_;
