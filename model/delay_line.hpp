@@ -23,6 +23,15 @@ static_assert(kLongestCommandDelay / kShortestDelayedStep < kCommandMemory - 2);
 template <class S, std::size_t Capacity>
 class DelayLine {
  public:
+  DelayLine() = default;
+  /// The same in another scalar, value by value.
+  template <class Other>
+  explicit DelayLine(const DelayLine<Other, Capacity>& other) noexcept : newest_(other.newest_) {
+    for (std::size_t i = 0; i < Capacity; ++i) {
+      values_[i] = S(value_of(other.values_[i]));
+    }
+  }
+
   void fill(const S& value) noexcept { values_.fill(value); }
 
   /// Takes in the newest value; returns the one `delay` [s] ago at steps of `h` [s].
@@ -42,6 +51,9 @@ class DelayLine {
   }
 
  private:
+  template <class Other, std::size_t OtherCapacity>
+  friend class DelayLine;
+
   S ahead(const S& steps) const noexcept {
     const S& now = values_[newest_];
     const S& before = values_[(newest_ + Capacity - 1) % Capacity];

@@ -8,7 +8,7 @@
 #include "firmware/plant/reference_plant.hpp"
 #include "model/vehicle_keys.hpp"
 #include "tests/model/vehicles.hpp"
-#include "tools/cli/plant_image_text.hpp"
+#include "tools/simulate/plant_image_text.hpp"
 
 namespace {
 

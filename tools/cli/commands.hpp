@@ -11,6 +11,7 @@ void add_check(CLI::App& program);
 void add_controller(CLI::App& program);
 void add_convert(CLI::App& program);
 void add_doctor(CLI::App& program);
+void add_export(CLI::App& program);
 void add_explain(CLI::App& program, const std::string& typed);  ///< `typed`: the command line, for its report
 void add_findings(CLI::App& program);
 void add_hammer(CLI::App& program);

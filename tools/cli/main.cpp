@@ -85,6 +85,7 @@ int run(int argc, char** argv) {
   add_convert(program);
   add_import(program);
   add_simulate(program);
+  add_export(program);
   add_sweep(program);
   add_step(program);
   add_stiffness(program);

@@ -8,7 +8,7 @@
 #include "model/vehicle.hpp"
 #include "tools/findings/parameters.hpp"
 #include "tools/findings/rows.hpp"
-#include "tools/simulate/normal.hpp"
+#include "interface/plant/normal.hpp"
 
 namespace hotfire::findings {
 

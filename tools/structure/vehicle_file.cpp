@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "tools/files/model/key_groups.hpp"
 #include "tools/files/model/model_group.hpp"
@@ -287,15 +288,12 @@ std::string topology_of(const TomlSource& source) {
   return node != nullptr ? source.text(*node, "topology") : std::string{};
 }
 
-}  // namespace
-
-bool is_vehicle(const std::filesystem::path& path) {
-  const std::string topology = topology_of(TomlSource(path));
+bool is_of_several_axes(const TomlSource& source) {
+  const std::string topology = topology_of(source);
   return topology == kTaos || topology == kMasv;
 }
 
-VehicleFile load_vehicle(const std::filesystem::path& path) {
-  const TomlSource source(path);
+VehicleFile read_vehicle(const TomlSource& source, const std::filesystem::path& path) {
   source.require_schema();
   const std::string topology = topology_of(source);
   VehicleFile vehicle{path, path.stem().string(), {}, {}, {}, {}};
@@ -311,6 +309,20 @@ VehicleFile load_vehicle(const std::filesystem::path& path) {
                           fmt::format("\"{}\" is not one of several axes; allowed: \"{}\", \"{}\"", topology, kTaos, kMasv));
   }
   return vehicle;
+}
+
+}  // namespace
+
+bool is_vehicle(const std::filesystem::path& path) { return is_of_several_axes(TomlSource(path)); }
+
+bool is_vehicle(std::string text, const std::filesystem::path& path) {
+  return is_of_several_axes(TomlSource(path, std::move(text)));
+}
+
+VehicleFile load_vehicle(const std::filesystem::path& path) { return read_vehicle(TomlSource(path), path); }
+
+VehicleFile parse_vehicle(std::string text, const std::filesystem::path& path) {
+  return read_vehicle(TomlSource(path, std::move(text)), path);
 }
 
 VehicleFile with_thrust(VehicleFile vehicle, double thrust) {

@@ -3,12 +3,13 @@
 cmake_minimum_required(VERSION 3.25)
 
 # What a file of a room may include of ours, by its path from the root.
-set(rooms model hal firmware tools tests)
+set(rooms model hal firmware interface tools tests)
 set(allowed_model model)
 set(allowed_hal hal)
 set(allowed_firmware firmware model hal)
-set(allowed_tools tools model hal/arithmetic hal/sim hal/recording hal/schedule)
-set(allowed_tests tests tools firmware model hal)
+set(allowed_interface interface model hal/arithmetic firmware/image)
+set(allowed_tools tools interface model hal/arithmetic hal/sim hal/recording hal/schedule)
+set(allowed_tests tests tools interface firmware model hal)
 
 include(${CMAKE_CURRENT_LIST_DIR}/rooms.cmake)
 # Files beside each other in one inner room.

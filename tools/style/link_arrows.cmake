@@ -5,7 +5,8 @@
 set(link_model "^model:")
 set(link_hal "^hal:")
 set(link_firmware "^(firmware|model|hal):")
-set(link_tools "^(tools|model):|^hal:hotfire_hal(_sim|_recording|_schedule)?$")
+set(link_interface "^(interface|model):")
+set(link_tools "^(tools|interface|model):|^hal:hotfire_hal(_sim|_recording|_schedule)?$")
 
 function(targets_below folder result)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
@@ -32,7 +33,7 @@ endfunction()
 
 # Called when every target is known: a link against the arrows ends the configuration.
 function(check_link_arrows)
-  foreach(room model hal firmware tools)
+  foreach(room model hal firmware interface tools)
     targets_below(${PROJECT_SOURCE_DIR}/${room} targets)
     foreach(target IN LISTS targets)
       foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES)

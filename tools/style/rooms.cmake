@@ -2,7 +2,7 @@
 # may include. A file beside the rooms may include all of them; no room includes a file beside the rooms. Checked by
 # layering.cmake; drawn into docs/architecture.md by draw_rooms.cmake.
 
-set(houses tools/explain tools/files tools/study firmware)
+set(houses tools/explain tools/files tools/study firmware interface)
 
 # room(HOUSE NAME "what it is for" ROOM_BELOW...): rooms are declared from the lowest up.
 macro(room house name purpose)
@@ -44,3 +44,7 @@ room(firmware lab "profiles, and the logic that drives real actuators behind the
 room(firmware replay "a second run of a recording, compared bit for bit" lab image service text)
 room(firmware session "one run from options to exit status" lab can recording interlock image plant loop service text)
 room(firmware report "what a run prints" session can text)
+
+room(interface plant "a plant of any topology behind tables of variables: steps, state, derivatives")
+room(interface c "the C interface and the reader of plant texts" plant)
+room(interface fmu "the functions of FMI 2.0 and 3.0 for co-simulation" c plant)

@@ -6,7 +6,7 @@
 
 #include "model/step_size.hpp"
 #include "tools/files/text/error.hpp"
-#include "tools/simulate/normal.hpp"
+#include "interface/plant/normal.hpp"
 #include "tools/simulate/run.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/profiles.hpp"

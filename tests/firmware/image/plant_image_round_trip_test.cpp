@@ -7,7 +7,7 @@
 
 #include "firmware/image/plant_image.hpp"
 #include "model/keys.hpp"
-#include "tools/cli/plant_image_text.hpp"
+#include "tools/simulate/plant_image_text.hpp"
 #include "tools/files/model/model_file.hpp"
 
 namespace hotfire {

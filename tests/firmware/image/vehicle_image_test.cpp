@@ -4,7 +4,7 @@
 
 #include "firmware/image/plant_image.hpp"
 #include "tests/firmware/plant/whole_vehicle.hpp"
-#include "tools/cli/vehicle_image_text.hpp"
+#include "tools/simulate/vehicle_image_text.hpp"
 
 namespace hotfire {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "tools/files/model/model_group.hpp"
 #include "tools/files/model/model_layout.hpp"
@@ -82,10 +83,7 @@ void choose_topology(const TomlSource& source, ModelFile& model) {
   }
 }
 
-}  // namespace
-
-ModelFile load_model(const std::filesystem::path& path) {
-  const TomlSource source(path);
+ModelFile read_model(const TomlSource& source, const std::filesystem::path& path) {
   source.require_schema();
   ModelFile model;
   model.path = path;
@@ -109,6 +107,14 @@ ModelFile load_model(const std::filesystem::path& path) {
     model.tolerance = read_tolerances(source, *tolerance, Words(declared.begin(), declared.end()));
   }
   return model;
+}
+
+}  // namespace
+
+ModelFile load_model(const std::filesystem::path& path) { return read_model(TomlSource(path), path); }
+
+ModelFile parse_model(std::string text, const std::filesystem::path& path) {
+  return read_model(TomlSource(path, std::move(text)), path);
 }
 
 }  // namespace hotfire

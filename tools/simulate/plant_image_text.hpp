@@ -4,9 +4,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 
 #include "model/key_text.hpp"
+#include "model/vehicle_keys.hpp"
 #include "tools/files/model/model_file.hpp"
 
 namespace hotfire {
@@ -68,17 +70,29 @@ class PlantImageWriter {
   std::string text_;
 };
 
-/// The plant image of a model, which `hotfire-rt --image` reads back bit for bit.
+/// The plant image of an axis alone or a mass, which `hotfire-rt --image` reads back bit for bit.
+template <class Parameters>
+std::string plant_image_text(const Parameters& parameters) requires requires {
+  parameters.effects;
+}
+{
+  constexpr bool is_simplex = std::is_same_v<Parameters, SimplexParameters>;
+  PlantImageWriter writer(is_simplex ? model::Simplex<double>::topology : model::Direct<double>::topology);
+  model::visit_keys(parameters, writer);
+  return writer.text();
+}
+
+/// The plant image of a vehicle with its sensors.
+template <class Vehicle>
+std::string plant_image_text(const model::InstrumentedVehicle<Vehicle>& instrumented) {
+  PlantImageWriter writer(Vehicle::topology);
+  model::visit_vehicle_keys(instrumented, writer);
+  return writer.text();
+}
+
+/// The plant image of a model.
 inline std::string plant_image_text(const ModelFile& model) {
-  return std::visit(
-      [](const auto& parameters) {
-        using Parameters = std::remove_cvref_t<decltype(parameters)>;
-        constexpr bool is_simplex = std::is_same_v<Parameters, SimplexParameters>;
-        PlantImageWriter writer(is_simplex ? model::Simplex<double>::topology : model::Direct<double>::topology);
-        model::visit_keys(parameters, writer);
-        return writer.text();
-      },
-      model.parameters);
+  return std::visit([](const auto& parameters) { return plant_image_text(parameters); }, model.parameters);
 }
 
 }  // namespace hotfire

@@ -5,8 +5,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "model/vehicle_keys.hpp"
-#include "tools/cli/plant_image_text.hpp"
+#include "tools/simulate/plant_image_text.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/simulate/vehicle_readings.hpp"
 
@@ -22,9 +21,7 @@ inline std::string plant_image_text(const VehicleFile& file) {
         Normal normal(VehicleRun{}.seed);
         const auto instrumented = std::make_unique<const model::InstrumentedVehicle<Plant>>(
             model::InstrumentedVehicle<Plant>{parameters, sensors_in_place<Plant>(file.sensors, normal)});
-        PlantImageWriter writer(Plant::topology);
-        model::visit_vehicle_keys(*instrumented, writer);
-        return writer.text();
+        return plant_image_text(*instrumented);
       },
       file.parameters);
 }

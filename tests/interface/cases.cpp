@@ -1,0 +1,145 @@
+#include "tests/interface/cases.hpp"
+
+#include <cmath>
+
+#include "model/step_size.hpp"
+#include "tools/files/model/model_file.hpp"
+#include "tools/simulate/excitation.hpp"
+#include "tools/simulate/simulate.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
+
+namespace hotfire::test {
+
+namespace {
+
+const std::string kHead = "schema = 1\ntopology = ";
+const std::string kEffects = R"(
+[effects.gimbal_friction]
+law = "lugre"
+coulomb_torque = 12e3
+[effects.soft_stiffness]
+law = "compliance"
+low_stiffness = 3.4e7
+load_scale = 1.2e4
+[effects.valve_deadband]
+half_width = 0.004
+)";
+const std::string kGimbal = R"(
+[gimbal]
+thrust = 1.86e6
+[gimbal.friction]
+law = "lugre"
+coulomb_torque = 2e4
+[sensors.piston]
+lag = "1 ms"
+noise = "10 um"
+step = "5 um"
+)";
+const std::string kStrings = "[strings]\nlag = \"2 ms\"\nnoise = \"20 um\"\nplacement_error = \"5 mm\"\n";
+
+/// Two sines and a step, another for each input, below the model's limits.
+double wave(std::size_t row, std::size_t input, double size) {
+  const double t = 1e-3 * static_cast<double>(row);
+  const auto phase = static_cast<double>(input);
+  return size * (std::sin(12.0 * t + phase) + 0.4 * std::sin(61.0 * t + 2.0 * phase) + (t > 0.3 ? 0.5 : 0.0));
+}
+
+Record record_of(std::size_t rows, const std::vector<Channel>& channels) {
+  Record record;
+  record.path = "case.csv";
+  record.period = 1e-3;
+  record.rows = rows;
+  record.channels = channels;
+  return record;
+}
+
+Channel channel(const std::string& name, const std::string& unit, std::size_t rows, std::size_t input, double size) {
+  Channel made{name, unit, {}};
+  for (std::size_t row = 0; row < rows; ++row) {
+    made.values.push_back(wave(row, input, size));
+  }
+  return made;
+}
+
+Case simplex(std::size_t rows) {
+  Case made{
+      "simplex",   kHead + "\"simplex\"\n" + kEffects + "[effects.sensor_delay]\nchannel = \"engine\"\ndelay = 0.0021\n",
+      1e-3,        1,
+      {"command"}, {},
+      {}};
+  const Record record = record_of(rows, {channel("command", "rad", rows, 0, 0.02)});
+  made.driven = {record.channels[0].values};
+  made.simulated = simulate(parse_model(made.text, "case.toml"), record);
+  return made;
+}
+
+/// The force is interpolated between rows; what a plant step gets of it drives a period of one step.
+Case direct(std::size_t rows) {
+  Case made{"direct",
+            kHead +
+                "\"direct\"\n[mass]\ninertia = 2.0\ndamping = 3.0\nstiffness = 5e4\n"
+                "[effects.sliding_friction]\nlaw = \"lugre\"\ncoulomb_forward = 4.0\ncoulomb_backward = 3.0\n",
+            0.0,
+            1,
+            {"force"},
+            {{}},
+            {}};
+  const Record record = record_of(rows, {channel("force", "", rows, 0, 30.0)});
+  const ModelFile model = parse_model(made.text, "case.toml");
+  const int steps =
+      model::steps_per_period<model::Direct<double>>(std::get<DirectParameters>(model.parameters), record.period);
+  made.period = record.period / steps;
+  made.periods_per_row = static_cast<std::size_t>(steps);
+  const Excitation force(record.channels[0].values, steps, Excitation::Between::interpolated);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (int step = 0; step < steps; ++step) {
+      made.driven[0].push_back(force(row, step));
+    }
+  }
+  made.simulated = simulate(model, record);
+  return made;
+}
+
+Case vehicle(const std::string& topology, const std::string& rest, const std::vector<std::string>& axes, std::size_t rows) {
+  Case made{topology, kHead + '"' + topology + "\"\n" + rest, 1e-3, 1, {}, {}, {}};
+  std::vector<Channel> channels;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    channels.push_back(channel("command." + axes[i], "rad", rows, i, 0.015));
+    made.inputs.push_back(channels.back().name);
+    made.driven.push_back(channels.back().values);
+  }
+  made.simulated = simulate(parse_vehicle(made.text, "case.toml"), record_of(rows, channels));
+  return made;
+}
+
+bool is_output(const Channel& channel) { return !channel.name.starts_with("command") && channel.name != "force"; }
+
+}  // namespace
+
+std::vector<double> Case::readings_at(std::size_t after) const {
+  std::vector<double> readings;
+  for (const Channel& channel : simulated.channels) {
+    if (is_output(channel)) {
+      readings.push_back(channel.values[after / periods_per_row]);
+    }
+  }
+  return readings;
+}
+
+std::vector<std::string> Case::outputs() const {
+  std::vector<std::string> names;
+  for (const Channel& channel : simulated.channels) {
+    if (is_output(channel)) {
+      names.push_back(channel.name);
+    }
+  }
+  return names;
+}
+
+std::vector<Case> cases(std::size_t rows) {
+  return {simplex(rows), direct(rows), vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"}, rows),
+          vehicle("masv", "[effects.valve_deadband]\nhalf_width = 0.004\n" + kGimbal,
+                  {"pitch1", "yaw1", "pitch2", "yaw2", "pitch3", "yaw3", "pitch4", "yaw4"}, rows)};
+}
+
+}  // namespace hotfire::test

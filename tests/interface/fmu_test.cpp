@@ -1,0 +1,292 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "tests/files/scratch.hpp"
+#include "tests/interface/cases.hpp"
+#include "tests/interface/importer.hpp"
+#include "tests/support/allocation_guard.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace hotfire::test {
+namespace {
+
+std::vector<double> inputs_at(const Case& own, std::size_t period) {
+  std::vector<double> values;
+  for (const std::vector<double>& input : own.driven) {
+    values.push_back(input[period]);
+  }
+  return values;
+}
+
+void check_same_bits(const std::vector<double>& expected, const std::vector<double>& actual) {
+  LONGS_EQUAL(expected.size(), actual.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    MEMCMP_EQUAL(&expected[i], &actual[i], sizeof expected[i]);
+  }
+}
+
+constexpr std::array<int, 2> kVersions{2, 3};
+
+}  // namespace
+
+TEST_GROUP(Fmu) { Scratch scratch; };
+
+TEST(Fmu, GivesTheBitsOfHotfireSimulateForEveryTopologyInBothVersions) {
+  for (const Case& own : cases(300)) {
+    for (const int version : kVersions) {
+      const Fmu fmu(scratch, own, version);
+      const Run run(fmu, version);
+      const std::vector<unsigned> inputs = fmu.references(own.inputs);
+      const std::vector<unsigned> outputs = fmu.references(own.outputs());
+      LONGS_EQUAL(0, run.enter());
+      LONGS_EQUAL(0, run.set(inputs, inputs_at(own, 0)));
+      LONGS_EQUAL(0, run.call("ExitInitializationMode"));
+      double time = 0.0;
+      for (std::size_t period = 0; period < own.periods(); ++period) {
+        if (own.reads_at(period)) {
+          check_same_bits(own.readings_at(period), run.got(outputs));
+        }
+        LONGS_EQUAL(0, run.set(inputs, inputs_at(own, period)));
+        LONGS_EQUAL(0, run.step(time, own.period));
+        time += own.period;
+      }
+      LONGS_EQUAL(0, run.call("Terminate"));
+    }
+  }
+}
+
+TEST(Fmu, TakesNoMemoryInAHundredThousandSteps) {
+  if (!AllocationGuard::available) {
+    return;
+  }
+  const Case own = cases(20)[0];
+  for (const int version : kVersions) {
+    const Fmu fmu(scratch, own, version);
+    const Run run(fmu, version);
+    const std::vector<unsigned> command = fmu.references({"command"});
+    const std::vector<unsigned> engine = fmu.references({"engine"});
+    run.enter();
+    run.call("ExitInitializationMode");
+    std::vector<double> value{0.0};
+    std::vector<double> reading{0.0};
+    const AllocationGuard guard;
+    int worst = 0;
+    for (int i = 0; i < 100'000; ++i) {
+      value[0] = 0.02 * std::sin(0.01 * i);
+      worst = std::max(worst, run.set(command, value));
+      worst = std::max(worst, run.step(i * own.period, own.period));
+      worst = std::max(worst, run.get(engine, reading));
+    }
+    LONGS_EQUAL(0, guard.allocations());
+    LONGS_EQUAL(0, worst);
+  }
+}
+
+TEST(Fmu, StepsThatAreNoMultiplesOfTheInternalStepReachTheSameReadings) {
+  const Case own = cases(20)[0];
+  for (const int version : kVersions) {
+    const Fmu fmu(scratch, own, version);
+    const Run fine(fmu, version);
+    const Run coarse(fmu, version);
+    const std::vector<unsigned> command = fmu.references({"command"});
+    const std::vector<unsigned> outputs = fmu.references(own.outputs());
+    for (const Run* run : {&fine, &coarse}) {
+      run->enter(5.0);
+      run->call("ExitInitializationMode");
+      run->set(command, {0.01});
+    }
+    double time = 5.0;
+    for (int i = 0; i < 1000; ++i) {
+      LONGS_EQUAL(0, fine.step(time, 0.0003));
+      time += 0.0003;
+    }
+    LONGS_EQUAL(0, coarse.step(5.0, 0.3));
+    check_same_bits(coarse.got(outputs), fine.got(outputs));
+    DOUBLES_EQUAL(5.3, fine.got({0})[0], 1e-9);
+  }
+}
+
+TEST(Fmu, AStateGoesOnWithTheSameBitsAfterBytesOfAnotherInstance) {
+  const Case own = cases(20)[2];
+  for (const int version : kVersions) {
+    const Fmu fmu(scratch, own, version);
+    const Run one(fmu, version);
+    const Run other(fmu, version);
+    const std::string prefix = version == 3 ? "fmi3" : "fmi2";
+    const std::string state_name = version == 3 ? "FMUState" : "FMUstate";
+    const std::vector<unsigned> command = fmu.references({"command.pitch"});
+    const std::vector<unsigned> outputs = fmu.references(own.outputs());
+    one.enter();
+    one.call("ExitInitializationMode");
+    one.set(command, {0.02});
+    one.step(0.0, 0.05);
+    void* state = nullptr;
+    const auto call = [&](const std::string& name) { return prefix + name; };
+    LONGS_EQUAL(0, fmu.function<int(void*, void**)>(call("Get" + state_name).c_str())(one.instance(), &state));
+    std::size_t size = 0;
+    LONGS_EQUAL(0, fmu.function<int(void*, void*, std::size_t*)>(call("Serialized" + state_name + "Size").c_str())(
+                       one.instance(), state, &size));
+    std::vector<char> bytes(size);
+    LONGS_EQUAL(0, fmu.function<int(void*, void*, char*, std::size_t)>(call("Serialize" + state_name).c_str())(
+                       one.instance(), state, bytes.data(), size));
+    void* copy = nullptr;
+    const std::string deserialize = version == 3 ? "fmi3DeserializeFMUState" : "fmi2DeSerializeFMUstate";
+    LONGS_EQUAL(0, fmu.function<int(void*, const char*, std::size_t, void**)>(deserialize.c_str())(
+                       other.instance(), bytes.data(), size, &copy));
+    LONGS_EQUAL(0, fmu.function<int(void*, void*)>(call("Set" + state_name).c_str())(other.instance(), copy));
+    LONGS_EQUAL(0, one.step(0.05, 0.05));
+    LONGS_EQUAL(0, other.step(0.05, 0.05));
+    check_same_bits(one.got(outputs), other.got(outputs));
+    const auto release = fmu.function<int(void*, void**)>(call("Free" + state_name).c_str());
+    LONGS_EQUAL(0, release(one.instance(), &state));
+    LONGS_EQUAL(0, release(other.instance(), &copy));
+    CHECK(state == nullptr && copy == nullptr);
+    LONGS_EQUAL(0, release(one.instance(), &state));
+  }
+}
+
+TEST(Fmu, ResetGivesTheRunOfAFreshInstance) {
+  const Case own = cases(20)[0];
+  for (const int version : kVersions) {
+    const Fmu fmu(scratch, own, version);
+    const Run run(fmu, version);
+    const std::vector<unsigned> outputs = fmu.references(own.outputs());
+    const auto once = [&](double inertia) {
+      LONGS_EQUAL(0, inertia > 0.0 ? run.set(fmu.references({"engine.inertia"}), {inertia}) : 0);
+      run.enter();
+      run.call("ExitInitializationMode");
+      run.set(fmu.references({"command"}), {0.02});
+      LONGS_EQUAL(0, run.step(0.0, 0.06));
+      return run.got(outputs);
+    };
+    const std::vector<double> first = once(0.0);
+    LONGS_EQUAL(0, run.call("Reset"));
+    const std::vector<double> heavier = once(15000.0);
+    CHECK(heavier[1] != first[1]);
+    LONGS_EQUAL(0, run.call("Reset"));
+    check_same_bits(first, once(0.0));
+  }
+}
+
+TEST(Fmu, RefusesAsTheStandardsSay) {
+  const Case own = cases(20)[0];
+  for (const int version : kVersions) {
+    const Fmu fmu(scratch, own, version);
+    constexpr int kDiscard = 2;
+    constexpr int kError = 3;
+    std::vector<double> value{0.0};
+    {
+      const Run run(fmu, version);
+      LONGS_EQUAL(kError, run.step(0.0, 1e-3));
+      STRCMP_CONTAINS("logStatusError: DoStep: is not allowed now", last_message.data());
+    }
+    {
+      const Run run(fmu, version);
+      LONGS_EQUAL(kDiscard, run.set(fmu.references({"engine.inertia"}), {-1.0}));
+      STRCMP_CONTAINS("engine.inertia = -1: outside its bounds; allowed: 1e-06 to 1e+09 kg.m^2", last_message.data());
+      LONGS_EQUAL(0, run.enter(0.0, true, 0.01));
+      LONGS_EQUAL(0, run.call("ExitInitializationMode"));
+      LONGS_EQUAL(0, run.step(0.0, 0.01));
+      LONGS_EQUAL(kError, run.step(0.01, 0.01));
+      STRCMP_CONTAINS("stop time", last_message.data());
+    }
+    {
+      const Run run(fmu, version);
+      LONGS_EQUAL(kError, run.get({100'000}, value));
+    }
+    {
+      const Run run(fmu, version);
+      LONGS_EQUAL(kError, run.set(fmu.references({"engine"}), {1.0}));
+    }
+    {
+      const Run run(fmu, version);
+      run.enter();
+      run.call("ExitInitializationMode");
+      LONGS_EQUAL(kError, run.step(0.5, 1e-3));
+      STRCMP_CONTAINS("currentCommunicationPoint", last_message.data());
+      LONGS_EQUAL(kError, run.step(0.0, 1e-3));
+      LONGS_EQUAL(0, run.call("Reset"));
+      run.enter();
+      run.call("ExitInitializationMode");
+      LONGS_EQUAL(0, run.step(0.0, 1e-3));
+    }
+  }
+}
+
+TEST(Fmu, RefusesAForeignTokenAndOtherInterfaces) {
+  const Case own = cases(20)[0];
+  const Fmu three(scratch, own, 3);
+  using Instantiate3 = fmi3Instance(fmi3String, fmi3String, fmi3String, bool, bool, bool, bool, const unsigned*, std::size_t,
+                                    void*, fmi3LogMessageCallback, fmi3IntermediateUpdateCallback);
+  CHECK(three.function<Instantiate3>("fmi3InstantiateCoSimulation")("one", "{foreign}", three.resource_path().c_str(), false,
+                                                                    false, false, false, nullptr, 0, nullptr, log3,
+                                                                    nullptr) == nullptr);
+  STRCMP_CONTAINS("{foreign}; allowed: {", last_message.data());
+  using Instantiate = fmi3Instance(fmi3String, fmi3String, fmi3String, bool, bool, void*, fmi3LogMessageCallback);
+  CHECK(three.function<Instantiate>("fmi3InstantiateModelExchange")("one", "", "", false, false, nullptr, log3) == nullptr);
+  STRCMP_CONTAINS("co-simulation only", last_message.data());
+  const Fmu two(scratch, own, 2);
+  using Instantiate2 = fmi2Component(fmi2String, fmi2Type, fmi2String, fmi2String, const fmi2CallbackFunctions*, int, int);
+  CHECK(two.function<Instantiate2>("fmi2Instantiate")("one", fmi2ModelExchange, two.token().c_str(),
+                                                      two.resource_uri().c_str(), &kCallbacks, 0, 0) == nullptr);
+  CHECK(two.function<Instantiate2>("fmi2Instantiate")("one", fmi2CoSimulation, two.token().c_str(), "file:///no/such",
+                                                      &kCallbacks, 0, 0) == nullptr);
+  STRCMP_CONTAINS("/no/such/plant.txt: cannot be read", last_message.data());
+}
+
+TEST(Fmu, TheDescriptionNamesEveryVariableOnceWithUnitAndMeaning) {
+  for (const Case& own : cases(20)) {
+    for (const int version : kVersions) {
+      const Fmu fmu(scratch, own, version);
+      const std::string& text = fmu.description();
+      const std::regex variable(version == 3 ? "<Float64 [^>]*>" : "<ScalarVariable [^>]*><Real[^>]*>");
+      std::size_t count = 0;
+      for (std::sregex_iterator at(text.begin(), text.end(), variable), end; at != end; ++at) {
+        const std::string line = at->str();
+        STRCMP_CONTAINS(("valueReference=\"" + std::to_string(count++) + "\"").c_str(), line.c_str());
+        CHECK_TEXT(!std::regex_search(line, std::regex("description=\"\"")), line.c_str());
+        std::smatch unit;
+        if (std::regex_search(line, unit, std::regex(" unit=\"([^\"]*)\""))) {
+          const std::string definition = "<Unit name=\"" + unit[1].str() + "\">";
+          CHECK_TEXT(text.find(definition) != std::string::npos || own.topology == "direct", line.c_str());
+        } else {
+          CHECK_TEXT(own.topology == "direct", line.c_str());
+        }
+        const bool calculated = line.find("initial=\"calculated\"") != std::string::npos;
+        const bool independent = line.find("causality=\"independent\"") != std::string::npos;
+        CHECK_TEXT((line.find(" start=") == std::string::npos) == (calculated || independent), line.c_str());
+      }
+      CHECK(count > own.inputs.size() + own.outputs().size());
+    }
+  }
+}
+
+TEST(Fmu, ItsSourcesCompileAloneAndGiveTheSameBits) {
+  const Case own = cases(100)[0];
+  Fmu fmu(scratch, own, 3);
+  fmu.compile();
+  const Run run(fmu, 3);
+  run.enter();
+  run.set(fmu.references(own.inputs), inputs_at(own, 0));
+  LONGS_EQUAL(0, run.call("ExitInitializationMode"));
+  for (std::size_t period = 0; period < own.periods(); ++period) {
+    check_same_bits(own.readings_at(period), run.got(fmu.references(own.outputs())));
+    run.set(fmu.references(own.inputs), inputs_at(own, period));
+    LONGS_EQUAL(0, run.step(1e-3 * static_cast<double>(period), own.period));
+  }
+}
+
+TEST(Fmu, TheSameModelGivesTheSameBytes) {
+  const Case own = cases(20)[0];
+  const Fmu one(scratch, own, 3);
+  const std::string first = content_of(scratch.path("simplex3.fmu"));
+  const Fmu other(scratch, own, 3);
+  CHECK(first == content_of(scratch.path("simplex3.fmu")));
+}
+
+}  // namespace hotfire::test

@@ -1,0 +1,206 @@
+#pragma once
+
+#include <dlfcn.h>
+
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "interface/fmu/fmi2_types.hpp"
+#include "interface/fmu/fmi3_types.hpp"
+#include "tests/files/scratch.hpp"
+#include "tests/interface/cases.hpp"
+#include "tools/export/export_fmu.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace hotfire::test {
+
+inline std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A small importer: unpacks an FMU, reads names and references from its description, and loads its binary.
+class Fmu {
+ public:
+  Fmu(const Scratch& scratch, const Case& own, int version) : version_(version) {
+    const std::string name = own.topology + std::to_string(version);
+    folder_ = scratch.path(name);
+    const std::filesystem::path fmu = scratch.path(name + ".fmu");
+    export_fmu({scratch.write(name + ".toml", own.text), fmu, FMU_MATERIALS, version, own.period, 1});
+    CHECK(std::system(("unzip -q -o " + fmu.string() + " -d " + folder_.string()).c_str()) == 0);
+    description_ = content_of(folder_ / "modelDescription.xml");
+    const std::regex variable("name=\"([^\"]*)\" valueReference=\"([0-9]+)\"");
+    for (std::sregex_iterator at(description_.begin(), description_.end(), variable), end; at != end; ++at) {
+      references_[(*at)[1]] = static_cast<unsigned>(std::stoul((*at)[2]));
+    }
+    std::smatch token;
+    CHECK(std::regex_search(description_, token, std::regex("(?:instantiationToken|guid)=\"([^\"]*)\"")));
+    token_ = token[1];
+    const std::string place = version == 3 ? "binaries/x86_64-linux/" : "binaries/linux64/";
+    load(folder_ / (place + name + ".so"));
+  }
+  ~Fmu() { dlclose(library_); }
+  Fmu(const Fmu&) = delete;
+  Fmu& operator=(const Fmu&) = delete;
+
+  /// Compiles the FMU's own sources as docs/fmu.md says, and uses that binary from now on.
+  void compile() {
+    const std::string command = "cd " + (folder_ / "sources").string() +
+                                " && c++ -std=c++20 -O1 -ffp-contract=off -fPIC -shared -I. fmu.cpp -o ../own.so";
+    CHECK(std::system(command.c_str()) == 0);
+    dlclose(library_);
+    // The sources have the plant in them.
+    std::filesystem::remove(folder_ / "resources/plant.txt");
+    load(folder_ / "own.so");
+  }
+
+  template <class Function>
+  Function* function(const char* name) const {
+    void* found = dlsym(library_, name);
+    CHECK_TEXT(found != nullptr, name);
+    return reinterpret_cast<Function*>(found);
+  }
+  unsigned reference(const std::string& name) const { return references_.at(name); }
+  std::vector<unsigned> references(const std::vector<std::string>& names) const {
+    std::vector<unsigned> found;
+    for (const std::string& name : names) {
+      found.push_back(reference(name));
+    }
+    return found;
+  }
+  const std::string& token() const { return token_; }
+  const std::string& description() const { return description_; }
+  const std::filesystem::path& folder() const { return folder_; }
+  std::string resource_path() const { return (folder_ / "resources/").string(); }
+  std::string resource_uri() const { return "file://" + (folder_ / "resources").string(); }
+
+ private:
+  void load(const std::filesystem::path& binary) {
+    library_ = dlopen(binary.c_str(), RTLD_NOW | RTLD_LOCAL);
+    CHECK_TEXT(library_ != nullptr, dlerror());
+  }
+
+  int version_;
+  std::filesystem::path folder_;
+  std::string description_;
+  std::string token_;
+  std::map<std::string, unsigned> references_;
+  void* library_ = nullptr;
+};
+
+/// The last message that an FMU logged, after its category.
+inline std::array<char, 800> last_message{};
+
+inline void log3(fmi3InstanceEnvironment, fmi3Status, fmi3String category, fmi3String message) {
+  std::snprintf(last_message.data(), last_message.size(), "%s: %s", category, message);
+}
+inline void log2(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String category, fmi2String format, ...) {
+  std::va_list values;
+  va_start(values, format);
+  std::array<char, 700> text{};
+  std::vsnprintf(text.data(), text.size(), format, values);
+  va_end(values);
+  std::snprintf(last_message.data(), last_message.size(), "%s: %s", category, text.data());
+}
+inline constexpr fmi2CallbackFunctions kCallbacks{log2, nullptr, nullptr, nullptr, nullptr};
+
+/// One instance of either version through the calls that a run needs.
+class Run {
+ public:
+  explicit Run(const Fmu& fmu, int version) : fmu_(fmu), is_3_(version == 3) {
+    if (is_3_) {
+      using Instantiate = fmi3Instance(fmi3String, fmi3String, fmi3String, bool, bool, bool, bool, const unsigned*,
+                                       std::size_t, void*, fmi3LogMessageCallback, fmi3IntermediateUpdateCallback);
+      instance_ = fmu.function<Instantiate>("fmi3InstantiateCoSimulation")("one", fmu.token().c_str(),
+                                                                           fmu.resource_path().c_str(), false, false, false,
+                                                                           false, nullptr, 0, nullptr, log3, nullptr);
+      get_3_ = fmu.function<Get3>("fmi3GetFloat64");
+      set_3_ = fmu.function<Set3>("fmi3SetFloat64");
+      step_3_ = fmu.function<Step3>("fmi3DoStep");
+    } else {
+      using Instantiate =
+          fmi2Component(fmi2String, fmi2Type, fmi2String, fmi2String, const fmi2CallbackFunctions*, int, int);
+      instance_ = fmu.function<Instantiate>("fmi2Instantiate")("one", fmi2CoSimulation, fmu.token().c_str(),
+                                                               fmu.resource_uri().c_str(), &kCallbacks, 0, 0);
+      get_2_ = fmu.function<Get2>("fmi2GetReal");
+      set_2_ = fmu.function<Set2>("fmi2SetReal");
+      step_2_ = fmu.function<Step2>("fmi2DoStep");
+    }
+    CHECK_TEXT(instance_ != nullptr, last_message.data());
+  }
+  ~Run() { fmu_.function<void(void*)>(is_3_ ? "fmi3FreeInstance" : "fmi2FreeInstance")(instance_); }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
+
+  int call(const std::string& name) const {
+    return fmu_.function<int(void*)>(((is_3_ ? "fmi3" : "fmi2") + name).c_str())(instance_);
+  }
+  int enter(double start = 0.0, bool has_stop = false, double stop = 0.0) const {
+    if (is_3_) {
+      return fmu_.function<int(void*, bool, double, double, bool, double)>("fmi3EnterInitializationMode")(
+          instance_, false, 0.0, start, has_stop, stop);
+    }
+    const int status = fmu_.function<int(void*, int, double, double, int, double)>("fmi2SetupExperiment")(
+        instance_, 0, 0.0, start, has_stop ? 1 : 0, stop);
+    return status == 0 ? call("EnterInitializationMode") : status;
+  }
+  int set(const std::vector<unsigned>& references, const std::vector<double>& values) const {
+    return is_3_ ? set_3_(instance_, references.data(), references.size(), values.data(), values.size())
+                 : set_2_(instance_, references.data(), references.size(), values.data());
+  }
+  int get(const std::vector<unsigned>& references, std::vector<double>& values) const {
+    return is_3_ ? get_3_(instance_, references.data(), references.size(), values.data(), values.size())
+                 : get_2_(instance_, references.data(), references.size(), values.data());
+  }
+  std::vector<double> got(const std::vector<unsigned>& references) const {
+    std::vector<double> values(references.size());
+    LONGS_EQUAL(0, get(references, values));
+    return values;
+  }
+  int step(double current, double size) const {
+    if (!is_3_) {
+      return step_2_(instance_, current, size, 1);
+    }
+    bool event = true;
+    bool terminate = true;
+    bool early = true;
+    double last = 0.0;
+    const int status = step_3_(instance_, current, size, true, &event, &terminate, &early, &last);
+    CHECK(!event && !terminate && !early);
+    if (status == 0) {
+      DOUBLES_EQUAL(current + size, last, 0.0);
+    }
+    return status;
+  }
+  void* instance() const { return instance_; }
+
+ private:
+  using Get3 = int(void*, const unsigned*, std::size_t, double*, std::size_t);
+  using Set3 = int(void*, const unsigned*, std::size_t, const double*, std::size_t);
+  using Step3 = int(void*, double, double, bool, bool*, bool*, bool*, double*);
+  using Get2 = int(void*, const unsigned*, std::size_t, double*);
+  using Set2 = int(void*, const unsigned*, std::size_t, const double*);
+  using Step2 = int(void*, double, double, int);
+
+  const Fmu& fmu_;
+  bool is_3_;
+  void* instance_ = nullptr;
+  Get3* get_3_ = nullptr;
+  Set3* set_3_ = nullptr;
+  Step3* step_3_ = nullptr;
+  Get2* get_2_ = nullptr;
+  Set2* set_2_ = nullptr;
+  Step2* step_2_ = nullptr;
+};
+
+}  // namespace hotfire::test
