@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "model/clock.hpp"
 #include "model/effect.hpp"
 #include "model/exact_hold.hpp"
 #include "model/parts.hpp"
@@ -55,7 +56,7 @@ class Axis {
 
     /// Calls `f(part)` for every declared part.
     template <class Self, class F>
-    static void for_each_part(Self& self, F&& f) {
+    static constexpr void for_each_part(Self& self, F&& f) {
       f(self.servovalve);
       f(self.actuator);
       f(self.structure);
@@ -68,8 +69,8 @@ class Axis {
     Eigen::Matrix<S, 8, 1> y = Eigen::Matrix<S, 8, 1>::Zero();
     Eigen::Matrix<S, 6, 1> inputs = Eigen::Matrix<S, 6, 1>::Zero();
     S spring_force{0.0};
-    S built_up{0.0};  ///< of the flow input, what the effects of the oil add [m^3/s]
-    S clock{0.0};     ///< time of the record [s], for effects that depend on it
+    S built_up{0.0};   ///< of the flow input, what the effects of the oil add [m^3/s]
+    Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
     std::array<S, 3> measured{};
   };
@@ -204,7 +205,7 @@ class Axis {
     const Actuator<S>& actuator = parameters_.actuator;
     const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
     const auto& effects = parameters_.effects;
-    const S time = mid_step(state);
+    const Precise<S> time = mid_step(state);
 
     const S linear_command = torque_motor(state, mean);
     const S change = saturated(torque_motor(state, advance.end)) - saturated(torque_motor(state, advance.start));
@@ -261,7 +262,7 @@ class Axis {
   /// Closes a step with the inputs of the last evaluation.
   void finish(State& state, const Advance& advance) const noexcept {
     state.y = advance.free + times(hold_.response, state.inputs);
-    state.clock += h_;
+    state.clock.steps += 1.0;
     measure(state);
   }
 
@@ -298,7 +299,7 @@ class Axis {
 
   /// What the spool at a position opens, and the flow through the valve's orifices under a load pressure.
   Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, Keep keep) const noexcept {
-    const S time = mid_step(state);
+    const Precise<S> time = mid_step(state);
     const S opening = pass_through<Site::valve>(parameters_.effects, state.effects, Signal<S>{spool, h_, time}, keep).value;
     const S& supply = parameters_.actuator.supply_pressure;
     const S drop = 1.0 - sign_of(opening) * pressure / supply;
@@ -307,7 +308,7 @@ class Axis {
     return {pressure, opening, supply, h_, time, flow};
   }
 
-  S mid_step(const State& state) const noexcept { return state.clock + 0.5 * h_; }
+  Precise<S> mid_step(const State& state) const noexcept { return state.clock.at(h_, 0.5); }
 
   static Advance at_rest(const State& state) noexcept { return {state.y, state.y, state.y}; }
 
@@ -352,7 +353,7 @@ class Axis {
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
       state.measured[channel] = pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
-                                                             Signal<S>{truth[channel], h_, state.clock});
+                                                             Signal<S>{truth[channel], h_, state.clock.at(h_)});
     }
   }
 

@@ -120,7 +120,7 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
       const auto [start, speed] = fitted_start(*direct, inputs, fit_start_rows);
       state = plant.moving(start, speed);
     }
-    state.clock = inputs.start;
+    state.clock.start = inputs.start;
     return run_open_loop(plant, state, inputs, steps);
   }
   if (fit_start_rows > 0) {
@@ -131,7 +131,7 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
   const int steps = model::steps_per_period(inputs.period);
   const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), inputs.period / steps);
   auto state = plant.steady(inputs.find("command")->values.front());
-  state.clock = inputs.start;
+  state.clock.start = inputs.start;
   return run_open_loop(plant, state, inputs, steps);
 }
 
