@@ -1,5 +1,6 @@
 // The host's side of the example for a Cortex-M7: writes its commands, and compares what the target makes of them.
 //   axis_on_host commands FILE
+//   axis_on_host readings float|double FILE      this machine's, as the target writes them
 //   axis_on_host compare float|double FILE
 
 #include <axis.hpp>
@@ -120,15 +121,23 @@ int compare(const std::string& path, double bound_of_libraries) {
   return good ? 0 : 1;
 }
 
+template <class Real>
+int write_readings(const std::string& path) {
+  return write_all(path, std::span<const Row<Real>>(simulated<Real>())) ? 0 : 1;
+}
+
 int run(std::span<char*> words) {
   const std::vector<std::string> given(words.begin() + 1, words.end());
   if (given.size() == 2 && given[0] == "commands") {
     return write_all(given[1], std::span<const float>(commands())) ? 0 : 1;
   }
+  if (given.size() == 3 && given[0] == "readings") {
+    return given[1] == "float" ? write_readings<float>(given[2]) : write_readings<double>(given[2]);
+  }
   if (given.size() == 3 && given[0] == "compare") {
     return given[1] == "float" ? compare<float>(given[2], 1e-5) : compare<double>(given[2], 1e-12);
   }
-  std::printf("usage: axis_on_host commands FILE | axis_on_host compare float|double FILE\n");
+  std::printf("usage: axis_on_host commands FILE | axis_on_host readings|compare float|double FILE\n");
   return 2;
 }
 

@@ -287,15 +287,12 @@ std::string topology_of(const TomlSource& source) {
   return node != nullptr ? source.text(*node, "topology") : std::string{};
 }
 
-}  // namespace
-
-bool is_vehicle(const std::filesystem::path& path) {
-  const std::string topology = topology_of(TomlSource(path));
+bool is_of_several_axes(const TomlSource& source) {
+  const std::string topology = topology_of(source);
   return topology == kTaos || topology == kMasv;
 }
 
-VehicleFile load_vehicle(const std::filesystem::path& path) {
-  const TomlSource source(path);
+VehicleFile read_vehicle(const TomlSource& source, const std::filesystem::path& path) {
   source.require_schema();
   const std::string topology = topology_of(source);
   VehicleFile vehicle{path, path.stem().string(), {}, {}, {}, {}};
@@ -311,6 +308,20 @@ VehicleFile load_vehicle(const std::filesystem::path& path) {
                           fmt::format("\"{}\" is not one of several axes; allowed: \"{}\", \"{}\"", topology, kTaos, kMasv));
   }
   return vehicle;
+}
+
+}  // namespace
+
+bool is_vehicle(const std::filesystem::path& path) { return is_of_several_axes(TomlSource(path)); }
+
+bool is_vehicle_text(const std::string& text, const std::filesystem::path& name) {
+  return is_of_several_axes(TomlSource(text, name));
+}
+
+VehicleFile load_vehicle(const std::filesystem::path& path) { return read_vehicle(TomlSource(path), path); }
+
+VehicleFile parse_vehicle(const std::string& text, const std::filesystem::path& name) {
+  return read_vehicle(TomlSource(text, name), name);
 }
 
 VehicleFile with_thrust(VehicleFile vehicle, double thrust) {

@@ -36,6 +36,9 @@ struct VehicleFile {
 /// True for a TOML file whose topology is that of several axes, "taos" or "masv". Throws FileError if it cannot be read.
 bool is_vehicle(const std::filesystem::path& path);
 
+/// The same of the text of a file; `name` stands for the file in messages.
+bool is_vehicle_text(const std::string& text, const std::filesystem::path& name);
+
 /// Reads and checks a model file of several axes (contract.md). The parts and effects of `[servovalve]`, `[actuator]`,
 /// `[structure]`, `[engine]` and `[effects.NAME]` are those of every axis; `[actuator.pitch]` is what differs on the pitch
 /// axes and `[actuator.pitch2]` on that of engine 2. So do `[effects.NAME.pitch]` and `[sensors.pitch]`; an effect that has
@@ -51,6 +54,9 @@ bool is_vehicle(const std::filesystem::path& path);
 /// matrix that is not 6x6, symmetric and positive definite, attach points that coincide or have no arm, a mode table of
 /// another number of engines or with more modes than the plant has room for.
 VehicleFile load_vehicle(const std::filesystem::path& path);
+
+/// The same from the text of a file; `name` stands for the file in messages, and a mode table is beside it.
+VehicleFile parse_vehicle(const std::string& text, const std::filesystem::path& name);
 
 /// The vehicle with another thrust of every engine [N]: what makes ambient and hot fire one file. Throws UsageError for one
 /// below zero.

@@ -82,10 +82,7 @@ void choose_topology(const TomlSource& source, ModelFile& model) {
   }
 }
 
-}  // namespace
-
-ModelFile load_model(const std::filesystem::path& path) {
-  const TomlSource source(path);
+ModelFile read_model(const TomlSource& source, const std::filesystem::path& path) {
   source.require_schema();
   ModelFile model;
   model.path = path;
@@ -109,6 +106,14 @@ ModelFile load_model(const std::filesystem::path& path) {
     model.tolerance = read_tolerances(source, *tolerance, Words(declared.begin(), declared.end()));
   }
   return model;
+}
+
+}  // namespace
+
+ModelFile load_model(const std::filesystem::path& path) { return read_model(TomlSource(path), path); }
+
+ModelFile parse_model(const std::string& text, const std::filesystem::path& name) {
+  return read_model(TomlSource(text, name), name);
 }
 
 }  // namespace hotfire

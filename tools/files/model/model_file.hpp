@@ -32,6 +32,9 @@ struct ModelFile {
 /// action (its neutral value); the choice of a law or channel must be given.
 ModelFile load_model(const std::filesystem::path& path);
 
+/// The same from the text of a file; `name` stands for the file in messages.
+ModelFile parse_model(const std::string& text, const std::filesystem::path& name);
+
 /// The TOML text of a model: every declared parameter, every active effect, noise and tolerance, each number with the
 /// digits that restore it exactly, each line with its unit and meaning as a comment. `load_model` reads it back bit for bit.
 /// Parameters that do not act (of an inactive effect, or of a law not chosen) are not part of the text.

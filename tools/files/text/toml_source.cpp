@@ -97,8 +97,10 @@ std::string wanted_unit(std::string_view unit) {
 
 }  // namespace
 
-TomlSource::TomlSource(const std::filesystem::path& path)
-    : path_(path), content_(read_small_file(path)), lines_(split_lines(content_)) {
+TomlSource::TomlSource(const std::filesystem::path& path) : TomlSource(read_small_file(path), path) {}
+
+TomlSource::TomlSource(std::string content, std::filesystem::path name)
+    : path_(std::move(name)), content_(std::move(content)), lines_(split_lines(content_)) {
   if (const KeyFault fault = key_fault_of(content_); fault.kind != KeyFault::Kind::none) {
     refuse_at({static_cast<toml::source_index>(fault.line), 0},
               fault.kind == KeyFault::Kind::long_key
@@ -107,7 +109,7 @@ TomlSource::TomlSource(const std::filesystem::path& path)
                   : std::string("a letter beyond ASCII outside of a string or a comment; put it in quotes or remove it"));
   }
   try {
-    root_ = toml::parse(std::string_view{content_}, path.string());
+    root_ = toml::parse(std::string_view{content_}, path_.string());
   } catch (const toml::parse_error& error) {
     refuse_at(error.source().begin, fmt::format("not TOML: {}", error.description()));
   }

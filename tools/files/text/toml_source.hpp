@@ -14,6 +14,9 @@ class TomlSource {
   /// Throws FileError if the file cannot be read, is over a megabyte, has a key of too many parts or is not TOML.
   explicit TomlSource(const std::filesystem::path& path);
 
+  /// The same from text; `name` stands for the file in messages.
+  TomlSource(std::string content, std::filesystem::path name);
+
   const toml::table& root() const { return root_; }
 
   /// Throws FileError `path:line:column: key = value: problem` for a value.
