@@ -46,10 +46,10 @@ std::vector<double> converted(const GivenChannel& given, const Column& column, c
 }
 
 /// A channel's values without a copy: an array that keeps the record alive and cannot be written to.
-py::array values_of(const py::object& owner, const Channel& channel) {
+py::array_t<double> values_of(const py::object& owner, const Channel& channel) {
   py::array_t<double> view(static_cast<py::ssize_t>(channel.values.size()), channel.values.data(), owner);
   view.attr("setflags")(py::arg("write") = false);
-  return std::move(view);
+  return view;
 }
 
 const Channel& channel_of(const Record& record, const std::string& name) {
@@ -64,12 +64,12 @@ const Channel& channel_of(const Record& record, const std::string& name) {
   return *channel;
 }
 
-py::array time_of(const Record& record) {
+py::array_t<double> time_of(const Record& record) {
   py::array_t<double> time(static_cast<py::ssize_t>(record.rows));
   for (std::size_t row = 0; row < record.rows; ++row) {
     time.mutable_data()[row] = record.start + static_cast<double>(row) * record.period;
   }
-  return std::move(time);
+  return time;
 }
 
 }  // namespace
