@@ -103,3 +103,19 @@ def test_an_array_with_a_unit_is_converted_and_the_values_outlive_the_record():
 def test_arrays_that_are_no_record_are_refused(channels, period, words):
     with pytest.raises(hotfire.FileError, match=words.replace("(", r"\(")):
         hotfire.Record(channels, period=period)
+
+
+def test_the_stub_names_what_the_compiled_part_has():
+    import ast
+    from pathlib import Path
+
+    from hotfire import _core
+
+    stub = ast.parse((Path(hotfire.__file__).parent / "_core.pyi").read_text())
+    classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+    named = set(classes) | {node.name for node in stub.body if isinstance(node, ast.FunctionDef)} | {"version"}
+    assert named == {name for name in dir(_core) if not name.startswith("_")}
+    for name in ("Model", "Record"):
+        members = {node.name for node in classes[name].body if isinstance(node, ast.FunctionDef)}
+        found = {member for member in vars(getattr(_core, name)) if not member.startswith("_")}
+        assert members - {"__len__"} == found, name

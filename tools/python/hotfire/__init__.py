@@ -22,6 +22,9 @@ from ._results import ChannelErrors, Effect, Errors, Estimate
 from ._runs import Gradients, Sweep, analyse_sweep, gradients, simulate, simulate_many, sweep
 from . import plot
 
+for _error in (FileError, UnitError, UsageError):
+    _error.__module__ = __name__
+
 __all__ = [
     "Channel",
     "ChannelErrors",
