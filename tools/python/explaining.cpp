@@ -89,14 +89,6 @@ class Watcher {
   std::optional<py::error_already_set> exception_;
 };
 
-void put_digests(const std::vector<Record>& records, nlohmann::json& report) {
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (records[i].path != std::filesystem::path(records[i].name)) {
-      report.at(i)["sha256"] = sha256_of(records[i].path);
-    }
-  }
-}
-
 }  // namespace
 
 void add_explaining(py::module_& module) {
