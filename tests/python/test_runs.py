@@ -15,7 +15,7 @@ AXES = {"taos": ["pitch", "yaw"], "masv": [f"{axis}{engine}" for engine in range
 def inputs_of(topology):
     seconds = np.arange(1000) * 1e-3
     if topology == "direct":
-        return hotfire.Record({"force": (20.0 * np.sin(9.0 * seconds), "N")}, period=1e-3)
+        return hotfire.Record({"force": (20.0 * np.sin(9.0 * seconds), "N"), "position": (0.0 * seconds, "m")}, period=1e-3)
     if topology == "simplex":
         return hotfire.Record({"command": 0.02 * np.sin(9.0 * seconds)}, period=1e-3)
     return hotfire.Record(

@@ -170,7 +170,8 @@ Model with_values(Model model, std::map<std::string, double> values) {
   }
   if (!values.empty()) {
     std::vector<std::string_view> known(acting.size());
-    std::transform(acting.begin(), acting.end(), known.begin(), [](const Parameter& own) { return std::get<0>(own); });
+    std::transform(acting.begin(), acting.end(), known.begin(),
+                   [](const Parameter& own) { return std::string_view(std::get<0>(own)); });
     const std::string& stranger = values.begin()->first;
     throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", stranger, suggestion(stranger, known)));
   }
