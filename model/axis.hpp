@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "model/clock.hpp"
 #include "model/effect.hpp"
 #include "model/exact_hold.hpp"
 #include "model/parts.hpp"
@@ -56,7 +57,7 @@ class Axis : public AxisStates {
 
     /// Calls `f(part)` for every declared part.
     template <class Self, class F>
-    static void for_each_part(Self& self, F&& f) {
+    static constexpr void for_each_part(Self& self, F&& f) {
       f(self.servovalve);
       f(self.actuator);
       f(self.structure);
@@ -69,8 +70,8 @@ class Axis : public AxisStates {
     Eigen::Matrix<S, 8, 1> y = Eigen::Matrix<S, 8, 1>::Zero();
     Eigen::Matrix<S, 6, 1> inputs = Eigen::Matrix<S, 6, 1>::Zero();
     S spring_force{0.0};
-    S built_up{0.0};  ///< of the flow input, what the effects of the oil add [m^3/s]
-    S clock{0.0};     ///< time of the record [s], for effects that depend on it
+    S built_up{0.0};   ///< of the flow input, what the effects of the oil add [m^3/s]
+    Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
     std::array<S, 3> measured{};
   };
@@ -175,10 +176,10 @@ class Axis : public AxisStates {
     flow_at(root_of_decreasing<S>(state.inputs(kCommand), kWidth, flow_at));
     evaluate(state, at_rest(state), around, Keep::no);
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
-    const Surroundings<S> seen = around_state(state, state.y, state.clock);
+    const Surroundings<S> seen = around_state(state, state.y, state.clock.at(h_));
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
       settle_channel<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
-                              Signal<S>{truth[channel], h_, state.clock, S{0.0}, &seen});
+                              Signal<S>{truth[channel], h_, state.clock.at(h_), S{0.0}, &seen});
     }
     measure(state);
     return state;
@@ -186,7 +187,7 @@ class Axis : public AxisStates {
 
   /// Opens a step with the command [rad] held.
   void begin(State& state, const S& command, Advance& advance) const noexcept {
-    const S time = mid_step(state);
+    const Precise<S> time = mid_step(state);
     const Surroundings<S> seen = around_state(state, state.y, time);
     const Signal<S> angle = pass_through<Site::command>(parameters_.effects, state.effects,
                                                         Signal<S>{command, h_, time, S{0.0}, &seen}, Keep::yes);
@@ -208,7 +209,7 @@ class Axis : public AxisStates {
     const Actuator<S>& actuator = parameters_.actuator;
     const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
     const auto& effects = parameters_.effects;
-    const S time = mid_step(state);
+    const Precise<S> time = mid_step(state);
     const Surroundings<S> seen = around_state(state, mean, time);
 
     const S linear_command = torque_motor(state, mean);
@@ -254,7 +255,7 @@ class Axis : public AxisStates {
   void evaluate_engine(State& state, const Advance& advance, const Spring<S>& spring, const Around& around,
                        Keep keep) const noexcept {
     const S angle_rate = advance.rate(kAngle, h_);
-    const S time = mid_step(state);
+    const Precise<S> time = mid_step(state);
     const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
     const Surroundings<S> seen = around_state(state, mean, time);
     Motion<S> motion{mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, time};
@@ -274,7 +275,7 @@ class Axis : public AxisStates {
   /// Closes a step with the inputs of the last evaluation.
   void finish(State& state, const Advance& advance) const noexcept {
     state.y = advance.free + times(hold_.response, state.inputs);
-    state.clock += h_;
+    state.clock.steps += 1.0;
     measure(state);
   }
 
@@ -301,7 +302,8 @@ class Axis : public AxisStates {
   static S torque_around(const Uncoupled&, const S& own) noexcept { return own; }
   static S torque_around(const Coupling<S>& around, const S& own) noexcept { return own + around.torque; }
 
-  Surroundings<S> around_state(const State& state, const Eigen::Matrix<S, 8, 1>& y, const S& time) const noexcept {
+  Surroundings<S> around_state(const State& state, const Eigen::Matrix<S, 8, 1>& y,
+                               const Precise<S>& time) const noexcept {
     return {y, state.inputs(kCommand), parameters_.servovalve, parameters_.actuator, time};
   }
 
@@ -315,7 +317,7 @@ class Axis : public AxisStates {
 
   /// What the spool at a position opens, and the flow through the valve's orifices under a load pressure.
   Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, Keep keep) const noexcept {
-    const S time = mid_step(state);
+    const Precise<S> time = mid_step(state);
     const S opening = pass_through<Site::valve>(parameters_.effects, state.effects, Signal<S>{spool, h_, time}, keep).value;
     const S& supply = parameters_.actuator.supply_pressure;
     const S drop = 1.0 - sign_of(opening) * pressure / supply;
@@ -324,7 +326,7 @@ class Axis : public AxisStates {
     return {pressure, opening, supply, h_, time, flow};
   }
 
-  S mid_step(const State& state) const noexcept { return state.clock + 0.5 * h_; }
+  Precise<S> mid_step(const State& state) const noexcept { return state.clock.at(h_, 0.5); }
 
   static Advance at_rest(const State& state) noexcept { return {state.y, state.y, state.y}; }
 
@@ -335,7 +337,7 @@ class Axis : public AxisStates {
     const auto& effects = parameters_.effects;
     const S nominal = parameters_.actuator.moment_arm;
     state.y(kAngle) = angle;
-    const S time = mid_step(state);
+    const Precise<S> time = mid_step(state);
     const Surroundings<S> seen = around_state(state, state.y, time);
     // Keeps what the springs remember of their force, so that the search in them starts near it.
     const Spring<S> still =
@@ -370,10 +372,10 @@ class Axis : public AxisStates {
 
   void measure(State& state) const noexcept {
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
-    const Surroundings<S> seen = around_state(state, state.y, state.clock);
+    const Surroundings<S> seen = around_state(state, state.y, state.clock.at(h_));
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
       state.measured[channel] = pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
-                                                             Signal<S>{truth[channel], h_, state.clock, S{0.0}, &seen});
+                                                             Signal<S>{truth[channel], h_, state.clock.at(h_), S{0.0}, &seen});
     }
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "model/clock.hpp"
 #include "model/effects.hpp"
 #include "model/exact_hold.hpp"
 #include "model/parts.hpp"
@@ -34,7 +35,7 @@ class Direct {
     EffectParameters<S, List> effects;
 
     template <class Self, class F>
-    static void for_each_part(Self& self, F&& f) {
+    static constexpr void for_each_part(Self& self, F&& f) {
       f(self.mass);
     }
   };
@@ -42,7 +43,7 @@ class Direct {
   struct State {
     Eigen::Matrix<S, 2, 1> y = Eigen::Matrix<S, 2, 1>::Zero();  ///< position, velocity
     Eigen::Matrix<S, 2, 1> inputs = Eigen::Matrix<S, 2, 1>::Zero();
-    S clock{0.0};  ///< time of the record, for effects that depend on it
+    Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
     std::array<S, 1> measured{};
   };
@@ -96,11 +97,11 @@ class Direct {
       const S velocity = (end(0) - start(0)) / h_;
       state.inputs(1) = sum_over<Site::mass_force>(
           parameters_.effects, state.effects,
-          Motion<S>{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_, state.clock + 0.5 * h_},
+          Motion<S>{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_, state.clock.at(h_, 0.5)},
           pass + 1 == kPasses ? Keep::yes : Keep::no);
     }
     state.y = free + times(hold_.response, state.inputs);
-    state.clock += h_;
+    state.clock.steps += 1.0;
     state.measured[0] = state.y(0);
   }
 

@@ -32,6 +32,22 @@ Eigen::Matrix<S, Rows, 1> times(const Eigen::Matrix<S, Rows, Columns>& matrix,
   return result;
 }
 
+/// left * right, written out: Eigen's product of matrices of this size takes a block of the heap.
+template <class S, int N>
+Eigen::Matrix<S, N, N> product(const Eigen::Matrix<S, N, N>& left, const Eigen::Matrix<S, N, N>& right) noexcept {
+  Eigen::Matrix<S, N, N> result;
+  for (int column = 0; column < N; ++column) {
+    for (int row = 0; row < N; ++row) {
+      S sum = left(row, 0) * right(0, column);
+      for (int k = 1; k < N; ++k) {
+        sum += left(row, k) * right(k, column);
+      }
+      result(row, column) = sum;
+    }
+  }
+  return result;
+}
+
 /// e^M by balancing (Parlett and Reinsch 1969), scaling and squaring, and a Taylor series of degree 12: with the scaled norm
 /// below 1/4 the remainder is below 1e-17 of the result [Moler and Van Loan 2003, Nineteen Dubious Ways, method 3].
 /// Set-up only: the number of operations depends on the norm.
@@ -71,12 +87,12 @@ Eigen::Matrix<S, N, N> matrix_exponential(Eigen::Matrix<S, N, N> matrix) {
   matrix *= S(std::exp2(-squarings));
   Eigen::Matrix<S, N, N> result = Eigen::Matrix<S, N, N>::Identity();
   for (int term = 12; term >= 1; --term) {
-    Eigen::Matrix<S, N, N> next = matrix * result;
+    Eigen::Matrix<S, N, N> next = product(matrix, result);
     next *= S(1.0 / term);
     result = next + Eigen::Matrix<S, N, N>::Identity();
   }
   for (int i = 0; i < squarings; ++i) {
-    const Eigen::Matrix<S, N, N> squared = result * result;
+    const Eigen::Matrix<S, N, N> squared = product(result, result);
     result = squared;
   }
   for (int i = 0; i < N; ++i) {
@@ -87,15 +103,19 @@ Eigen::Matrix<S, N, N> matrix_exponential(Eigen::Matrix<S, N, N> matrix) {
   return result;
 }
 
-/// The exact hold of x' = A x + B n over `h` [s].
+/// The exact hold of x' = A x + B n over `h` [s], computed as a `Precise`: squaring in float would double its rounding error
+/// a dozen times.
 template <class S, int States, int Inputs>
 ExactHold<S, States, Inputs> exact_hold(const Eigen::Matrix<S, States, States>& a, const Eigen::Matrix<S, States, Inputs>& b,
                                         double h) {
-  Eigen::Matrix<S, States + Inputs, States + Inputs> block = Eigen::Matrix<S, States + Inputs, States + Inputs>::Zero();
-  block.template topLeftCorner<States, States>() = a * S(h);
-  block.template topRightCorner<States, Inputs>() = b * S(h);
-  const Eigen::Matrix<S, States + Inputs, States + Inputs> exponential = matrix_exponential<S, States + Inputs>(block);
-  return {exponential.template topLeftCorner<States, States>(), exponential.template topRightCorner<States, Inputs>()};
+  using P = Precise<S>;
+  using Block = Eigen::Matrix<P, States + Inputs, States + Inputs>;
+  Block block = Block::Zero();
+  block.template topLeftCorner<States, States>() = a.template cast<P>() * P(h);
+  block.template topRightCorner<States, Inputs>() = b.template cast<P>() * P(h);
+  const Block exponential = matrix_exponential<P, States + Inputs>(block);
+  return {exponential.template topLeftCorner<States, States>().template cast<S>(),
+          exponential.template topRightCorner<States, Inputs>().template cast<S>()};
 }
 
 }  // namespace hotfire::model

@@ -47,7 +47,8 @@ class KeyText {
 namespace detail {
 
 template <class Owner, class Visitor>
-void visit_owner(std::string_view prefix, bool is_effect, std::string_view section, Owner& owner, Visitor& visitor) {
+constexpr void visit_owner(std::string_view prefix, bool is_effect, std::string_view section, Owner& owner,
+                           Visitor& visitor) {
   for (const auto& field : std::remove_cvref_t<Owner>::fields()) {
     visitor.number(KeyText(prefix, is_effect, section, field.name), field, owner.*field.member);
   }
@@ -69,7 +70,7 @@ void visit_owner(std::string_view prefix, bool is_effect, std::string_view secti
 /// - `option(key, options, option)`: an effect's law or channel, and its further choices.
 /// Set-up only. The values that the visitor sees are const if `parameters` is. Every key begins with `prefix`.
 template <class Parameters, class Visitor>
-void visit_keys(Parameters& parameters, Visitor& visitor, std::string_view prefix = {}) {
+constexpr void visit_keys(Parameters& parameters, Visitor& visitor, std::string_view prefix = {}) {
   std::remove_const_t<Parameters>::for_each_part(
       parameters, [&](auto& part) { detail::visit_owner(prefix, false, part.name, part, visitor); });
   visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {

@@ -15,17 +15,17 @@ struct Key {
 };
 
 template <class S, class... Es, class F>
-void visit_effect_set(EffectParameters<S, EffectList<Es...>>& effects, F&& f) {
+constexpr void visit_effect_set(EffectParameters<S, EffectList<Es...>>& effects, F&& f) {
   EffectList<Es...>::for_each([&]<class E, std::size_t I>() { f.template operator()<E>(I, std::get<I>(effects.values)); });
 }
 template <class S, class... Es, class F>
-void visit_effect_set(const EffectParameters<S, EffectList<Es...>>& effects, F&& f) {
+constexpr void visit_effect_set(const EffectParameters<S, EffectList<Es...>>& effects, F&& f) {
   EffectList<Es...>::for_each([&]<class E, std::size_t I>() { f.template operator()<E>(I, std::get<I>(effects.values)); });
 }
 
 /// Calls `f.template operator()<E>(index, values)` for the parameters of every effect of a plant.
 template <class Parameters, class F>
-void visit_effects(Parameters& parameters, F&& f) {
+constexpr void visit_effects(Parameters& parameters, F&& f) {
   visit_effect_set(parameters.effects, f);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <type_traits>
 
 namespace hotfire::model {
 
@@ -10,6 +11,11 @@ namespace hotfire::model {
 using std::abs;
 using std::exp;
 using std::sqrt;
+
+/// The scalar of what 24 bits do not hold: the constants of a run, and its time. It is double for a float model, and the
+/// model's own scalar otherwise.
+template <class S>
+using Precise = std::conditional_t<std::is_same_v<S, float>, double, S>;
 
 /// The plain value behind a scalar: itself for a floating-point number, the real part of a dual number.
 template <std::floating_point S>

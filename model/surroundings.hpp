@@ -42,10 +42,10 @@ struct Surroundings : AxisStates {
   const S& piston_command;          ///< R beta_c [m]
   const Servovalve<S>& valve;
   const Actuator<S>& actuator;
-  S time;  ///< of the record, mean over the step [s]
+  Precise<S> time;  ///< of the record, mean over the step [s]
 
   Surroundings(const Eigen::Matrix<S, 8, 1>& states, const S& commanded, const Servovalve<S>& own_valve,
-               const Actuator<S>& own_actuator, const S& now) noexcept
+               const Actuator<S>& own_actuator, const Precise<S>& now) noexcept
       : y(states), piston_command(commanded), valve(own_valve), actuator(own_actuator), time(now) {}
 
   S at(Argument argument) const noexcept {
@@ -78,7 +78,7 @@ struct Surroundings : AxisStates {
       case Argument::deflection:
         return y(kPiston) - actuator.moment_arm * y(kAngle);
       case Argument::time:
-        return time;
+        return S(time);
     }
     return S{0.0};
   }

@@ -19,15 +19,15 @@ using UnlistedTable = Table<S, kUnlistedPoints>;
 
 namespace unlisted {
 
-template <class S>
-S value_at(const UnlistedTable<S>& table, const S& x) noexcept {
+template <class S, class X>
+S value_at(const UnlistedTable<S>& table, const X& x) noexcept {
   if (table.points == 0) {
     return S{0.0};
   }
   S value = table.y[0];
   for (int i = 1; i < table.points; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const S share = (x - table.x[k - 1]) / (table.x[k] - table.x[k - 1]);
+    const S share((x - table.x[k - 1]) / (table.x[k] - table.x[k - 1]));
     const S inside = value_of(share) < 1.0 ? share : S{1.0};
     value += (table.y[k] - table.y[k - 1]) * (value_of(inside) > 0.0 ? inside : S{0.0});
   }
@@ -66,9 +66,9 @@ S force_at_rate(const UnlistedTable<S>& table, const Motion<S>& input) noexcept 
 /// A sinusoid of the record's time.
 template <class Params>
 typename Params::Scalar periodic(const Params& params, const typename Params::Scalar& amplitude,
-                                 const typename Params::Scalar& time) noexcept {
+                                 const Precise<typename Params::Scalar>& time) noexcept {
   using std::sin;
-  return amplitude * sin(2.0 * std::numbers::pi * params.frequency * time + params.phase);
+  return amplitude * typename Params::Scalar(sin(2.0 * std::numbers::pi * params.frequency * time + params.phase));
 }
 
 /// The phase of such a sinusoid at time zero: found from the records' own, when they agree.

@@ -130,14 +130,14 @@ struct UnlistedMotion {
   }
 
  private:
-  template <class S>
-  static S friction(const Params<S>& params, State<S>& state, const Motion<S>& input, const S& at_x) noexcept {
+  template <class S, class X>
+  static S friction(const Params<S>& params, State<S>& state, const Motion<S>& input, const X& at_x) noexcept {
     const S level = unlisted::value_at<S>(params.table, at_x);
     return value_of(level) > 0.0 ? elastoplastic_force<S>(state.deflection, input, level, params.stiffness) : S{0.0};
   }
 
-  template <class S>
-  static S damping(const Params<S>& params, const Motion<S>& input, const S& at_x) noexcept {
+  template <class S, class X>
+  static S damping(const Params<S>& params, const Motion<S>& input, const X& at_x) noexcept {
     const S damping = unlisted::value_at<S>(params.table, at_x);
     const S slowed = 1.0 + input.compliance * damping;
     // A table that drives more than inertia holds back within a step has no solution forward in time.

@@ -56,7 +56,7 @@ struct UnlistedFlow {
       state.recent = magnitude + (start - magnitude) * fading_exponential<S>(input.h / params.memory);
       return input.flow * unlisted::value_at<S>(params.table, S(0.5 * (start + state.recent)));
     }
-    const S& x = params.option == 0 ? input.load_pressure : params.option == 1 ? input.opening : input.time;
+    const Precise<S>& x = params.option == 0 ? input.load_pressure : params.option == 1 ? input.opening : input.time;
     return unlisted::value_at<S>(params.table, x);
   }
 };

@@ -93,7 +93,7 @@ TEST(Command, without_what_it_needs_is_wrong_use) {
 
 TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
   for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "stiffness ", "hammer ", "quiescent ",
-                                    "strings ", "findings ", "import "}) {
+                                    "strings ", "findings ", "import ", "header "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));
@@ -108,6 +108,20 @@ TEST(Command, simulate_writes_a_record_on_the_grid_of_its_input_and_one_line) {
   LONGS_EQUAL(1, std::count(out.begin(), out.end(), '\n'));
   LONGS_EQUAL(0, status_of("check " + output));
   expect_message(out, {"3 rows, period 0.002 s", "command[rad], piston[m], engine[rad], load_pressure[Pa]"});
+}
+
+TEST(Command, header_writes_the_parameters_of_one_axis_as_exact_constants) {
+  const auto header = scratch.path("image.hpp");
+  LONGS_EQUAL(0, status_of("header --model " + model() + " --name kBench --output " + header.string()));
+  std::ifstream file(header);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  expect_message(text, {"from \"good.toml\"", "ImageEntry kBench[] = {", "    {\"engine.inertia\", 0x1.289p+13},\n",
+                        "    {\"effects.backlash.half_width\", 0x1.a36e2eb1c432dp-14},\n"});
+  const std::string taos = scratch.write("taos.toml", "schema = 1\ntopology = \"taos\"\n").string();
+  LONGS_EQUAL(2, status_of("header --model " + taos + " --output " + header.string()));
+  expect_message(err, {"a header holds one axis"});
+  LONGS_EQUAL(2, status_of("header --name 2nd --model " + model() + " --output " + header.string()));
+  expect_message(err, {"--name 2nd", "a C++ name"});
 }
 
 TEST(Command, a_test_on_a_model_is_analysed_again_from_its_record) {

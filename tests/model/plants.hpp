@@ -81,7 +81,7 @@ double lively_input(const model::Direct<S, List>&, double t) {
 /// One step under an input. A hydraulic axis has another one beside it, on the same engine and in motion.
 template <class S, class List>
 void step_beside(const model::Simplex<S, List>& plant, typename model::Simplex<S, List>::State& state, const S& input) {
-  const double t = model::value_of(state.clock) + 0.5 * plant.step_size();
+  const double t = model::value_of(state.clock.at(plant.step_size(), 0.5));
   const S arm = plant.parameters().actuator.moment_arm;
   plant.step(state, input, [&](const S&) {
     return model::Coupling<S>{S(0.0), arm, S(0.0), S(0.02 * std::sin(7.0 * t)), S(0.14 * std::cos(7.0 * t))};

@@ -15,6 +15,7 @@ void add_export(CLI::App& program);
 void add_explain(CLI::App& program, const std::string& typed);  ///< `typed`: the command line, for its report
 void add_findings(CLI::App& program);
 void add_hammer(CLI::App& program);
+void add_header(CLI::App& program);
 void add_import(CLI::App& program);
 void add_quiescent(CLI::App& program);
 void add_lab(CLI::App& program);

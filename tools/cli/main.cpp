@@ -94,6 +94,7 @@ int run(int argc, char** argv) {
   add_strings(program);
   add_findings(program);
   add_reduce(program);
+  add_header(program);
   add_plant(program);
   add_controller(program);
   add_lab(program);

@@ -79,7 +79,7 @@ bool run_vehicle(const Plant& plant, const std::array<std::span<const double>, P
   // A state with delays is hundreds of kilobytes: it lives on the heap.
   const auto state = std::make_unique<typename Plant::State>(plant.steady(inputs.commands, inputs.thrust));
   for (auto& axis : state->axes) {
-    axis.clock = start;
+    axis.clock.start = start;
   }
   return run_rows<Plant>(
       commands.front().size(), *state, steps,

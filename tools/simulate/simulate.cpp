@@ -9,6 +9,7 @@
 
 #include "model/step_size.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/simulate/open_loop.hpp"
 #include "tools/simulate/run.hpp"
 #include "tools/simulate/scalar_parameters.hpp"
 
@@ -91,15 +92,7 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
       outputs.channels[c + 1].values.push_back(readings[c]);
     }
   };
-  const bool finite = [&] {
-    if constexpr (Plant::topology == "simplex") {
-      if (const Channel* torque = inputs.find("torque")) {
-        return run_under_torque(plant, input.values, torque->values, state, steps, keep);
-      }
-    }
-    return run(plant, input.values, state, steps, keep);
-  }();
-  if (!finite) {
+  if (!run_record(plant, inputs, state, steps, keep)) {
     throw FileError(fmt::format(
         "{}: the model runs away at {:.6g} s: its parameters make it unstable for this {}", inputs.path.string(),
         inputs.start + static_cast<double>(outputs.channels[1].values.size()) * inputs.period, Plant::input_channel));
@@ -114,13 +107,12 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
     require_channel(inputs, "force", "the model is driven by it");
     const int steps = model::steps_per_period<model::Direct<double>>(*direct, inputs.period);
     const model::Direct<double> plant(*direct, inputs.period / steps);
-    const Channel* position = inputs.find("position");
-    auto state = plant.at_rest(position != nullptr ? position->values.front() : 0.0);
+    auto state = start_of(plant, inputs);
     if (fit_start_rows > 0) {
       const auto [start, speed] = fitted_start(*direct, inputs, fit_start_rows);
       state = plant.moving(start, speed);
+      state.clock.start = inputs.start;
     }
-    state.clock = inputs.start;
     return run_open_loop(plant, state, inputs, steps);
   }
   if (fit_start_rows > 0) {
@@ -130,9 +122,7 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
   require_channel(inputs, "command", "the model is driven by it");
   const int steps = model::steps_per_period(inputs.period);
   const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), inputs.period / steps);
-  auto state = plant.steady(inputs.find("command")->values.front());
-  state.clock = inputs.start;
-  return run_open_loop(plant, state, inputs, steps);
+  return run_open_loop(plant, start_of(plant, inputs), inputs, steps);
 }
 
 double moment_arm_of(const ModelFile& model) {

@@ -316,11 +316,11 @@ InputOf<E, double> smooth_input(double t, double h) {
 // The same input in another scalar.
 template <class S>
 model::Signal<S> converted(const model::Signal<double>& in) {
-  return {S(in.value), in.h, S(in.time)};
+  return {S(in.value), in.h, model::Precise<S>(in.time)};
 }
 template <class S>
 model::Hydraulics<S> converted(const model::Hydraulics<double>& in) {
-  return {S(in.load_pressure), S(in.opening), S(in.supply_pressure), in.h, S(in.time), S(in.flow)};
+  return {S(in.load_pressure), S(in.opening), S(in.supply_pressure), in.h, model::Precise<S>(in.time), S(in.flow)};
 }
 template <class S>
 model::Compression<S> converted(const model::Compression<double>& in) {
@@ -328,13 +328,13 @@ model::Compression<S> converted(const model::Compression<double>& in) {
 }
 template <class S>
 model::Motion<S> converted(const model::Motion<double>& in) {
-  return {S(in.position), S(in.velocity), S(in.free_velocity), S(in.compliance),
-          in.h,           S(in.time),     S(in.other_angle),   S(in.other_rate)};
+  return {S(in.position),    S(in.velocity),  S(in.free_velocity), S(in.compliance), in.h, model::Precise<S>(in.time),
+          S(in.other_angle), S(in.other_rate)};
 }
 template <class S>
 model::Spring<S> converted(const model::Spring<double>& in) {
-  return {S(in.deflection),     S(in.angle), S(in.nominal_arm), S(in.arm), S(in.stiffness), S(in.actuator_stiffness),
-          S(in.load_stiffness), in.h,        S(in.time)};
+  return {S(in.deflection),     S(in.angle), S(in.nominal_arm),         S(in.arm), S(in.stiffness), S(in.actuator_stiffness),
+          S(in.load_stiffness), in.h,        model::Precise<S>(in.time)};
 }
 template <class S>
 model::AttachPoint<S> converted(const model::AttachPoint<double>& in) {

@@ -32,7 +32,7 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
       return plant.steady(S(experiment.input.front()));
     }
   }();
-  state.clock = start.values[2];
+  state.clock.start = start.values[2];
   return state;
 }
 

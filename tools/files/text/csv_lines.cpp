@@ -24,14 +24,20 @@ bool is_text(char letter) {
 
 }  // namespace
 
-CsvLines::CsvLines(const std::filesystem::path& path)
-    : path_(path), file_(std::fopen(path.c_str(), "rb"), std::fclose), buffer_(kFirstBlock) {
+CsvLines::CsvLines(const std::filesystem::path& path) : CsvLines(path, File(std::fopen(path.c_str(), "rb"), std::fclose)) {}
+
+// In the mode "r" it is only read.
+CsvLines::CsvLines(std::string_view text, std::filesystem::path name)
+    : CsvLines(std::move(name), File(fmemopen(const_cast<char*>(text.data()), text.size(), "rb"), std::fclose)) {}
+
+CsvLines::CsvLines(std::filesystem::path path, File file)
+    : path_(std::move(path)), file_(std::move(file)), buffer_(kFirstBlock) {
   if (!file_) {
-    throw FileError(fmt::format("{}: cannot be opened: {}", path.string(), std::generic_category().message(errno)));
+    throw FileError(fmt::format("{}: cannot be opened: {}", path_.string(), std::generic_category().message(errno)));
   }
   if (fill() == 0) {
     throw FileError(
-        fmt::format("{}:1: empty file; a record begins with a line like time[s],command[rad],piston[m]", path.string()));
+        fmt::format("{}:1: empty file; a record begins with a line like time[s],command[rad],piston[m]", path_.string()));
   }
   if (end_ == buffer_.size()) {
     buffer_.resize(kBlock);

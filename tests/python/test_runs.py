@@ -1,0 +1,148 @@
+"""Simulation has the bits of the command, batches those of single runs, gradients those of differences."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import FRICTION, command_line
+
+import hotfire
+
+AXES = {"taos": ["pitch", "yaw"], "masv": [f"{axis}{engine}" for engine in range(1, 5) for axis in ("pitch", "yaw")]}
+
+
+def inputs_of(topology):
+    seconds = np.arange(1000) * 1e-3
+    if topology == "direct":
+        return hotfire.Record({"force": (20.0 * np.sin(9.0 * seconds), "N"), "position": (0.0 * seconds, "m")}, period=1e-3)
+    if topology == "simplex":
+        return hotfire.Record({"command": 0.02 * np.sin(9.0 * seconds)}, period=1e-3)
+    return hotfire.Record(
+        {f"command.{axis}": 0.02 * np.sin((5.0 + i) * seconds) for i, axis in enumerate(AXES[topology])}, period=1e-3
+    )
+
+
+def model_of(topology):
+    if topology == "direct":
+        return hotfire.Model({"topology": "direct", "mass": {"inertia": 2.0, "damping": 3.0, "stiffness": 100.0}})
+    if topology == "simplex":
+        return hotfire.Model(FRICTION)
+    return hotfire.Model({"topology": topology})
+
+
+@pytest.mark.parametrize("topology", ["direct", "simplex", "taos", "masv"])
+def test_a_simulation_has_the_bits_of_the_command(tmp_path, topology):
+    model, inputs = model_of(topology), inputs_of(topology)
+    model.save(tmp_path / "m.toml")
+    inputs.save(tmp_path / "in.csv")
+    status, _, words = command_line(
+        "simulate", "--model", tmp_path / "m.toml", "--input", tmp_path / "in.csv", "--output", tmp_path / "out.csv"
+    )
+    assert status == 0, words
+    expected = hotfire.Record(tmp_path / "out.csv")
+    found = hotfire.simulate(model, hotfire.Record(tmp_path / "in.csv"))
+    assert list(found) == list(expected)
+    for name in expected:
+        assert found[name].unit == expected[name].unit
+        assert np.array_equal(found[name].values, expected[name].values), name
+
+
+def test_an_array_is_the_command_of_one_axis(model, record):
+    of_array = hotfire.simulate(model, np.array(record["command"]), period=1e-3)
+    assert np.array_equal(of_array["engine"], hotfire.simulate(model, record)["engine"])
+    with pytest.raises(hotfire.UsageError, match="the command of one axis"):
+        hotfire.simulate(hotfire.Model({"topology": "taos"}), np.zeros(100), period=1e-3)
+
+
+def test_a_record_without_the_input_is_refused_in_the_words_of_the_command(model):
+    with pytest.raises(hotfire.FileError, match="no column command: the model is driven by it; the record has piston"):
+        hotfire.simulate(model, hotfire.Record({"piston": np.zeros(100)}, period=1e-3))
+
+
+def test_a_batch_has_the_bits_of_single_runs_in_their_order(model, record):
+    models = [model.with_values({"engine.inertia": value}) for value in (8e3, 9e3, 1e4, 1.1e4, 1.2e4)]
+    batch = hotfire.simulate_many(models, record, threads=3)
+    for own, expected in zip(batch, models):
+        assert np.array_equal(own["engine"], hotfire.simulate(expected, record)["engine"])
+    assert not np.array_equal(batch[0]["engine"], batch[1]["engine"])
+    assert hotfire.simulate_many([], record) == []
+    with pytest.raises(hotfire.UsageError, match="5 models and 2 records"):
+        hotfire.simulate_many(models, [record, record])
+    with pytest.raises(hotfire.FileError, match="no column command"):
+        hotfire.simulate_many(models, hotfire.Record({"piston": np.zeros(100)}, period=1e-3))
+
+
+def test_other_threads_of_python_go_on_while_a_model_runs(model):
+    # A thread that counts every millisecond gets nowhere while another holds the lock of the interpreter.
+    ticks = []
+    stop = threading.Event()
+
+    def count():
+        while not stop.wait(0.001):
+            ticks.append(time.monotonic())
+
+    inputs = hotfire.Record({"command": np.zeros(400_000)}, period=1e-3)
+    counter = threading.Thread(target=count)
+    counter.start()
+    began = time.monotonic()
+    hotfire.simulate(model, inputs)
+    ended = time.monotonic()
+    stop.set()
+    counter.join()
+    assert sum(began < tick < ended for tick in ticks) >= 3
+
+
+def test_a_gradient_is_the_limit_of_differences():
+    model = hotfire.Model({"topology": "simplex"})
+    inputs = inputs_of("simplex")
+    keys = ["engine.inertia", "servovalve.position_gain", "actuator.moment_arm", "structure.stiffness", "engine.duct_stiffness"]
+    slopes = hotfire.gradients(model, inputs, keys)
+    assert slopes["engine"].shape == (inputs.rows, len(keys))
+    assert slopes.units["engine"][0] == "rad/(kg.m^2)"
+    for column, key in enumerate(keys):
+        # Central differences are wrong by the square of the step, 1e-8, and by rounding, 1e-12 over it.
+        step = 1e-4 * model[key]
+        more, less = (hotfire.simulate(model.with_values({key: model[key] + side * step}), inputs) for side in (1, -1))
+        for channel in ("piston", "engine"):
+            difference = (more[channel].values - less[channel].values) / (2.0 * step)
+            error = slopes[channel][:, column] - difference
+            assert np.std(error) < 1e-5 * np.std(difference), (key, channel)
+
+
+def test_gradients_are_by_all_that_acts_unless_told(model, record):
+    assert set(hotfire.gradients(model, record).keys) == set(model.parameters)
+    with pytest.raises(hotfire.UsageError, match="no parameter that acts"):
+        hotfire.gradients(model, record, ["effects.backlash.half_width"])
+    with pytest.raises(hotfire.UsageError, match="gradients takes a model of one axis"):
+        hotfire.gradients(hotfire.Model({"topology": "taos"}), inputs_of("taos"))
+
+
+def test_a_sweep_has_the_notch_of_the_command(tmp_path, model):
+    import json
+
+    model.save(tmp_path / "m.toml")
+    status, printed, words = command_line(
+        "sweep", "--model", tmp_path / "m.toml", "--profile", "sines", "--amplitudes", "0.4", "--from", "6", "--to", "9",
+        "--count", "5", "--coarse", "--json",
+    )
+    assert status == 0, words
+    expected = json.loads(printed)
+    found = hotfire.sweep(model, amplitudes=[np.radians(0.4)], frequencies=(6.0, 9.0), count=5, coarse=True)
+    assert [own.channel for own in found] == [own["channel"] for own in expected]
+    for own, of_command in zip(found, expected):
+        # The command reads degrees, and pi / 180 rounds.
+        np.testing.assert_allclose(own.gain, [point["gain_decibels"] for point in of_command["response"]], rtol=1e-9)
+        assert (own.notch is None) == (of_command["notch"] is None)
+    again = hotfire.analyse_sweep(found[0].record, moment_arm=model["actuator.moment_arm"])
+    np.testing.assert_array_equal(again[0].gain, found[0].gain)
+
+
+def test_pictures_have_a_line_for_each_channel(model, record):
+    pytest.importorskip("matplotlib")
+    run = hotfire.simulate(model, record)
+    figure = hotfire.plot.record(run, ["engine", "piston"], beside=run)
+    assert [len(axes.lines) for axes in figure.axes] == [2, 2]
+    assert figure.axes[0].get_ylabel() == "engine [rad]"
+    swept = hotfire.sweep(model, frequencies=(6.0, 9.0), count=3, coarse=True)
+    assert len(hotfire.plot.sweep(swept).axes[0].lines) == len(swept)

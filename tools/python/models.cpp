@@ -1,0 +1,206 @@
+#include "tools/python/models.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "model/key_text.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/suggestion.hpp"
+
+namespace py = pybind11;
+
+namespace hotfire::python {
+
+namespace {
+
+/// Key, value, unit, least, most, meaning.
+using Parameter = std::tuple<std::string, double, std::string, double, double, std::string>;
+
+/// Lists the parameters that act, as `model::visit_keys` shows them.
+class Lister {
+ public:
+  template <class Field>
+  void number(const model::KeyText& key, const Field& field, double value) {
+    if ((field.options >> static_cast<unsigned>(option_) & 1U) != 0) {
+      parameters.emplace_back(std::string(key.view()), value, std::string(field.unit), field.lower, field.upper,
+                              std::string(field.meaning));
+    }
+  }
+
+  template <class E>
+  bool effect(const model::KeyText& prefix, bool active) {
+    option_ = 0;
+    if (active) {
+      std::string name(prefix.view());
+      name.pop_back();
+      effects.emplace_back(std::move(name), "");
+    }
+    return active;
+  }
+
+  template <class Options>
+  void option(const model::KeyText&, const Options& options, int option) {
+    option_ = option;
+    effects.back().second = options[static_cast<std::size_t>(option)];
+  }
+
+  template <class Field, class Table>
+  void table(const model::KeyText&, const model::KeyText&, const Field&, const Table&) {}
+
+  void next_axis() { option_ = 0; }
+
+  std::vector<Parameter> parameters;
+  std::vector<std::pair<std::string, std::string>> effects;  ///< "effects.gimbal_friction" and its law, "lugre"
+
+ private:
+  int option_ = 0;
+};
+
+/// Puts values into the parameters that act, and forgets those that it has put.
+class Setter {
+ public:
+  explicit Setter(std::map<std::string, double>& values) : values_(values) {}
+
+  template <class Field>
+  void number(const model::KeyText& key, const Field& field, double& value) {
+    const auto given = values_.find(std::string(key.view()));
+    if (given == values_.end() || (field.options >> static_cast<unsigned>(option_) & 1U) == 0) {
+      return;
+    }
+    if (!model::inside_bounds(field, given->second)) {
+      throw FileError(fmt::format("{} = {}: outside its bounds; allowed: {:g} to {:g} {}", key.view(), given->second,
+                                  field.lower, field.upper, field.unit));
+    }
+    value = given->second;
+    values_.erase(given);
+  }
+
+  template <class E>
+  bool effect(const model::KeyText&, bool active) {
+    option_ = 0;
+    return active;
+  }
+
+  template <class Options>
+  void option(const model::KeyText&, const Options&, int option) {
+    option_ = option;
+  }
+
+  template <class Field, class Table>
+  void table(const model::KeyText&, const model::KeyText&, const Field&, const Table&) {}
+
+  void next_axis() { option_ = 0; }
+
+ private:
+  std::map<std::string, double>& values_;
+  int option_ = 0;
+};
+
+/// Shows every axis of a vehicle to a visitor, under the axis's name.
+template <class Parameters, class Visitor>
+void visit_axes(Parameters& parameters, Visitor& visitor) {
+  const std::vector<std::string> names = axis_names(static_cast<int>(parameters.axes.size() / 2));
+  for (std::size_t axis = 0; axis < names.size(); ++axis) {
+    visitor.next_axis();
+    model::visit_keys(parameters.axes[axis], visitor, names[axis] + ".");
+  }
+}
+
+template <class Parameters>
+Lister listed_vehicle(const Parameters& parameters) {
+  Lister lister;
+  visit_axes(parameters, lister);
+  return lister;
+}
+
+Lister listed(const Model& model) {
+  if (const auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
+    return std::visit([](const auto& parameters) { return listed_vehicle(parameters); }, vehicle->parameters);
+  }
+  return std::visit(
+      [](const auto& parameters) {
+        Lister lister;
+        model::visit_keys(parameters, lister);
+        return lister;
+      },
+      std::get<ModelFile>(model.file).parameters);
+}
+
+std::string topology_of(const Model& model) {
+  if (const auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
+    return std::string(std::holds_alternative<TaosParameters>(vehicle->parameters) ? model::Taos<double>::topology
+                                                                                   : model::Masv<double>::topology);
+  }
+  return std::string(std::holds_alternative<SimplexParameters>(std::get<ModelFile>(model.file).parameters)
+                         ? model::Simplex<double>::topology
+                         : model::Direct<double>::topology);
+}
+
+Model load(const std::filesystem::path& path) {
+  return is_vehicle(path) ? Model{load_vehicle(path)} : Model{load_model(path)};
+}
+
+Model parse(const std::string& text, const std::filesystem::path& name) {
+  return is_vehicle(text, name) ? Model{parse_vehicle(text, name)} : Model{parse_model(text, name)};
+}
+
+std::string text_of(const Model& model) {
+  if (const auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
+    return vehicle_text(*vehicle);
+  }
+  return model_text(std::get<ModelFile>(model.file));
+}
+
+Model with_values(Model model, std::map<std::string, double> values) {
+  if (auto* one = std::get_if<ModelFile>(&model.file)) {
+    std::erase_if(one->left_out, [&values](const std::string& key) { return values.contains(key); });
+  }
+  const std::vector<Parameter> acting = listed(model).parameters;
+  Setter setter(values);
+  if (auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
+    std::visit([&](auto& parameters) { visit_axes(parameters, setter); }, vehicle->parameters);
+  } else {
+    std::visit([&](auto& parameters) { model::visit_keys(parameters, setter); }, std::get<ModelFile>(model.file).parameters);
+  }
+  if (!values.empty()) {
+    std::vector<std::string_view> known(acting.size());
+    std::transform(acting.begin(), acting.end(), known.begin(),
+                   [](const Parameter& own) { return std::string_view(std::get<0>(own)); });
+    const std::string& stranger = values.begin()->first;
+    throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", stranger, suggestion(stranger, known)));
+  }
+  return model;
+}
+
+}  // namespace
+
+const ModelFile& Model::one_axis(const std::string& what) const {
+  if (const auto* one = std::get_if<ModelFile>(&file)) {
+    return *one;
+  }
+  throw UsageError(fmt::format("{} takes a model of one axis; allowed with topology \"simplex\" or \"direct\"", what));
+}
+
+void add_models(py::module_& module) {
+  py::class_<Model>(module, "Model")
+      .def_static("load", &load, py::arg("path"))
+      .def_static("parse", &parse, py::arg("text"), py::arg("name"))
+      .def_property_readonly("text", &text_of)
+      .def_property_readonly("topology", &topology_of)
+      .def_property_readonly(
+          "name", [](const Model& model) { return std::visit([](const auto& file) { return file.name; }, model.file); })
+      .def_property_readonly(
+          "path",
+          [](const Model& model) { return std::visit([](const auto& file) { return file.path.string(); }, model.file); })
+      .def("parameters", [](const Model& model) { return listed(model).parameters; })
+      .def("effects", [](const Model& model) { return listed(model).effects; });
+  module.def("with_values", &with_values, py::arg("model"), py::arg("values"));
+}
+
+}  // namespace hotfire::python

@@ -1,0 +1,168 @@
+#include "tools/python/runs.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "tools/explain/fit/parallel.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/python/models.hpp"
+#include "tools/simulate/gradients.hpp"
+#include "tools/simulate/simulate.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
+#include "tools/trials/fine_sweep.hpp"
+#include "tools/trials/profiles.hpp"
+#include "tools/trials/results_json.hpp"
+#include "tools/trials/sweep.hpp"
+
+namespace py = pybind11;
+
+namespace hotfire::python {
+
+namespace {
+
+struct RunOptions {
+  std::size_t fit_start = 0;
+  unsigned seed = 1;
+};
+
+Record run(const Model& model, const Record& inputs, const RunOptions& options) {
+  if (const auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
+    if (options.fit_start > 0) {
+      throw UsageError(
+          "fit_start is for a direct model; hydraulic axes start in the steady state under their first commands");
+    }
+    return simulate(*vehicle, inputs, {.seed = options.seed});
+  }
+  return simulate(std::get<ModelFile>(model.file), inputs, options.fit_start);
+}
+
+/// Several runs on several threads; the first that fails, in the order of the runs, is what fails.
+std::vector<Record> run_many(const std::vector<std::pair<const Model*, const Record*>>& runs, const RunOptions& options,
+                             unsigned threads) {
+  std::vector<Record> records(runs.size());
+  std::vector<std::exception_ptr> failures(runs.size());
+  explain::parallel_for(runs.size(), threads, [&](std::size_t i) {
+    try {
+      records[i] = run(*runs[i].first, *runs[i].second, options);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) {
+      std::rethrow_exception(failure);
+    }
+  }
+  return records;
+}
+
+/// The derivatives by channel, as arrays of rows and keys.
+py::dict gradients_of(const Model& model, const Record& inputs, const std::vector<std::string>& keys) {
+  std::vector<ChannelSlopes> channels;
+  {
+    const py::gil_scoped_release released;
+    channels = gradients(model.one_axis("gradients"), inputs, keys);
+  }
+  py::dict result;
+  for (const ChannelSlopes& channel : channels) {
+    py::array_t<double> slopes({inputs.rows, keys.size()});
+    std::copy(channel.slopes.begin(), channel.slopes.end(), slopes.mutable_data());
+    result[py::str(channel.name)] = std::move(slopes);
+  }
+  return result;
+}
+
+/// The profile of a sweep by sines: amplitudes [rad], frequencies [Hz].
+struct Sines {
+  std::vector<double> amplitudes;
+  double from;
+  double to;
+  int count;
+  bool coarse;
+};
+
+struct Sweep {
+  Record record;
+  std::string results;  ///< as `hotfire sweep --json` prints them
+};
+
+/// The command of an axis, on a model.
+Record run_command(const Model& model, const std::string& axis, std::vector<double> command) {
+  return run(model, trials::command_record(std::move(command), trials::channel_of("command", axis)), {});
+}
+
+double settling_of(const Model& model, const Sines& sines) {
+  const auto* vehicle = std::get_if<VehicleFile>(&model.file);
+  return vehicle != nullptr ? trials::settling_time(*vehicle, sines.from, sines.to)
+                            : trials::settling_time(std::get<ModelFile>(model.file));
+}
+
+double moment_arm(const Model& model, const std::string& axis) {
+  const auto* vehicle = std::get_if<VehicleFile>(&model.file);
+  return vehicle != nullptr ? moment_arm_of(*vehicle, axis) : moment_arm_of(std::get<ModelFile>(model.file));
+}
+
+/// `hotfire sweep --profile sines`.
+Sweep sweep(const Model& model, const Sines& sines, trials::SweepGoal goal) {
+  std::vector<trials::SineBand> bands;
+  bands.reserve(sines.amplitudes.size());
+  for (const double amplitude : sines.amplitudes) {
+    bands.push_back({amplitude, trials::spaced(sines.from, sines.to, sines.count)});
+  }
+  goal.moment_arm = moment_arm(model, goal.axis);
+  Record record = run_command(model, goal.axis, trials::stepped_sines(bands));
+  if (!sines.coarse) {
+    record = run_command(model, goal.axis,
+                         trials::fine_sines(bands, trials::analyse_sweep(record, goal), settling_of(model, sines)));
+  }
+  std::string results = trials::to_json(trials::analyse_sweep(record, goal)).dump();
+  return {std::move(record), std::move(results)};
+}
+
+}  // namespace
+
+void add_runs(py::module_& module) {
+  module.def(
+      "simulate",
+      [](const Model& model, const Record& inputs, std::size_t fit_start, unsigned seed) {
+        const py::gil_scoped_release released;
+        return run(model, inputs, {fit_start, seed});
+      },
+      py::arg("model"), py::arg("inputs"), py::arg("fit_start"), py::arg("seed"));
+  module.def(
+      "simulate_many",
+      [](const std::vector<std::pair<const Model*, const Record*>>& runs, std::size_t fit_start, unsigned seed,
+         unsigned threads) {
+        const py::gil_scoped_release released;
+        return run_many(runs, {fit_start, seed}, threads);
+      },
+      py::arg("runs"), py::arg("fit_start"), py::arg("seed"), py::arg("threads"));
+  module.def(
+      "acting_keys", [](const Model& model) { return acting_keys(model.one_axis("gradients")); }, py::arg("model"));
+  module.def("gradients", &gradients_of, py::arg("model"), py::arg("inputs"), py::arg("keys"));
+  module.def(
+      "sweep",
+      [](const Model& model, const std::vector<double>& amplitudes, double from, double to, int count, bool coarse,
+         const std::string& axis, double lowest, double highest) {
+        const py::gil_scoped_release released;
+        Sweep swept =
+            sweep(model, {amplitudes, from, to, count, coarse}, {.axis = axis, .lowest = lowest, .highest = highest});
+        return std::make_pair(std::move(swept.record), std::move(swept.results));
+      },
+      py::arg("model"), py::arg("amplitudes"), py::arg("from_"), py::arg("to"), py::arg("count"), py::arg("coarse"),
+      py::arg("axis"), py::arg("lowest"), py::arg("highest"));
+  module.def(
+      "analyse_sweep",
+      [](const Record& record, const std::string& axis, double moment_arm, double lowest, double highest, double segment) {
+        const py::gil_scoped_release released;
+        return trials::to_json(trials::analyse_sweep(record, {axis, moment_arm, lowest, highest, segment})).dump();
+      },
+      py::arg("record"), py::arg("axis"), py::arg("moment_arm"), py::arg("lowest"), py::arg("highest"), py::arg("segment"));
+}
+
+}  // namespace hotfire::python

@@ -1,0 +1,114 @@
+#include "tools/simulate/gradients.hpp"
+
+#include <ceres/jet.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <span>
+
+#include "model/keys.hpp"
+#include "model/step_size.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/suggestion.hpp"
+#include "tools/simulate/open_loop.hpp"
+#include "tools/simulate/scalar_parameters.hpp"
+
+namespace hotfire {
+
+namespace {
+
+/// Parameters that one run differentiates by: a dual number of this many parts fills the vector registers.
+constexpr int kAtOnce = 4;
+using Dual = ceres::Jet<double, kAtOnce>;
+
+std::string text_of(const model::Key& key, std::string_view field) {
+  return fmt::format("{}{}.{}", key.is_effect ? "effects." : "", key.section, field);
+}
+
+/// Calls `f(key, value)` for every scalar parameter that acts.
+template <class Parameters, class F>
+void visit_acting(Parameters& parameters, F&& f) {
+  std::vector<int> options;
+  model::visit_effects(parameters, [&]<class E>(std::size_t, const auto& values) { options.push_back(values.option); });
+  model::visit_parameters(parameters, [&](const model::Key& key, const auto& field, auto& value) {
+    const bool acts = !key.is_effect || (parameters.effects.active[key.effect_index] &&
+                                         (field.options >> options[key.effect_index] & 1U) != 0);
+    if (acts) {
+      f(text_of(key, field.name), value);
+    }
+  });
+}
+
+template <class Parameters>
+std::vector<std::string> keys_of(const Parameters& parameters) {
+  std::vector<std::string> keys;
+  visit_acting(parameters, [&](const std::string& key, const auto&) { keys.push_back(key); });
+  return keys;
+}
+
+/// The parameters with a dual part for each of `keys`.
+template <class DualParameters, class Parameters>
+DualParameters with_dual_parts(const Parameters& parameters, std::span<const std::string> keys) {
+  auto dual = with_scalar<DualParameters>(parameters);
+  visit_acting(dual, [&](const std::string& key, Dual& value) {
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (keys[k] == key) {
+        value.v[static_cast<Eigen::Index>(k)] = 1.0;
+      }
+    }
+  });
+  return dual;
+}
+
+template <class Plant, class DualPlant>
+std::vector<ChannelSlopes> differentiated(const typename Plant::Parameters& parameters, const Record& inputs,
+                                          std::span<const std::string> keys) {
+  const int steps = model::steps_per_period<Plant>(parameters, inputs.period);
+  std::vector<ChannelSlopes> channels;
+  for (const std::string_view name : Plant::channels) {
+    channels.push_back({std::string(name), std::vector<double>(inputs.rows * keys.size())});
+  }
+  for (std::size_t first = 0; first < keys.size(); first += kAtOnce) {
+    const auto some = keys.subspan(first, std::min<std::size_t>(kAtOnce, keys.size() - first));
+    const DualPlant plant(with_dual_parts<typename DualPlant::Parameters>(parameters, some), inputs.period / steps);
+    auto state = start_of(plant, inputs);
+    const bool finite = run_record(plant, inputs, state, steps, [&](std::size_t row, const auto& readings) {
+      for (std::size_t c = 0; c < readings.size(); ++c) {
+        for (std::size_t k = 0; k < some.size(); ++k) {
+          channels[c].slopes[row * keys.size() + first + k] = readings[c].v[static_cast<Eigen::Index>(k)];
+        }
+      }
+    });
+    if (!finite) {
+      throw FileError(fmt::format("{}: the model runs away: its parameters make it unstable for this {}",
+                                  inputs.path.string(), Plant::input_channel));
+    }
+  }
+  return channels;
+}
+
+}  // namespace
+
+std::vector<std::string> acting_keys(const ModelFile& model) {
+  return std::visit([](const auto& parameters) { return keys_of(parameters); }, model.parameters);
+}
+
+std::vector<ChannelSlopes> gradients(const ModelFile& model, const Record& inputs, const std::vector<std::string>& keys) {
+  const std::vector<std::string> acting = acting_keys(model);
+  for (const std::string& key : keys) {
+    if (std::find(acting.begin(), acting.end(), key) == acting.end()) {
+      throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", key,
+                                   suggestion(key, std::vector<std::string_view>(acting.begin(), acting.end()))));
+    }
+  }
+  if (const auto* direct = std::get_if<DirectParameters>(&model.parameters)) {
+    require_channel(inputs, "force", "the model is driven by it");
+    return differentiated<model::Direct<double>, model::Direct<Dual>>(*direct, inputs, keys);
+  }
+  require_channel(inputs, "command", "the model is driven by it");
+  return differentiated<model::Simplex<double>, model::Simplex<Dual>>(std::get<SimplexParameters>(model.parameters), inputs,
+                                                                      keys);
+}
+
+}  // namespace hotfire

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "tools/files/record/record.hpp"
+#include "tools/simulate/run.hpp"
+
+namespace hotfire {
+
+/// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command, a `direct`
+/// mass at rest at the first row of `position`, or at zero without one.
+template <class Plant>
+typename Plant::State start_of(const Plant& plant, const Record& inputs) {
+  using S = typename Plant::Scalar;
+  typename Plant::State state = [&] {
+    if constexpr (Plant::topology == "direct") {
+      const Channel* position = inputs.find("position");
+      return plant.at_rest(S(position != nullptr ? position->values.front() : 0.0));
+    } else {
+      return plant.steady(S(inputs.find(std::string(Plant::input_channel))->values.front()));
+    }
+  }();
+  state.clock.start = S(inputs.start);
+  return state;
+}
+
+/// Steps a plant of one axis through a record, `steps` plant steps a row, and hands every row's readings to
+/// `sink(row, readings)`; a hydraulic axis also under the record's `torque`, if it has one. Returns false at the first
+/// reading that is not finite or ran away.
+template <class Plant, class Sink>
+bool run_record(const Plant& plant, const Record& inputs, typename Plant::State& state, int steps, Sink&& sink) {
+  const Channel& input = *inputs.find(std::string(Plant::input_channel));
+  if constexpr (Plant::topology == "simplex") {
+    if (const Channel* torque = inputs.find("torque")) {
+      return run_under_torque(plant, input.values, torque->values, state, steps, std::forward<Sink>(sink));
+    }
+  }
+  return run(plant, input.values, state, steps, std::forward<Sink>(sink));
+}
+
+}  // namespace hotfire
