@@ -54,6 +54,24 @@ inline constexpr std::size_t kMostStops = 4;
 template <class S>
 class MemoryState {
  public:
+  MemoryState() = default;
+  /// The same in another scalar, value by value.
+  template <class Other>
+  explicit MemoryState(const MemoryState<Other>& other) noexcept
+      : started_(other.started_),
+        value_(value_of(other.value_)),
+        rate_(value_of(other.rate_)),
+        since_(other.since_),
+        newest_(other.newest_),
+        age_(other.age_) {
+    for (std::size_t k = 0; k < kMostStops; ++k) {
+      stops_[k] = S(value_of(other.stops_[k]));
+    }
+    for (std::size_t k = 0; k < kEarlier; ++k) {
+      earlier_[k] = S(value_of(other.earlier_[k]));
+    }
+  }
+
   void rest() noexcept { started_ = false; }
 
   /// Output of every memory but `stops`, mean over a step of `h` [s] in which the argument `s` is held.
@@ -117,6 +135,9 @@ class MemoryState {
   }
 
  private:
+  template <class Other>
+  friend class MemoryState;
+
   static constexpr std::size_t kEarlier = 64;
 
   void start(const S& s) noexcept {

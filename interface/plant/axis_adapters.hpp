@@ -80,7 +80,7 @@ struct SimplexAdapter {
   static void settle(const Model& model, State& state, std::span<const S> inputs, const Parameters&, std::span<const S>,
                      double time) {
     state.plant = model.steady(inputs[0]);
-    state.plant.clock = S(time);
+    state.plant.clock = {model::Precise<S>(time)};
   }
 
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
@@ -139,7 +139,7 @@ struct DirectAdapter {
   static void settle(const Model& model, State& state, std::span<const S>, const Parameters&, std::span<const S> further,
                      double time) {
     state.plant = model.moving(further[0], further[1]);
-    state.plant.clock = S(time);
+    state.plant.clock = {model::Precise<S>(time)};
   }
 
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {

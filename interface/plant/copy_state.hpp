@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "model/delay_line.hpp"
+#include "model/memory.hpp"
 #include "model/scalar.hpp"
 
 namespace hotfire::plant {
@@ -91,6 +92,11 @@ void copy_state(const std::tuple<From...>& from, std::tuple<To...>& to) {
 template <class From, class To, std::size_t Capacity>
 void copy_state(const model::DelayLine<From, Capacity>& from, model::DelayLine<To, Capacity>& to) {
   to = model::DelayLine<To, Capacity>(from);
+}
+
+template <class From, class To>
+void copy_state(const model::MemoryState<From>& from, model::MemoryState<To>& to) {
+  to = model::MemoryState<To>(from);
 }
 
 template <class From, class To>

@@ -136,7 +136,7 @@ struct VehicleAdapter {
     const typename V::Inputs driven = inputs_of(inputs, parameters);
     state.plant = model.steady(driven.commands, driven.thrust);
     for (auto& axis : state.plant.axes) {
-      axis.clock = S(time);
+      axis.clock = {model::Precise<S>(time)};
     }
   }
 
