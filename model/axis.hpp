@@ -302,8 +302,7 @@ class Axis : public AxisStates {
   static S torque_around(const Uncoupled&, const S& own) noexcept { return own; }
   static S torque_around(const Coupling<S>& around, const S& own) noexcept { return own + around.torque; }
 
-  Surroundings<S> around_state(const State& state, const Eigen::Matrix<S, 8, 1>& y,
-                               const Precise<S>& time) const noexcept {
+  Surroundings<S> around_state(const State& state, const Eigen::Matrix<S, 8, 1>& y, const Precise<S>& time) const noexcept {
     return {y, state.inputs(kCommand), parameters_.servovalve, parameters_.actuator, time};
   }
 
@@ -345,7 +344,7 @@ class Axis : public AxisStates {
                                         parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, time, &seen});
     settle<Site::load_spring>(effects, state.effects, still);
     const Spring<S> geometry = pass_through<Site::load_spring>(effects, state.effects, still, Keep::yes);
-    Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_, time};
+    Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_};
     motion.seen = &seen;
     const S torque = sum_over<Site::engine_torque>(effects, state.effects, motion_around(around, motion), Keep::no);
     const S needed = (parameters_.engine.duct_stiffness * angle + torque_around(around, torque)) / geometry.arm;
@@ -374,8 +373,9 @@ class Axis : public AxisStates {
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
     const Surroundings<S> seen = around_state(state, state.y, state.clock.at(h_));
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
-      state.measured[channel] = pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
-                                                             Signal<S>{truth[channel], h_, state.clock.at(h_), S{0.0}, &seen});
+      state.measured[channel] =
+          pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
+                                       Signal<S>{truth[channel], h_, state.clock.at(h_), S{0.0}, &seen});
     }
   }
 

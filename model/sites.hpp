@@ -45,7 +45,7 @@ struct Signal {
   using Scalar = S;
   S value;  ///< mean over the step
   double h = 0.0;
-  Precise<S> time{0.0};                            ///< of the record, mean over the step [s]
+  Precise<S> time{0.0};                   ///< of the record, mean over the step [s]
   S change{0.0};                          ///< end of the step less its start; known at `valve_command` only
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
@@ -59,7 +59,7 @@ struct Hydraulics {
   S supply_pressure;
   double h = 0.0;
   Precise<S> time{0.0};  ///< of the record, mean over the step [s]
-  S flow{0.0};  ///< through the valve's orifices into the extend chamber, mean over the step [m^3/s]
+  S flow{0.0};           ///< through the valve's orifices into the extend chamber, mean over the step [m^3/s]
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
@@ -91,10 +91,10 @@ struct Motion {
   S free_velocity;
   S compliance;
   double h = 0.0;
-  Precise<S> time{0.0};         ///< of the record, mean over the step [s]
-  S other_angle{0.0};  ///< of the engine about its other axis, mean over the step [rad]; known at `engine_torque` only
-  S other_rate{0.0};   ///< its rate [rad/s]; both zero for an axis alone
-  S load{0.0};         ///< A p_L at `piston`, the load spring's force at `engine_torque`, mean over the step [N]
+  Precise<S> time{0.0};  ///< of the record, mean over the step [s]
+  S other_angle{0.0};    ///< of the engine about its other axis, mean over the step [rad]; known at `engine_torque` only
+  S other_rate{0.0};     ///< its rate [rad/s]; both zero for an axis alone
+  S load{0.0};           ///< A p_L at `piston`, the load spring's force at `engine_torque`, mean over the step [N]
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
@@ -111,7 +111,7 @@ struct Spring {
   S actuator_stiffness;  ///< K_act [N/m]
   S load_stiffness;      ///< K_L [N/m]
   double h = 0.0;
-  Precise<S> time{0.0};                            ///< of the record, mean over the step [s]
+  Precise<S> time{0.0};                   ///< of the record, mean over the step [s]
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 

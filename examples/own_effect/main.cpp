@@ -26,8 +26,8 @@ struct CommandFilter {
     int option = 0;
     S time_constant{0.0};  // neutral: no action
     static constexpr auto fields() {
-      return std::array{model::Field<Params>{"time_constant", "s", 0.0, 1.0, 5e-3, "time constant of the filter",
-                                             &Params::time_constant}};
+      return std::array{
+          model::Field<Params>{"time_constant", "s", 0.0, 1.0, 5e-3, "time constant of the filter", &Params::time_constant}};
     }
   };
 
@@ -67,8 +67,8 @@ double angle_after(double seconds, double time_constant) {
 
 int main() {
   for (const double time_constant : {0.0, 0.01, 0.05}) {
-    std::printf("filter %.2f s: engine at 0.03 s %.6f rad, at 2 s %.6f rad\n", time_constant, angle_after(0.03, time_constant),
-                angle_after(2.0, time_constant));
+    std::printf("filter %.2f s: engine at 0.03 s %.6f rad, at 2 s %.6f rad\n", time_constant,
+                angle_after(0.03, time_constant), angle_after(2.0, time_constant));
   }
   // The filter delays the engine and does not change where it comes to rest.
   const bool late = angle_after(0.03, 0.05) < angle_after(0.03, 0.0);

@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "tools/cli/commands.hpp"
-#include "tools/simulate/plant_image_text.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/whole_file.hpp"
+#include "tools/simulate/plant_image_text.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {

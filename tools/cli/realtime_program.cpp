@@ -11,10 +11,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "tools/simulate/vehicle_image_text.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/rig/fault_file.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/simulate/vehicle_image_text.hpp"
 
 namespace hotfire {
 

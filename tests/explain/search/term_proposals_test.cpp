@@ -69,7 +69,7 @@ TEST(TermProposals, AProductOfTwoQuantitiesOfTheAxisIsFoundAsOne) {
 
 TEST(TermProposals, AMemoryIsFoundWithItsTime) {
   const auto proposals = proposed_for(with_term<TorqueTerm>([](auto& term) {
-                                        term.option = static_cast<int>(Memory::delay);
+                                        term.option = static_cast<int>(Memory::lag);
                                         term.argument = static_cast<int>(Argument::command);
                                         term.gain = 4e5;
                                         term.time = 0.08;
@@ -78,10 +78,11 @@ TEST(TermProposals, AMemoryIsFoundWithItsTime) {
   CHECK(!proposals.empty());
   const Screened<SimplexFamily>& best = proposals.front();
   STRCMP_EQUAL(std::string(TorqueTerm::name).c_str(), best.candidate.name.c_str());
-  CHECK_EQUAL(static_cast<int>(Memory::delay), term_of<TorqueTerm>(best.fitted).option);
+  CHECK_EQUAL(static_cast<int>(Memory::lag), term_of<TorqueTerm>(best.fitted).option);
   CHECK_EQUAL(static_cast<int>(Argument::command), term_of<TorqueTerm>(best.fitted).argument);
-  // A comb of factors of 1.6, refined by 1.25, 1.12 and 1.06.
-  DOUBLES_EQUAL(0.08, term_of<TorqueTerm>(best.fitted).time, 0.06 * 0.08);
+  // A comb of factors of 2.6, refined by 1.25, 1.12 and 1.06 up or down: within half of the last step, or of the first where
+  // the comb lies just between.
+  DOUBLES_EQUAL(0.08, term_of<TorqueTerm>(best.fitted).time, 0.15 * 0.08);
 }
 
 TEST(TermProposals, NothingIsProposedWhereNothingIsMissing) { CHECK(proposed_for(declared(), about_declared()).empty()); }

@@ -7,8 +7,8 @@
 
 #include "firmware/image/plant_image.hpp"
 #include "model/keys.hpp"
-#include "tools/simulate/plant_image_text.hpp"
 #include "tools/files/model/model_file.hpp"
+#include "tools/simulate/plant_image_text.hpp"
 
 namespace hotfire {
 

@@ -13,9 +13,9 @@
 #include "tests/firmware/recording/recorded_lab.hpp"
 #include "tests/firmware/recording/recorded_run.hpp"
 #include "tests/firmware/recording/rewritten_recording.hpp"
-#include "tools/simulate/plant_image_text.hpp"
 #include "tools/files/record/record.hpp"
 #include "tools/files/record/recording.hpp"
+#include "tools/simulate/plant_image_text.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace hotfire {

@@ -13,9 +13,9 @@
 #include "hal/recording/reader.hpp"
 #include "tests/firmware/plant/whole_vehicle.hpp"
 #include "tests/support/allocation_guard.hpp"
-#include "tools/simulate/vehicle_image_text.hpp"
 #include "tools/files/record/recording.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
+#include "tools/simulate/vehicle_image_text.hpp"
 #include "tools/simulate/vehicle_readings.hpp"
 
 namespace hotfire {

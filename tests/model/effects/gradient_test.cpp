@@ -89,8 +89,9 @@ void check_column(const Rows& rows, int slot, int option, int which, const std::
     // The central difference itself errs by change^2 = 1e-8 of the curvature, and by the rounding of the run, 1e-12 of the
     // signal over 2e-4: 1e-4 of a column whose elasticity is 1e-4.
     if (!(std::sqrt(error) <= 1e-4 * std::sqrt(size) + 1e-8 * std::sqrt(signal))) {
-      FAIL(
-          (name + " (" + label<E>(option) + ") in channel " + std::to_string(channel) + ": off by " + std::to_string(std::sqrt(error / size))).c_str());
+      FAIL((name + " of option " + std::to_string(option) + " in channel " + std::to_string(channel) + ": off by " +
+            std::to_string(std::sqrt(error / size)))
+               .c_str());
     }
   }
 }
