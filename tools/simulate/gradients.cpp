@@ -66,6 +66,7 @@ std::vector<ChannelSlopes> differentiated(const typename Plant::Parameters& para
                                           std::span<const std::string> keys) {
   const int steps = model::steps_per_period<Plant>(parameters, inputs.period);
   std::vector<ChannelSlopes> channels;
+  channels.reserve(Plant::channels.size());
   for (const std::string_view name : Plant::channels) {
     channels.push_back({std::string(name), std::vector<double>(inputs.rows * keys.size())});
   }

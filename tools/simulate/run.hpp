@@ -58,8 +58,8 @@ bool run_under_torque(const Plant& plant, std::span<const double> input, std::sp
   return run_rows<Plant>(
       input.size(), state, steps,
       [&](std::size_t row, int k) {
-        const model::Coupling<S> around{S(0.0), arm, S(-disturbance(row, k))};
-        plant.step(state, S(input[row]), [&](const S&) { return around; });
+        const S torque_against = S(-disturbance(row, k));
+        plant.step(state, S(input[row]), [&](const S&) { return model::Coupling<S>{S(0.0), arm, torque_against}; });
       },
       sink);
 }

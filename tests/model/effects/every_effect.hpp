@@ -110,12 +110,14 @@ constexpr bool is_term() {
   return requires { E::is_term; };
 }
 
-/// True for a memory that loses information: its output jumps, and has no derivative by where it does.
+/// True for a memory that loses information: its output jumps, and has no derivative by where it does. A slew sets in at a
+/// step of the plant, which its limit moves to another.
 template <class E>
 bool jumps(int option) {
   if constexpr (is_term<E>()) {
     const auto kind = static_cast<model::Memory>(option);
-    return kind == model::Memory::hold || kind == model::Memory::quantise || kind == model::Memory::periodic;
+    return kind == model::Memory::hold || kind == model::Memory::quantise || kind == model::Memory::periodic ||
+           kind == model::Memory::slew;
   }
   return false;
 }

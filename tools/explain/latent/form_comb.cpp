@@ -57,6 +57,7 @@ double rate_of(const FormRegression& regression, const Form& form) {
 
 std::vector<double> comb(double low, double high, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     values.push_back(low * std::pow(high / low, static_cast<double>(i) / (count - 1)));
   }

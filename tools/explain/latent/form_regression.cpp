@@ -20,6 +20,36 @@ struct Normal {
   Eigen::VectorXd right;
 };
 
+/// Every form's regressors by experiment, side by side, each over its largest value: its coefficient is then what it adds
+/// there over the port's scale.
+struct Regressors {
+  std::vector<Eigen::MatrixXd> added;
+  Eigen::VectorXd largest;
+};
+
+Regressors scaled_regressors(std::span<const Form> forms, const std::vector<Eigen::MatrixXd>& quantities,
+                             const Dataset& data, Eigen::Index columns) {
+  Regressors all{{}, Eigen::VectorXd::Zero(columns)};
+  for (std::size_t e = 0; e < quantities.size(); ++e) {
+    Eigen::MatrixXd& added = all.added.emplace_back(quantities[e].rows(), columns);
+    Eigen::Index first = 0;
+    for (const Form& form : forms) {
+      added.middleCols(first, form.size()) = regressors(form, quantities[e], data.experiments[e].period);
+      first += form.size();
+    }
+    if (added.rows() > 0) {
+      all.largest = all.largest.cwiseMax(added.cwiseAbs().colwise().maxCoeff().transpose());
+    }
+  }
+  for (double& size : all.largest) {
+    size = size > 0.0 && std::isfinite(size) ? size : 1.0;
+  }
+  for (Eigen::MatrixXd& added : all.added) {
+    added.array().rowwise() /= all.largest.transpose().array();
+  }
+  return all;
+}
+
 }  // namespace
 
 FormRegression::FormRegression(const LatentProblem& problem, const LatentPlace& place, const LatentInput& input,
@@ -98,29 +128,11 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
     first.push_back(columns);
     columns += size;
   }
-  // Every regressor is scaled to its largest value, so that its coefficient is what it adds there over the port's scale.
-  std::vector<Eigen::MatrixXd> added;
-  Eigen::VectorXd largest = Eigen::VectorXd::Zero(columns);
-  for (std::size_t e = 0; e < quantities_.size(); ++e) {
-    added.emplace_back(quantities_[e].rows(), columns);
-    for (std::size_t f = 0; f < forms.size(); ++f) {
-      added.back().middleCols(first[f], forms[f].size()) =
-          regressors(forms[f], quantities_[e], problem_.data.experiments[e].period);
-    }
-    if (added.back().rows() > 0) {
-      largest = largest.cwiseMax(added.back().cwiseAbs().colwise().maxCoeff().transpose());
-    }
-  }
-  for (Eigen::Index k = 0; k < columns; ++k) {
-    if (!(largest(k) > 0.0) || !std::isfinite(largest(k))) {
-      largest(k) = 1.0;
-    }
-  }
+  const auto [added, largest] = scaled_regressors(forms, quantities_, problem_.data, columns);
   Eigen::Matrix<double, kFlowStates, Eigen::Dynamic> state(kFlowStates, columns);
   Eigen::Matrix<double, kFlowStates, Eigen::Dynamic> next(kFlowStates, columns);
   Eigen::RowVectorXd reading(columns);
   for (std::size_t e = 0; e < quantities_.size(); ++e) {
-    added[e].array().rowwise() /= largest.transpose().array();
     state.setZero();
     const Eigen::MatrixXd& left = problem_.left[e];
     for (Eigen::Index row = 0; row < left.rows(); ++row) {

@@ -73,7 +73,7 @@ std::vector<Screened<SimplexFamily>> by_simulation(const Evaluator<SimplexFamily
   std::ranges::stable_sort(proposals, {}, [](const auto& proposal) { return proposal.criterion; });
   // The best of every site first: which of them it is the fit decides.
   std::vector<std::string> sites;
-  std::ranges::stable_partition(proposals, [&](const auto& proposal) {
+  std::stable_partition(proposals.begin(), proposals.end(), [&](const auto& proposal) {
     const bool is_first = std::ranges::find(sites, proposal.candidate.site) == sites.end();
     if (is_first) {
       sites.push_back(proposal.candidate.site);
