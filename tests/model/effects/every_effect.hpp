@@ -111,13 +111,13 @@ constexpr bool is_term() {
 }
 
 /// True for a memory that loses information: its output jumps, and has no derivative by where it does. A slew sets in at a
-/// step of the plant, which its limit moves to another.
+/// step of the plant, which its limit moves to another, and a dead zone and a saturation have a corner.
 template <class E>
 bool jumps(int option) {
   if constexpr (is_term<E>()) {
     const auto kind = static_cast<model::Memory>(option);
     return kind == model::Memory::hold || kind == model::Memory::quantise || kind == model::Memory::periodic ||
-           kind == model::Memory::slew;
+           kind == model::Memory::dead_zone || kind == model::Memory::saturation || kind == model::Memory::slew;
   }
   return false;
 }
