@@ -17,6 +17,10 @@ inline model::Simplex<double>::Parameters reference_plant_with_every_effect() {
           for (const auto& field : values.fields()) {
             values.*field.member = field.typical;
           }
+          // A term of the grammar costs what it costs at any size, and its unit is that of its site and argument.
+          if constexpr (requires { values.direct; }) {
+            values.gain = values.direct = 0.0;
+          }
         };
         (set_typical(effect), ...);
       },
