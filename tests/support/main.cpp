@@ -1,3 +1,8 @@
 #include <CppUTest/CommandLineTestRunner.h>
+#include <CppUTest/MemoryLeakWarningPlugin.h>
 
-int main(int argc, char** argv) { return CommandLineTestRunner::RunAllTests(argc, argv); }
+int main(int argc, char** argv) {
+  // Tests allocate in several threads; the default book of allocations is not made for that.
+  MemoryLeakWarningPlugin::turnOnThreadSafeNewDeleteOverloads();
+  return CommandLineTestRunner::RunAllTests(argc, argv);
+}
