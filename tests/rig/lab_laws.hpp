@@ -35,8 +35,8 @@ struct LawsOfARecording {
 
 /// Checks every cycle of a recording of a lab by laws that are written apart from its logic: a state is followed by a state
 /// that it leads to; `armed` is entered in a cycle after the arm button was seen off and then on; nothing is driven in a
-/// cycle that was given a cause of a fault; commands are finite and below `highest_position` [m]. The last cycle drives
-/// nothing if the program ended by itself (`ended`).
+/// cycle that was given a cause of a fault; commands are finite and below `highest_position` [m]. If the
+/// program ended by itself (`ended`), the recording is closed and its last cycle drives nothing.
 LawsOfARecording laws_of(const std::string& path, double highest_position, bool ended);
 
 }  // namespace hotfire::test
