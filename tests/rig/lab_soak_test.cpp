@@ -122,11 +122,22 @@ TEST_GROUP(LabSoak) {
   }
 
   void start_plant() {
+    shell("rm -f /tmp/plant.hfr");
     plant = start(
         "hotfire-rt plant --image /tmp/plant.image --bus can0 --sync can --sync-patience-ms 200 --max-missed-syncs 1000000 "
-        "--period-us 10000 --warm-up 0 --record /tmp/plant.hfr --overwrite >/tmp/plant.out 2>&1");
+        "--period-us 10000 --warm-up 0 --record /tmp/plant.hfr >/tmp/plant.out 2>&1");
+    wait_until("the plant's recording", [] { return access("/tmp/plant.hfr", R_OK) == 0; });
     wait_until("the plant's socket for SYNC",
                [] { return std::system("grep -q '^ *can0 *080 ' /proc/net/can/rcvlist_sff") == 0; });
+  }
+
+  /// Every cycle is computed again to the same bits. After a cycle that a stalled disk has cost the state is not known, so a
+  /// replay ends there and says so.
+  static void replay(const std::string& recording, const std::string& output) {
+    shell("hotfire-rt replay " + recording +
+          " >/tmp/replay; grep -qE 'every recorded cycle has the same bits|which was dropped' /tmp/replay || { cat "
+          "/tmp/replay " +
+          output + "; false; }");
   }
 
   /// Ends the plant: what it recorded is computed again to the same bits.
@@ -135,7 +146,7 @@ TEST_GROUP(LabSoak) {
     kill(plant, signal);
     waitpid(plant, nullptr, 0);
     plant = -1;
-    shell("hotfire-rt replay /tmp/plant.hfr >/tmp/replay || { cat /tmp/replay /tmp/plant.out; false; }");
+    replay("/tmp/plant.hfr", "/tmp/plant.out");
     ++happened[signal == SIGKILL ? "plant killed" : "plant ended"];
   }
 
@@ -253,10 +264,7 @@ TEST_GROUP(LabSoak) {
   }
 
   void look_at_recording(bool ended) {
-    // After a cycle that the stalled disk cost, the logic's memory is not known, so a replay ends there and says so.
-    shell(std::string("hotfire-rt replay ") + kRecording +
-          " >/tmp/replay; grep -qE 'every recorded cycle has the same bits|which was dropped' /tmp/replay || "
-          "{ cat /tmp/replay /tmp/lab.out; false; }");
+    replay(kRecording, "/tmp/lab.out");
     const LawsOfARecording laws = laws_of(kRecording, kHighestPosition, ended);
     STRCMP_EQUAL("", laws.broken.c_str());
     cycles += laws.cycles;

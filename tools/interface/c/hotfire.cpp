@@ -1,4 +1,4 @@
-#include "interface/c/hotfire.h"
+#include "tools/interface/c/hotfire.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <span>
 
-#include "interface/c/model_handle.hpp"
-#include "interface/c/saved_state.hpp"
+#include "tools/interface/c/model_handle.hpp"
+#include "tools/interface/c/saved_state.hpp"
 
 using hotfire::plant::Plant;
 using hotfire::plant::Seed;

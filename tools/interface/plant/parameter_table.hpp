@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "interface/plant/variable.hpp"
 #include "model/key_text.hpp"
+#include "tools/interface/plant/variable.hpp"
 
 namespace hotfire::plant {
 

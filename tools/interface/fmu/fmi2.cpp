@@ -3,10 +3,10 @@
 #include <span>
 #include <string>
 
-#include "interface/fmu/export_names.hpp"
-#include "interface/fmu/fmi2_types.hpp"
-#include "interface/fmu/saved_block.hpp"
-#include "interface/fmu/slave.hpp"
+#include "tools/interface/fmu/export_names.hpp"
+#include "tools/interface/fmu/fmi2_types.hpp"
+#include "tools/interface/fmu/saved_block.hpp"
+#include "tools/interface/fmu/slave.hpp"
 
 // The functions of FMI 2.0 for co-simulation. What modelDescription.xml does not offer returns fmi2Error.
 

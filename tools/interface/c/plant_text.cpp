@@ -1,4 +1,4 @@
-#include "interface/c/plant_text.hpp"
+#include "tools/interface/c/plant_text.hpp"
 
 #include <cstdint>
 #include <cstdlib>
@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "firmware/image/plant_image.hpp"
-#include "interface/c/hotfire.h"
-#include "interface/c/model_handle.hpp"
+#include "tools/interface/c/hotfire.h"
+#include "tools/interface/c/model_handle.hpp"
 
 namespace hotfire::interface {
 

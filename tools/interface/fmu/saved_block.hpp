@@ -4,7 +4,7 @@
 #include <new>
 #include <vector>
 
-#include "interface/fmu/slave.hpp"
+#include "tools/interface/fmu/slave.hpp"
 
 namespace hotfire::fmu {
 

@@ -8,11 +8,11 @@
 #include <variant>
 #include <vector>
 
-#include "interface/plant/variable.hpp"
 #include "model/direct.hpp"
 #include "model/simplex.hpp"
 #include "model/vehicle.hpp"
 #include "model/vehicle_sensors.hpp"
+#include "tools/interface/plant/variable.hpp"
 
 namespace hotfire::plant {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "interface/plant/plant.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::interface {
 

@@ -1,4 +1,4 @@
-#include "interface/plant/plant.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 #include <array>
 #include <cstring>

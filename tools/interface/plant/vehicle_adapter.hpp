@@ -7,12 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "interface/plant/axis_adapters.hpp"
-#include "interface/plant/normal.hpp"
-#include "interface/plant/plant.hpp"
 #include "model/vehicle.hpp"
 #include "model/vehicle_keys.hpp"
 #include "model/vehicle_sensors.hpp"
+#include "tools/interface/plant/axis_adapters.hpp"
+#include "tools/interface/plant/normal.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::plant {
 

@@ -1,5 +1,5 @@
-#include "interface/plant/plant_of.hpp"
-#include "interface/plant/vehicle_adapter.hpp"
+#include "tools/interface/plant/plant_of.hpp"
+#include "tools/interface/plant/vehicle_adapter.hpp"
 
 namespace hotfire::plant {
 

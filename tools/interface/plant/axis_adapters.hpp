@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "interface/plant/plant.hpp"
 #include "model/key_text.hpp"
 #include "model/step_size.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::plant {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "hal/arithmetic/denormals.hpp"
-#include "interface/plant/copy_state.hpp"
-#include "interface/plant/parameter_table.hpp"
-#include "interface/plant/plant.hpp"
+#include "tools/interface/plant/copy_state.hpp"
+#include "tools/interface/plant/parameter_table.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::plant {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "interface/fmu/slave.hpp"
+#include "tools/interface/fmu/slave.hpp"
 
 namespace hotfire::fmu {
 

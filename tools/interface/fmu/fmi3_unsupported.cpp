@@ -1,7 +1,7 @@
 #include <cstddef>
 
-#include "interface/fmu/export_names.hpp"
-#include "interface/fmu/fmi3_types.hpp"
+#include "tools/interface/fmu/export_names.hpp"
+#include "tools/interface/fmu/fmi3_types.hpp"
 
 // The functions of FMI 3.0 for capabilities that the FMU does not have: variables of other types than Float64, clocks and
 // events, model exchange, scheduled execution. The standard wants them exported; they return fmi3Error and log why.

@@ -3,10 +3,10 @@
 #include <span>
 #include <string>
 
-#include "interface/fmu/export_names.hpp"
-#include "interface/fmu/fmi3_types.hpp"
-#include "interface/fmu/saved_block.hpp"
-#include "interface/fmu/slave.hpp"
+#include "tools/interface/fmu/export_names.hpp"
+#include "tools/interface/fmu/fmi3_types.hpp"
+#include "tools/interface/fmu/saved_block.hpp"
+#include "tools/interface/fmu/slave.hpp"
 
 // The functions of FMI 3.0 for co-simulation; fmi3_unsupported.cpp has those of the capabilities that the FMU does not have.
 

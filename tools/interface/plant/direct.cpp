@@ -1,5 +1,5 @@
-#include "interface/plant/axis_adapters.hpp"
-#include "interface/plant/plant_of.hpp"
+#include "tools/interface/plant/axis_adapters.hpp"
+#include "tools/interface/plant/plant_of.hpp"
 
 namespace hotfire::plant {
 

@@ -1,4 +1,4 @@
-#include "interface/fmu/slave.hpp"
+#include "tools/interface/fmu/slave.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "interface/c/model_handle.hpp"
+#include "tools/interface/c/model_handle.hpp"
 
 namespace hotfire::fmu {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "interface/c/hotfire.h"
-#include "interface/plant/plant.hpp"
+#include "tools/interface/c/hotfire.h"
+#include "tools/interface/plant/plant.hpp"
 
 /// What is behind the handle of the C interface.
 struct hotfire_model {  // NOLINT(readability-identifier-naming): the name is C

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "interface/plant/plant.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::interface {
 

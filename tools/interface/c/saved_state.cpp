@@ -1,4 +1,4 @@
-#include "interface/c/saved_state.hpp"
+#include "tools/interface/c/saved_state.hpp"
 
 #include <cstdint>
 #include <cstring>

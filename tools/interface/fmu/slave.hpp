@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "interface/c/hotfire.h"
+#include "tools/interface/c/hotfire.h"
 
 namespace hotfire::fmu {
 
