@@ -28,7 +28,7 @@ foreach(house IN LISTS houses)
     endforeach()
     string(APPEND rows "| `${house}/${room}/` | ${purpose_of_${house}/${room}} |\n")
   endforeach()
-  string(APPEND text "```\n\n| room | holds |\n|---|---|\n${rows}")
+  string(APPEND text "```\n\n| folder | contents |\n|---|---|\n${rows}")
 endforeach()
 string(APPEND text "\n${end}")
 
