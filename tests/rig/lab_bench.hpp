@@ -36,8 +36,8 @@ class SensorNode {
   SensorNode(const SensorNode&) = delete;
   SensorNode& operator=(const SensorNode&) = delete;
 
-  /// Hands a report of the controller to everyone on the bus, as a driver does.
-  void report_bus_off() const;
+  /// Hands a report of the controller to everyone on the bus, as a driver does. False if the bus is down.
+  bool report_bus_off() const;
   /// A command that the lab has not sent.
   void send_command() const;
 
