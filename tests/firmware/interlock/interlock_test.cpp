@@ -119,11 +119,12 @@ TEST(Interlock, NothingLeavesAFaultUntilAPersonArms) {
 TEST(Interlock, ArmingIsRefusedIfACauseWasPresentAtAnyTimeOfThePressAndNeedsAnother) {
   for (const RigState state : {RigState::safe, RigState::faulted}) {
     for (const FaultText& text : kFaults) {
-      for (int at = 0; at < 4; ++at) {
+      // From the last look at which the button is off to the one at which it is off again.
+      for (int at = 0; at < 5; ++at) {
         bring_to(state);
         bool refused = false;
-        for (int cycle = 0; cycle < 4; ++cycle) {
-          inputs.arm = cycle < 3;
+        for (int cycle = 0; cycle < 5; ++cycle) {
+          inputs.arm = cycle > 0 && cycle < 4;
           inputs.causes = cycle == at ? FaultSet(text.fault) : FaultSet();
           refused = refused || step().refused_press;
         }

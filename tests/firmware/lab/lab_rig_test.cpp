@@ -37,15 +37,32 @@ TEST(LabRig, LinesFollowTheInterlockAndNoCommandIsSentUntilArmed) {
 }
 
 TEST(LabRig, LinesThatCannotBeReadAreAStop) {
-  cycle();
+  cycles(2);
   press();
   board.set_broken(true);
   cycle();
   CHECK(lab.outputs().interlock.first == Fault::emergency_stop);
 }
 
-TEST(LabRig, CommandThatIsStillBeforeTheBusAtAFaultNeverLeaves) {
+TEST(LabRig, PressThatBeganWhileTheLinesCouldNotBeReadArmsNothing) {
+  cycles(2);
+  press();
+  CHECK(on(kSupply));
+  board.set_broken(true);
+  cycles(2);
+  drive(kArm, true);
   cycle();
+  board.set_broken(false);
+  cycles(3);
+  drive(kArm, false);
+  cycles(3);
+  CHECK(!on(kSupply));
+  press();
+  CHECK(on(kSupply));
+}
+
+TEST(LabRig, CommandThatIsStillBeforeTheBusAtAFaultNeverLeaves) {
+  cycles(2);
   press();
   wire.hold();
   cycle();
@@ -64,7 +81,7 @@ TEST(LabRig, CommandThatIsStillBeforeTheBusAtAFaultNeverLeaves) {
 }
 
 TEST(LabRig, EmergencyStopWhileTheBusIsDownAndBothReleasedLetsNoCommandOutUntilArmed) {
-  cycle();
+  cycles(2);
   press();
   wire.set_down(true);
   drive(kEmergencyStopReleased, false);
@@ -87,7 +104,7 @@ TEST(LabRig, CycleAfterTheFirstOneThatIsNotRecordedIsSafe) {
   const std::lock_guard stalled(disk.gate);
   Recorder recorder(disk, 1, 1, kSlots);
   rig.watch(&recorder);
-  cycle();
+  cycles(2);
   press();
   const std::array<double, 1> value{};
   while (!recorder.dropping()) {
@@ -102,7 +119,7 @@ TEST(LabRig, CycleAfterTheFirstOneThatIsNotRecordedIsSafe) {
 }
 
 TEST(LabRig, CycleTakesNothingFromTheHeap) {
-  cycle();
+  cycles(2);
   press();
   press();
   const test::AllocationGuard guard;
@@ -111,7 +128,7 @@ TEST(LabRig, CycleTakesNothingFromTheHeap) {
 }
 
 TEST(LabRig, StopThatComesAndGoesBetweenTwoCyclesIsAStop) {
-  cycle();
+  cycles(2);
   press();
   for (const LabInput line : {kEmergencyStopReleased, kHydraulicEnabled}) {
     press();
@@ -127,7 +144,7 @@ TEST(LabRig, StopThatComesAndGoesBetweenTwoCyclesIsAStop) {
 }
 
 TEST(LabRig, MoreEdgesThanTheKernelKeepsAreTakenForAStop) {
-  cycle();
+  cycles(2);
   press();
   CHECK(on(kSupply));
   // An even number, of a line that is no stop.
@@ -140,7 +157,7 @@ TEST(LabRig, MoreEdgesThanTheKernelKeepsAreTakenForAStop) {
 }
 
 TEST(LabRig, FaultWhileStoppingIsTheOneThatIsNamed) {
-  cycle();
+  cycles(2);
   press();
   press();
   piston = 0.0;
@@ -159,7 +176,7 @@ TEST(LabRig, FaultWhileStoppingIsTheOneThatIsNamed) {
 
 TEST(LabRig, EndOfItsCyclesStopsWhatRunsThroughTheInterlock) {
   rig.stop_after(20);
-  cycle();
+  cycles(2);
   press();
   press();
   for (int i = 0; i < 30 && lab.outputs().interlock.state == RigState::running; ++i) {
@@ -176,7 +193,7 @@ TEST(LabRig, EndOfItsCyclesStopsWhatRunsThroughTheInterlock) {
 }
 
 TEST(LabRig, LinesAreDroppedWhateverTheInterlockSays) {
-  cycle();
+  cycles(2);
   press();
   CHECK(on(kSupply));
   CHECK(rig.drop_lines());
@@ -186,7 +203,7 @@ TEST(LabRig, LinesAreDroppedWhateverTheInterlockSays) {
 }
 
 TEST(LabRig, TakeBackThatTheKernelRefusesIsAFaultThatIsHeldUntilItIsGranted) {
-  cycle();
+  cycles(2);
   press();
   wire.hold();
   wire.set_stop_refused(true);

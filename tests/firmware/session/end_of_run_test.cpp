@@ -18,7 +18,7 @@ TEST_GROUP(EndOfRun) {
 
 TEST(EndOfRun, LinesAreDroppedBeforeTheRecordingIsClosedWhichADiskMayHoldUp) {
   test_lab::LabOnWire bench(test_lab::settings());
-  bench.cycle();
+  bench.cycles(2);
   bench.press();
   CHECK(bench.on(kSupply));
   std::vector<std::string> order;
@@ -46,7 +46,7 @@ TEST(EndOfRun, TheLastCycleIsRecordedWithTheFaultThatEndedIt) {
     lab_recorder.record(head, {}, bench.rig.measured());
     ++head.cycle;
   };
-  bench.cycle();
+  bench.cycles(2);
   bench.press();
   bench.drive(kEmergencyStopReleased, false);
   bench.cycle();
