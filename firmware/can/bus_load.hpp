@@ -7,10 +7,10 @@
 
 namespace hotfire::firmware::can {
 
-/// Share of a bus that plant and controller take in the worst case: command, readings and SYNC once a period, status and
-/// heartbeat as the map says, and so the string potentiometers of a plant that has them. Rates in bit/s.
+/// Share of a bus that plant and controller take in the worst case: command, readings and SYNC once a period, load pressures
+/// too of a plant that sends them; status and heartbeat as the map says, and so the string potentiometers. Rates in bit/s.
 inline double bus_load(Layout layout, std::size_t actuators, std::int64_t period_ns, double bit_rate, double data_bit_rate,
-                       bool strings = false) noexcept {
+                       MoreReadings more = {}) noexcept {
   const double period = 1e-9 * static_cast<double>(period_ns);
   const auto longest = [&](const Message& message) {
     return message.fd ? hal::longest_fd_frame(message.length, bit_rate, data_bit_rate)
@@ -20,10 +20,11 @@ inline double bus_load(Layout layout, std::size_t actuators, std::int64_t period
   for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {
     load += longest(reading_message(layout, i)) / period;
   }
+  load += more.load_pressure ? longest(load_pressure_message(layout)) / period : 0.0;
   const auto add_report = [&](const Message& report) { load += longest(report) / (1e-3 * report.cycle_ms); };
   add_report(status::kMessage);
   add_report(heartbeat::kMessage);
-  for (std::size_t i = 0; strings && i < string_messages(layout); ++i) {
+  for (std::size_t i = 0; more.strings && i < string_messages(layout); ++i) {
     add_report(string_message(layout, i));
   }
   return load;

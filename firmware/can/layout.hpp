@@ -69,6 +69,17 @@ constexpr const Message& string_message(Layout layout, std::size_t which) noexce
   return is_fd(layout) ? strings_fd::kMessage : which == 0 ? strings_12::kMessage : strings_34::kMessage;
 }
 
+/// The message that carries the load pressures of all actuators, in the order of its values.
+constexpr const Message& load_pressure_message(Layout layout) noexcept {
+  return is_fd(layout) ? load_pressures_fd::kMessage : load_pressures::kMessage;
+}
+
+/// What a plant sends beside its pistons if it is asked to.
+struct MoreReadings {
+  bool strings = false;
+  bool load_pressure = false;
+};
+
 /// Where one of the two redundant readings of an actuator stands: the message, and its value there.
 struct PistonPlace {
   std::size_t message;
@@ -101,24 +112,30 @@ struct NodeIds {
 };
 
 /// Of a plant: subscription 0 is the command, 1 the heartbeat.
-inline NodeIds plant_ids(Layout layout, std::size_t actuators, bool strings = false) {
+inline NodeIds plant_ids(Layout layout, std::size_t actuators, MoreReadings more = {}) {
   NodeIds ids{{{id_of(command_message(layout)), command_message(layout).fd}, {id_of(heartbeat::kMessage)}},
               {id_of(status::kMessage)}};
   for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {
     ids.senders.push_back(id_of(reading_message(layout, i)));
   }
-  for (std::size_t i = 0; strings && i < string_messages(layout); ++i) {
+  for (std::size_t i = 0; more.strings && i < string_messages(layout); ++i) {
     ids.senders.push_back(id_of(string_message(layout, i)));
+  }
+  if (more.load_pressure) {
+    ids.senders.push_back(id_of(load_pressure_message(layout)));
   }
   return ids;
 }
 
-/// Of a controller: subscription i is reading message i.
-inline NodeIds controller_ids(Layout layout, std::size_t actuators) {
+/// Of a controller: subscription i is reading message i; the one behind them is the load pressures, if it takes them.
+inline NodeIds controller_ids(Layout layout, std::size_t actuators, bool load_pressure = false) {
   NodeIds ids{{}, {id_of(sync::kMessage), id_of(command_message(layout)), id_of(heartbeat::kMessage)}};
   for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {
     const Message& message = reading_message(layout, i);
     ids.subscriptions.push_back({id_of(message), message.fd});
+  }
+  if (load_pressure) {
+    ids.subscriptions.push_back({id_of(load_pressure_message(layout)), load_pressure_message(layout).fd});
   }
   return ids;
 }

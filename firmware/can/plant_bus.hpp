@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "firmware/can/layout.hpp"
 #include "firmware/can/message_follower.hpp"
@@ -25,19 +26,21 @@ struct PlantBusSettings {
   std::int64_t period_ns = 1'000'000;
   std::int64_t command_age_ns = std::numeric_limits<std::int64_t>::max();    ///< a command that is older counts as none
   std::int64_t heartbeat_age_ns = std::numeric_limits<std::int64_t>::max();  ///< of the controller's last sign of life
-  Authentication* authentication = nullptr;  ///< of commands and readings, if it is asked for
+  Authentication* authentication = nullptr;    ///< of commands and readings, if it is asked for
+  std::optional<std::size_t> load_pressure{};  ///< which value of an actuator that is [Pa]; none: it is not sent
 };
 
 /// The plant's side of a CAN bus (`hal::PlantBus`): takes the command of its layout, sends the readings of its actuators,
-/// the first value of each as both of its redundant ones, those of its string potentiometers if it has any, and its status.
+/// the first value of each as both of its redundant ones, its load pressures if it is asked to, those of its string
+/// potentiometers if it has any, and its status.
 /// `Bus` has the ids of `plant_ids`.
 ///
 /// A servovalve that nobody commands gets no current: when the newest command is older than its age limit, the plant is
 /// commanded zero, and the next frame is the first of a new series. The same when the controller's HEARTBEAT, once heard, is
 /// older than its limit though commands come, and for `kSecondSenderHoldNs` after a frame that a single controller does not
 /// send: of two it cannot know the right one. So too after a command that is not authentic. STATUS carries the number of
-/// that fault. What a played fault keeps from being sent is left out; in the FD layouts, whose frames are of all actuators,
-/// it is held, and the frame left out if none is left.
+/// that fault. What a played fault keeps from being sent is left out; in a frame of several actuators it is held, and the
+/// frame left out if none is left.
 template <hal::CanBus Bus, hal::Clock Clock>
 class PlantBus {
  public:
@@ -90,7 +93,8 @@ class PlantBus {
       status_.send(bus_, std::array{static_cast<double>(RigState::running), static_cast<double>(fault),
                                     static_cast<double>(overruns_ % kCounts), superseded});
     }
-    const bool taken = is_fd(settings_.layout) ? send_fd(reading) : send_classic(reading);
+    bool taken = is_fd(settings_.layout) ? send_fd(reading) : send_classic(reading);
+    taken = send_load_pressures(reading) && taken;
     if (reading.string_count > 0 && strings_.is_due()) {
       send_strings(reading);
     }
@@ -225,6 +229,19 @@ class PlantBus {
       taken = send_message(which, values, reading) && taken;
     }
     return taken;
+  }
+
+  /// True if there is nothing to send.
+  bool send_load_pressures(const hal::Reading& reading) noexcept {
+    std::array<double, hal::kMaxActuators> pressures{};
+    bool any = false;
+    for (std::size_t i = 0; settings_.load_pressure && i < settings_.actuators; ++i) {
+      const std::size_t place = i * settings_.channels + *settings_.load_pressure;
+      pressures[i] = reading.values[place];
+      any = any || !is_missing(reading, place);
+    }
+    const Message& message = load_pressure_message(settings_.layout);
+    return !any || send(message, std::span(pressures).first(message.signals.size()), reading.sequence);
   }
 
   void send_strings(const hal::Reading& reading) noexcept {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "firmware/interlock/faults.hpp"
@@ -18,7 +19,12 @@ struct ActuatorLimits {
   double lowest_position = 0.0;  ///< where the piston may be, and be sent
   double highest_position = 0.0;
   double speed = 0.0;  ///< measured over `speed_cycles` [m/s]
+  /// Of the pressure difference across the piston, either way [Pa]; infinite: it is not measured.
+  double load_pressure = std::numeric_limits<double>::infinity();
 };
+
+/// The highest limit of a load pressure [Pa], well within what a frame can say: what is beyond it is then seen.
+inline constexpr double kMostLoadPressure = 50e6;
 
 /// What a lab allows. A command is what the profile asks of a piston [m].
 struct FaultLimits {
@@ -35,13 +41,18 @@ struct FaultLimits {
   std::uint64_t speed_cycles = 1;      ///< over which a speed is measured; kMostSpeedCycles at most
   std::uint64_t read_back_cycles = 0;  ///< for which a line may read back other than it is commanded: contactors take time
   std::array<ActuatorLimits, hal::kMaxActuators> actuators{};
+
+  /// Whether load pressures are measured: of all actuators or of none.
+  bool has_load_pressure() const noexcept { return std::isfinite(actuators[0].load_pressure); }
 };
 
-/// One actuator in one cycle: what it is asked for, and its two redundant readings.
+/// One actuator in one cycle: what it is asked for, its two redundant readings, and its load pressure [Pa].
 struct ObservedActuator {
   double command = 0.0;
   std::array<double, 2> readings{};
   std::array<std::int64_t, 2> reading_ages_ns{};
+  double load_pressure = 0.0;  ///< 0, and never old, where it is not measured
+  std::int64_t load_pressure_age_ns = 0;
 };
 
 /// The rest of the rig in one cycle.
@@ -131,7 +142,8 @@ class FaultChecks {
 
   FaultSet look_at(const ObservedActuator& actuator, const ActuatorLimits& limits, Last& last) noexcept {
     const auto& [first, second] = actuator.readings;
-    if (!std::isfinite(first) || !std::isfinite(second) || !std::isfinite(actuator.command)) {
+    if (!std::isfinite(first) || !std::isfinite(second) || !std::isfinite(actuator.command) ||
+        !std::isfinite(actuator.load_pressure)) {
       last = {};
       return Fault::not_finite;
     }
@@ -142,6 +154,8 @@ class FaultChecks {
       found.add_if(!(actuator.reading_ages_ns[i] <= limits.reading_age_ns), Fault::stale_sensor);
       found.add_if(!within(reading, limits), Fault::limit);
     }
+    found.add_if(!(actuator.load_pressure_age_ns <= limits.reading_age_ns), Fault::stale_sensor);
+    found.add_if(!(std::abs(actuator.load_pressure) <= limits.load_pressure), Fault::load_pressure);
     found.add_if(!(std::abs(first - second) <= limits_.disagreement), Fault::readings_disagree);
     found.add_if(!within(actuator.command, limits), Fault::limit);
     const double rate = last.has_command ? std::abs(actuator.command - last.command) / period_ : 0.0;

@@ -36,6 +36,8 @@ struct LabInputs {
   ObservedRig rig;
   std::array<std::array<double, 2>, hal::kMaxActuators> readings{};  ///< [m]
   std::array<std::array<std::int64_t, 2>, hal::kMaxActuators> ages_ns{};
+  PerActuator load_pressures{};  ///< [Pa]; where the limits are of them, as their ages
+  std::array<std::int64_t, hal::kMaxActuators> load_pressure_ages_ns{};
   bool arm = false;          ///< what the lines of the buttons say
   bool arm_changed = false;  ///< since the cycle before
   bool start = false;
@@ -162,7 +164,8 @@ class Lab {
   FaultSet look(const LabInputs& inputs) noexcept {
     std::array<ObservedActuator, hal::kMaxActuators> actuators{};
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
-      actuators[i] = {settings_.piston_per_command * outputs_.commands[i], inputs.readings[i], inputs.ages_ns[i]};
+      actuators[i] = {settings_.piston_per_command * outputs_.commands[i], inputs.readings[i], inputs.ages_ns[i],
+                      inputs.load_pressures[i], inputs.load_pressure_ages_ns[i]};
     }
     return checks_.look(inputs.rig, std::span(actuators).first(settings_.actuators));
   }

@@ -65,8 +65,9 @@ void read_each(Entries& entries, const char* key, double lower, double upper, st
 }
 
 void read_actuator_limits(Entries& entries, FaultLimits& limits, std::size_t actuators) {
-  const auto read = [&](const char* key, double lower, const char* unit, double ActuatorLimits::*limit) {
-    read_each(entries, key, lower, kLargest, unit, actuators,
+  const auto read = [&](const char* key, double lower, const char* unit, double ActuatorLimits::*limit,
+                        double upper = kLargest) {
+    read_each(entries, key, lower, upper, unit, actuators,
               [&](std::size_t i, double value) { limits.actuators[i].*limit = value; });
   };
   read_each(entries, "limits.reading_age", 0.0, 600.0, "s", actuators, [&](std::size_t i, double value) {
@@ -75,6 +76,9 @@ void read_actuator_limits(Entries& entries, FaultLimits& limits, std::size_t act
   read("limits.lowest_position", -kLargest, "m", &ActuatorLimits::lowest_position);
   read("limits.highest_position", -kLargest, "m", &ActuatorLimits::highest_position);
   read("limits.speed", kSmallest, "m/s", &ActuatorLimits::speed);
+  if (entries.has("limits.load_pressure")) {
+    read("limits.load_pressure", kSmallest, "Pa", &ActuatorLimits::load_pressure, kMostLoadPressure);
+  }
   for (std::size_t i = 0; i < actuators; ++i) {
     if (limits.actuators[i].lowest_position > limits.actuators[i].highest_position) {
       entries.refuse(text("limits.lowest_position of actuator %zu is above its highest_position", i + 1));

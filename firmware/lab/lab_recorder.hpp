@@ -6,23 +6,52 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "firmware/lab/lab.hpp"
 #include "firmware/recording/recorder.hpp"
 #include "hal/recording/format.hpp"
+#include "hal/recording/reader.hpp"
 
 namespace hotfire::firmware {
 
 /// What a recording keeps of each actuator of a lab. `piston` is where it was at the end of the cycle, as in the recording
 /// of a plant; the others are of the cycle itself: the current for its servovalve, sent if anything was driven, then what
-/// the cycle was decided on: the two readings as they had come, and the age of each.
-enum LabChannel : std::uint8_t { kPiston, kServovalveCurrent, kPistonA, kPistonB, kPistonAgeA, kPistonAgeB };
+/// the cycle was decided on: the two readings as they had come, and the age of each. A lab that measures load pressures
+/// keeps three more: `load_pressure` at the end of the cycle, then what the cycle was decided on, and its age.
+enum LabChannel : std::uint8_t {
+  kPiston,
+  kServovalveCurrent,
+  kPistonA,
+  kPistonB,
+  kPistonAgeA,
+  kPistonAgeB,
+  kLoadPressure,
+  kLoadPressureRead,
+  kLoadPressureAge
+};
 inline const std::array<hal::RecordedChannel, 6> kLabChannels{{{"piston", "m"},
                                                                {"servovalve_current", "A"},
                                                                {"piston_a", "m"},
                                                                {"piston_b", "m"},
                                                                {"piston_age_a", "s"},
                                                                {"piston_age_b", "s"}}};
+inline const std::array<hal::RecordedChannel, 3> kLoadPressureChannels{
+    {{"load_pressure", "Pa"}, {"load_pressure_read", "Pa"}, {"load_pressure_age", "s"}}};
+inline constexpr std::size_t kMostLabChannels = kLoadPressureAge + 1;
+static_assert(kMostLabChannels <= hal::kMostRecordedChannels);
+
+constexpr std::size_t lab_channel_count(bool has_load_pressure) noexcept {
+  return has_load_pressure ? kMostLabChannels : std::size_t{kLoadPressure};
+}
+
+inline std::vector<hal::RecordedChannel> lab_channels(bool has_load_pressure) {
+  std::vector<hal::RecordedChannel> channels(kLabChannels.begin(), kLabChannels.end());
+  if (has_load_pressure) {
+    channels.insert(channels.end(), kLoadPressureChannels.begin(), kLoadPressureChannels.end());
+  }
+  return channels;
+}
 
 /// What a lab has seen that is a yes or no, from bit `kInputsShift` of the flags of a cycle on, in this order.
 inline constexpr auto kSeenBits = std::to_array<bool ObservedRig::*>(
@@ -39,9 +68,9 @@ static_assert(hal::CycleHead::kInputsShift + kSeenBits.size() + kSwitchBits.size
 static_assert(kBusShift + kBusBits.size() <= hal::CycleHead::kSkippedShift);
 
 /// Everything `Lab::step` is given in a cycle, taken out of its recording bit for bit.
-inline LabInputs recorded_inputs(const hal::CycleHead& head, std::span<const double> readings) noexcept {
+inline LabInputs recorded_inputs(const hal::RecordedCycle& cycle) noexcept {
   LabInputs inputs;
-  std::uint64_t bits = head.flags >> hal::CycleHead::kInputsShift;
+  std::uint64_t bits = cycle.head.flags >> hal::CycleHead::kInputsShift;
   const auto next = [&bits] {
     const bool on = (bits & 1U) != 0;
     bits >>= 1U;
@@ -53,15 +82,21 @@ inline LabInputs recorded_inputs(const hal::CycleHead& head, std::span<const dou
   for (bool LabInputs::*pressed : kSwitchBits) {
     inputs.*pressed = next();
   }
-  bits = head.flags >> kBusShift;
+  bits = cycle.head.flags >> kBusShift;
   for (bool ObservedRig::*seen : kBusBits) {
     inputs.rig.*seen = next();
   }
-  inputs.rig.command_age_ns = static_cast<std::int64_t>(head.command_sequence);
-  for (std::size_t i = 0; i < readings.size() / kLabChannels.size(); ++i) {
-    const std::span<const double> own = readings.subspan(i * kLabChannels.size(), kLabChannels.size());
+  inputs.rig.command_age_ns = static_cast<std::int64_t>(cycle.head.command_sequence);
+  const auto age_ns = [](double age) { return std::llround(age * 1e9); };
+  const std::size_t channels = cycle.readings.size() / cycle.commands.size();
+  for (std::size_t i = 0; i < cycle.commands.size(); ++i) {
+    const std::span<const double> own = cycle.readings.subspan(i * channels, channels);
     inputs.readings[i] = {own[kPistonA], own[kPistonB]};
-    inputs.ages_ns[i] = {std::llround(own[kPistonAgeA] * 1e9), std::llround(own[kPistonAgeB] * 1e9)};
+    inputs.ages_ns[i] = {age_ns(own[kPistonAgeA]), age_ns(own[kPistonAgeB])};
+    if (channels == kMostLabChannels) {
+      inputs.load_pressures[i] = own[kLoadPressureRead];
+      inputs.load_pressure_ages_ns[i] = age_ns(own[kLoadPressureAge]);
+    }
   }
   return inputs;
 }
@@ -70,30 +105,34 @@ inline LabInputs recorded_inputs(const hal::CycleHead& head, std::span<const dou
 template <class Rig>
 class LabRecorder {
  public:
-  LabRecorder(Recorder& recorder, const Rig& rig) noexcept : recorder_(recorder), rig_(rig) {}
+  LabRecorder(Recorder& recorder, const Rig& rig) noexcept
+      : recorder_(recorder), rig_(rig), channels_(lab_channel_count(rig.lab().limits().has_load_pressure())) {}
 
   /// Keeps the cycle, and hands on the one before it, whose end this one has seen.
   void record(const hal::CycleHead& head, std::span<const double>, std::span<const double> commands) noexcept {
     finish();
     const std::size_t actuators = commands.size();
-    const std::span<double> readings = std::span(readings_).first(actuators * kLabChannels.size());
     begun_ = true;
     head_ = head;
     head_.flags |= state_bits() | input_bits();
     head_.command_sequence = static_cast<std::uint64_t>(rig_.inputs().rig.command_age_ns);
     std::copy(commands.begin(), commands.end(), commands_.begin());
     for (std::size_t i = 0; i < actuators; ++i) {
-      const std::span<double> own = readings.subspan(i * kLabChannels.size(), kLabChannels.size());
+      const std::span<double> own = own_of(i);
       own[kServovalveCurrent] = rig_.lab().outputs().currents[i];
       own[kPistonA] = rig_.inputs().readings[i][0];
       own[kPistonB] = rig_.inputs().readings[i][1];
       own[kPistonAgeA] = static_cast<double>(rig_.inputs().ages_ns[i][0]) * 1e-9;
       own[kPistonAgeB] = static_cast<double>(rig_.inputs().ages_ns[i][1]) * 1e-9;
+      if (has_load_pressure()) {
+        own[kLoadPressureRead] = rig_.inputs().load_pressures[i];
+        own[kLoadPressureAge] = static_cast<double>(rig_.inputs().load_pressure_ages_ns[i]) * 1e-9;
+      }
     }
   }
 
-  /// Hands on the cycle that is kept, with where the pistons are now: at the end of the loop, where none sees its end, that
-  /// is what it had itself read.
+  /// Hands on the cycle that is kept, with where the pistons are now and their load pressures: at the end of the loop, where
+  /// none sees its end, that is what it had itself read.
   void finish() noexcept {
     if (!begun_) {
       return;
@@ -101,13 +140,21 @@ class LabRecorder {
     begun_ = false;
     const std::size_t actuators = rig_.lab().actuators();
     for (std::size_t i = 0; i < actuators; ++i) {
-      readings_[i * kLabChannels.size() + kPiston] = rig_.lab().positions()[i];
+      own_of(i)[kPiston] = rig_.lab().positions()[i];
+      if (has_load_pressure()) {
+        own_of(i)[kLoadPressure] = rig_.inputs().load_pressures[i];
+      }
     }
-    recorder_.record(head_, std::span(commands_).first(actuators),
-                     std::span(readings_).first(actuators * kLabChannels.size()));
+    recorder_.record(head_, std::span(commands_).first(actuators), std::span(readings_).first(actuators * channels_));
   }
 
  private:
+  bool has_load_pressure() const noexcept { return channels_ == kMostLabChannels; }
+  /// What is kept of an actuator.
+  std::span<double> own_of(std::size_t actuator) noexcept {
+    return std::span(readings_).subspan(actuator * channels_, channels_);
+  }
+
   std::uint64_t state_bits() const noexcept {
     const InterlockOutputs& interlock = rig_.lab().outputs().interlock;
     return hal::CycleHead::lab_flags(static_cast<std::uint64_t>(interlock.state),
@@ -132,10 +179,11 @@ class LabRecorder {
 
   Recorder& recorder_;
   const Rig& rig_;
+  std::size_t channels_;  ///< of an actuator
   bool begun_ = false;
   hal::CycleHead head_;
   PerActuator commands_{};
-  std::array<double, hal::kMaxActuators * kLabChannels.size()> readings_{};
+  std::array<double, hal::kMaxActuators * kMostLabChannels> readings_{};
 };
 
 }  // namespace hotfire::firmware

@@ -24,7 +24,7 @@ namespace hotfire::firmware {
 
 /// A lab on its bus and lines. For the loop it is plant and bus in one: a cycle reads the bus and the lines, looks for
 /// faults, sets the lines, and then sends the currents of that cycle if anything may be driven. `Can` has the ids of
-/// `can::controller_ids`.
+/// `can::controller_ids`, with load pressures if the lab has a limit of them.
 ///
 /// Every frame of a cycle is checked, not only the newest: one that is damaged, lost, dropped by the kernel or of another
 /// format is a bad frame; a counter twice or of the past, more frames than are due, or a frame under an id of the lab's own
@@ -49,13 +49,14 @@ class LabRig {
         wiring_(wiring),
         clock_(clock),
         layout_(layout),
-        messages_(can::reading_messages(layout, lab.actuators())),
-        echo_(messages_),
+        piston_messages_(can::reading_messages(layout, lab.actuators())),
+        messages_(piston_messages_ + (lab.limits().has_load_pressure() ? 1 : 0)),
+        echo_(piston_messages_),
         sync_(can::sync::kMessage, period_ns),
         heartbeat_(can::heartbeat::kMessage, period_ns),
         take_back_every_(std::max<std::int64_t>(1, kTakeBackEveryNs / period_ns)) {
     for (std::size_t i = 0; i < messages_; ++i) {
-      budgets_[i] = {can::reading_message(layout, i), period_ns};
+      budgets_[i] = {message(i), period_ns};
     }
   }
 
@@ -144,11 +145,16 @@ class LabRig {
   const Lab& lab() const noexcept { return lab_; }
   /// What the lab has seen in this cycle.
   const LabInputs& inputs() const noexcept { return inputs_; }
-  const can::MessageCounters& readings(std::size_t message) const noexcept { return followers_[message].counters(); }
+  /// Messages that it listens to: those of the pistons, then the load pressures.
+  std::size_t messages() const noexcept { return messages_; }
+  const can::Message& message(std::size_t which) const noexcept {
+    return which < piston_messages_ ? can::reading_message(layout_, which) : can::load_pressure_message(layout_);
+  }
+  const can::MessageCounters& readings(std::size_t which) const noexcept { return followers_[which].counters(); }
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
  private:
-  static constexpr std::size_t kMostMessages = can::kMostReadingMessages;
+  static constexpr std::size_t kMostMessages = can::kMostReadingMessages + 1;
   static constexpr double kNode = 1.0;
   /// A driver that confirms a frame a little late is no fault; one that does so twice in a row is.
   static constexpr unsigned kMostNotTaken = 2;
@@ -172,10 +178,10 @@ class LabRig {
     std::array<bool, kMostMessages> taken{};
     bool all = true;
     for (std::size_t i = 0; i < messages_; ++i) {
-      const auto arrived_ns = followers_[i].take_newest(can::reading_message(layout_, i), can_.arrivals(), i, values[i]);
+      const auto arrived_ns = followers_[i].take_newest(message(i), can_.arrivals(), i, values[i]);
       taken[i] = arrived_ns.has_value();
       arrived_ns_[i] = arrived_ns.value_or(arrived_ns_[i]);
-      if (taken[i] && can::has_echo(layout_)) {
+      if (i < piston_messages_ && taken[i] && can::has_echo(layout_)) {
         echo_.note_echo(i, static_cast<std::uint8_t>(values[i][can::kEchoPlace]));
       }
       const auto came = std::count_if(can_.arrivals().begin(), can_.arrivals().end(),
@@ -190,10 +196,19 @@ class LabRig {
         if (taken[place.message]) {
           inputs_.readings[i][reading] = values[place.message][place.value];
         }
-        inputs_.ages_ns[i][reading] = arrived_ns_[place.message] == 0 ? kNever : now - arrived_ns_[place.message];
+        inputs_.ages_ns[i][reading] = age_ns(place.message, now);
+      }
+      if (messages_ > piston_messages_) {
+        inputs_.load_pressures[i] = taken[piston_messages_] ? values[piston_messages_][i] : inputs_.load_pressures[i];
+        inputs_.load_pressure_ages_ns[i] = age_ns(piston_messages_, now);
       }
     }
     return all;
+  }
+
+  /// Of the newest frame of a message.
+  std::int64_t age_ns(std::size_t which, std::int64_t now) const noexcept {
+    return arrived_ns_[which] == 0 ? kNever : now - arrived_ns_[which];
   }
 
   void judge_frames() noexcept {
@@ -320,6 +335,9 @@ class LabRig {
   }
 
   static constexpr std::int64_t kNever = std::int64_t{1} << 62;
+  /// Half as much again as any limit, so that a frame says that it is exceeded, and by how much.
+  static_assert(can::load_pressures::kSignals[0].factor * can::load_pressures::kSignals[0].highest_raw >=
+                1.5 * kMostLoadPressure);
 
   Lab& lab_;
   Can& can_;
@@ -327,6 +345,7 @@ class LabRig {
   LabGpio wiring_;
   Clock& clock_;
   can::Layout layout_;
+  std::size_t piston_messages_;
   std::size_t messages_;
   can::CommandEcho echo_;
   can::PeriodicFrame sync_;

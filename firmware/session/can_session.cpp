@@ -57,7 +57,7 @@ std::optional<hal::Failure> CanSession::refuse_load() {
   }
   rates.data = rates.data > 0.0 ? rates.data : rates.nominal;
   load_ = can::bus_load(options_.frame_layout(), options_.actuators, options_.loop.period_ns, rates.nominal, rates.data,
-                        options_.strings);
+                        {options_.strings, options_.load_pressure});
   if (*load_ <= hal::kLargestBusLoad) {
     return std::nullopt;
   }

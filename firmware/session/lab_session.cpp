@@ -25,8 +25,8 @@ RecordedPlant recorded(const Lab& lab, const std::string& image) {
   RecordedPlant plant;
   plant.topology = kLabTopology;
   plant.input = {"command", "rad"};
-  plant.channels.assign(kLabChannels.begin(), kLabChannels.end());
-  plant.start.assign(lab.actuators() * kLabChannels.size(), 0.0);
+  plant.channels = lab_channels(lab.limits().has_load_pressure());
+  plant.start.assign(lab.actuators() * plant.channels.size(), 0.0);
   plant.image = image;
   return plant;
 }
@@ -58,10 +58,10 @@ std::optional<hal::Failure> refuse_rehearsal(const Options& options) {
                       "a vcan, or leave --rehearsal out: what moves real actuators is no rehearsal"};
 }
 
-BusAccount account_of(const CanSession& can_session, const Rig& rig, can::Layout layout, std::size_t messages) {
+BusAccount account_of(const CanSession& can_session, const Rig& rig) {
   BusAccount account = can_session.account();
-  for (std::size_t i = 0; i < messages; ++i) {
-    account.messages.push_back({can::reading_message(layout, i).name, rig.readings(i)});
+  for (std::size_t i = 0; i < rig.messages(); ++i) {
+    account.messages.push_back({rig.message(i).name, rig.readings(i)});
   }
   account.unsayable = rig.unsayable();
   return account;
@@ -83,6 +83,7 @@ int run_lab(const Options& given) {
   }
   Options options = given;
   options.actuators = image.settings->actuators;
+  options.load_pressure = image.settings->limits.has_load_pressure();
   options.require_realtime = given.require_realtime || !given.rehearsal;
   // The lab counts them itself, so that its interlock stops what is driven.
   const std::uint64_t cycles = std::exchange(options.loop.cycles, 0);
@@ -95,7 +96,7 @@ int run_lab(const Options& given) {
               "--layout fd, or fd-split"});
     return kWrongUse;
   }
-  CanSession can_session(options, can::controller_ids(layout, options.actuators));
+  CanSession can_session(options, can::controller_ids(layout, options.actuators, options.load_pressure));
   if (const int status = can_session.open(); status != kGood) {
     return status;
   }
@@ -140,7 +141,7 @@ int run_lab(const Options& given) {
   bool left_the_bus = false;
   RunEnd end = end_with(recording.get(), [&](Session& result) {
     result.lab = account_of(lab, left_the_bus);
-    result.bus = account_of(can_session, rig, layout, can::reading_messages(layout, options.actuators));
+    result.bus = account_of(can_session, rig);
   });
   end.make_safe = [&] {
     if (!rig.drop_lines()) {

@@ -145,6 +145,9 @@ constexpr OptionLine kLines[] = {
      "plant on a CAN bus: string potentiometers too, four an engine, whose pitch and yaw are actuators\n"
      "1 and 2, 3 and 4 and so on",
      [](const std::string&, Options& o) { return o.strings = true, std::string(); }},
+    {"--load-pressure", "",
+     "plant on a CAN bus: the pressure difference across every piston too, for a lab whose profile limits it",
+     [](const std::string&, Options& o) { return o.load_pressure = true, std::string(); }},
     {"--sync", "S", "what gives the cycles: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)",
      [](const std::string& value, Options& o) { return read_name(value, kPaceKinds, o.pace); }},
     {"--max-missed-syncs", "N", "end after more than N in a row; default 10",

@@ -148,6 +148,10 @@ std::string conflict_in(const Options& options) {
   if (options.strings && (options.mode != Mode::plant || !options.on_can())) {
     return "--strings is of a plant on a CAN bus: plant --bus can0";
   }
+  if (options.load_pressure && (options.mode != Mode::plant || !options.on_can())) {
+    return "--load-pressure is of a plant on a CAN bus: plant --bus can0; a lab takes load pressures if its profile has "
+           "limits.load_pressure";
+  }
   if (options.pace == PaceKind::can && !options.on_can()) {
     return "--sync can needs the CAN bus that SYNC is on: --bus can0";
   }

@@ -36,6 +36,7 @@ struct Options {
   std::size_t actuators = 1;
   bool actuators_given = false;  ///< else a vehicle says how many there are
   bool strings = false;          ///< of a plant on a CAN bus: string potentiometers too
+  bool load_pressure = false;    ///< of a plant on a CAN bus: it sends them; of a lab: it takes them, as its profile says
   LoopSettings loop;
   PaceKind pace = PaceKind::clock;
   std::uint64_t most_missed_syncs = 10;    ///< in a row

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "firmware/can/plant_bus.hpp"
@@ -23,6 +24,14 @@ using CanPlantBus = can::PlantBus<hal::SocketCan, Clock>;
 /// [s]
 double period_of(const Options& options) { return static_cast<double>(options.loop.period_ns) * 1e-9; }
 
+/// Which value of an actuator its load pressure is; none if the plant has none.
+template <class Plant>
+constexpr std::optional<std::size_t> load_pressure_of() {
+  const auto found = std::find(Plant::channels.begin(), Plant::channels.end(), "load_pressure");
+  return found == Plant::channels.end() ? std::nullopt
+                                        : std::optional(static_cast<std::size_t>(found - Plant::channels.begin()));
+}
+
 /// A plant between its bus and its recording.
 template <class Plant>
 class PlantSession {
@@ -36,7 +45,8 @@ class PlantSession {
   }
 
   int run_on_can() {
-    CanSession session(options_, can::plant_ids(options_.frame_layout(), options_.actuators, options_.strings));
+    CanSession session(
+        options_, can::plant_ids(options_.frame_layout(), options_.actuators, {options_.strings, options_.load_pressure}));
     if (const int status = session.open(); status != kGood) {
       return status;
     }
@@ -46,7 +56,8 @@ class PlantSession {
     CanPlantBus wire(session.socket(), clock_,
                      {options_.frame_layout(), options_.actuators, Plant::channels.size(), options_.command_per_current,
                       options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6),
-                      static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6), session.authentication()});
+                      static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6), session.authentication(),
+                      options_.load_pressure ? load_pressure_of<Plant>() : std::nullopt});
     const Complete complete = [&](Session& result) {
       BusAccount account = session.account();
       account.messages = {{can::command_message(options_.frame_layout()).name, wire.commands()},
@@ -140,8 +151,11 @@ std::optional<hal::Failure> refuse_options(const Options& options, const PlantIm
                         "leave --layout out"};
   }
   if (options.on_can() && std::holds_alternative<model::Direct<double>::Parameters>(*image.parameters)) {
-    return hal::Failure{"a model of topology direct has no servovalve that a CAN bus could command",
-                        "a model of topology simplex, taos or masv, or --bus sim"};
+    return options.load_pressure
+               ? hal::Failure{"--load-pressure: a model of topology direct has no load pressure, nor a servovalve",
+                              "a model of topology simplex, taos or masv"}
+               : hal::Failure{"a model of topology direct has no servovalve that a CAN bus could command",
+                              "a model of topology simplex, taos or masv, or --bus sim"};
   }
   return std::nullopt;
 }

@@ -52,7 +52,7 @@ struct CycleHead {
 static_assert(sizeof(CycleHead) == 72);
 
 /// Values of one actuator that a recording has room for, beside its command.
-inline constexpr std::size_t kMostRecordedChannels = 8;
+inline constexpr std::size_t kMostRecordedChannels = 9;
 
 constexpr std::size_t cycle_bytes(std::size_t actuators, std::size_t readings) noexcept {
   return sizeof(CycleHead) + sizeof(double) * (actuators + readings);

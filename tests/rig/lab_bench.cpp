@@ -135,6 +135,10 @@ void SensorNode::answer() {
     can::encode(can::piston_1::kMessage, std::array{0.0, 0.0}, counter_, frame);
     send(frame);
   }
+  if (sends_load_pressure) {
+    can::encode(can::load_pressures::kMessage, std::array{load_pressure.load(), 0.0}, counter_, frame);
+    send(frame);
+  }
   ++counter_;
 }
 

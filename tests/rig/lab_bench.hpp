@@ -25,8 +25,8 @@ void bank_down();
 void wait_until(const std::string& what, const std::function<bool()>& is_so);
 
 /// What is on the bus beside the lab: an actuator that goes where it is told, with its two potentiometers, which answer
-/// SYNC; it keeps count of the commands, and can be made to go wrong: `doubled` is a second node that says after every
-/// reading, with its counter, that the piston stands at 0.
+/// SYNC, and with its load pressure if it is told to; it keeps count of the commands, and can be made to go wrong: `doubled`
+/// is a second node that says after every reading, with its counter, that the piston stands at 0.
 class SensorNode {
  public:
   enum class Mode : std::uint8_t { good, silent, damaged, jammed, doubled };
@@ -44,6 +44,8 @@ class SensorNode {
   std::atomic<Mode> mode{Mode::good};
   std::atomic<double> offset{0.0};         ///< of both readings [m]
   std::atomic<double> second_offset{0.0};  ///< of the second one
+  std::atomic<bool> sends_load_pressure{false};
+  std::atomic<double> load_pressure{0.0};  ///< [Pa]
   std::atomic<std::uint64_t> commands{0};
   std::atomic<std::uint64_t> heartbeats{0};
   std::atomic<std::uint64_t> commands_when_not_driving{0};  ///< that came after a heartbeat which said safe or faulted

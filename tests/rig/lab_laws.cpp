@@ -42,7 +42,7 @@ LawsOfARecording laws_of(const std::string& path, double highest_position, bool 
     ++result.cycles;
     dropped += cycle.dropped_before;
     const auto state = static_cast<RigState>((cycle.head.flags >> Head::kStateShift) & 0xff);
-    const firmware::LabInputs inputs = firmware::recorded_inputs(cycle.head, cycle.readings);
+    const firmware::LabInputs inputs = firmware::recorded_inputs(cycle);
     const bool follows = cycle.dropped_before == 0;
     expect(!follows || may_follow(before, state), "a state that the one before does not lead to");
     if (!follows) {

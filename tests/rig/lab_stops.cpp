@@ -30,7 +30,7 @@ bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
     case Fault::stale_command:
       return in.rig.command_age_ns > age_limit_ns;
     case Fault::stale_sensor:
-      return std::max(in.ages_ns[0][0], in.ages_ns[0][1]) > age_limit_ns;
+      return std::max({in.ages_ns[0][0], in.ages_ns[0][1], in.load_pressure_ages_ns[0]}) > age_limit_ns;
     case Fault::out_of_range:
       return std::abs(first) > 0.15;
     case Fault::readings_disagree:
@@ -67,6 +67,8 @@ bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
       return in.rig.supply_reads_other;
     case Fault::fault_read_back:
       return in.rig.fault_line_reads_other;
+    case Fault::load_pressure:
+      return std::abs(in.load_pressures[0]) > 2e7;
     case Fault::speed:           // is of many cycles
     case Fault::not_finite:      // is never handed on
     case Fault::heartbeat_lost:  // is a plant's
@@ -92,7 +94,7 @@ LabRecord read_lab_record(const std::string& path, const LabLimits& limits) {
   while (reader.next(cycle)) {
     ++run;
     const auto state = static_cast<RigState>((cycle.head.flags >> Head::kStateShift) & 0xff);
-    const LabInputs inputs = firmware::recorded_inputs(cycle.head, cycle.readings);
+    const LabInputs inputs = firmware::recorded_inputs(cycle);
     const bool drives = state != RigState::safe && state != RigState::faulted;
     if (drives || !now.drove.empty()) {
       for (const firmware::FaultText& text : firmware::kFaults) {

@@ -318,6 +318,26 @@ TEST(LabEnds, StopPulseThatIsShorterThanAPeriodIsAStop) {
   STRCMP_CONTAINS("interlock: fault 9, emergency stop", lab->output().c_str());
 }
 
+TEST(LabEnds, LoadPressureBeyondItsLimitOrSilentLeavesItSafeUntilArmedAgain) {
+  node->sends_load_pressure = true;
+  start(std::string(kShortLimitLines) + "limits.load_pressure 2e7\n");
+  goes_safe([&] { node->load_pressure = -2.01e7; }, [&] { node->load_pressure = -1.99e7; });
+  goes_safe([&] { node->sends_load_pressure = false; }, [&] { node->sends_load_pressure = true; });
+  ended_driving({Fault::load_pressure, Fault::stale_sensor});
+}
+
+TEST(LabEnds, LabWithoutALimitOfLoadPressureHearsNoFrameOfIt) {
+  node->sends_load_pressure = true;
+  node->load_pressure = 8e7;
+  start();
+  run_profile();
+  wait_for_beats(20);
+  CHECK(node->state == RigState::running);
+  lab->signal(SIGTERM);
+  LONGS_EQUAL(1, lab->wait());
+  UNSIGNED_LONGS_EQUAL(0, look_at_recording().stops.size());
+}
+
 TEST(LabEnds, ButtonThatBouncesArmsAndStartsNothing) {
   start();
   for (int bounce = 0; bounce < 20; ++bounce) {

@@ -26,7 +26,7 @@ using test_lab::LabOnWire;
 constexpr std::uint64_t kMostCyclesOnTheWay = 2;
 /// Less than this and a run says nothing: profiles run to their end, and different first faults.
 constexpr std::uint64_t kLeastCompleted = 3;
-constexpr std::size_t kLeastFaults = 10;
+constexpr std::size_t kLeastFaults = 11;
 
 /// Something that is so for a random time, again and again.
 class Spell {
@@ -104,6 +104,7 @@ class Soak {
     }
     LabSettings made = test_lab::settings();
     made.profile = Profile({test_lab::segment(0.3, 0.02, 0.02), test_lab::segment(0.3, 0.0, 0.0, 0.02, 5.0, 5.0)});
+    made.limits.actuators[0].load_pressure = kLoadPressureLimit;
     bench_ = std::make_unique<LabOnWire>(std::move(made));
     ++restarts_;
     state_ = RigState::safe;
@@ -149,6 +150,7 @@ class Soak {
     if (bench_->plant.state() >= hal::CanState::bus_off) {
       bench_->plant.rearm();  // by itself, as a sensor's node does
     }
+    send_load_pressure();
     if (silent_.now(random_)) {
       return;
     }
@@ -163,6 +165,16 @@ class Soak {
     if (chance(20'000)) {
       frame.data[random_() % frame.length] ^= static_cast<std::uint8_t>(1U << (random_() % 8));
     }
+    bench_->plant.try_send(frame);
+  }
+
+  void send_load_pressure() {
+    if (gauge_silent_.now(random_)) {
+      return;
+    }
+    const double pressure = (overloaded_.now(random_) ? 1.01 : 0.99) * (chance(2) ? 1.0 : -1.0) * kLoadPressureLimit;
+    hal::CanFrame frame;
+    can::encode(can::load_pressures::kMessage, std::array{pressure, 0.0}, ++gauge_counter_, frame);
     bench_->plant.try_send(frame);
   }
 
@@ -211,6 +223,8 @@ class Soak {
     const bool cause =
         seen.emergency_stop || !seen.hydraulic_enable || seen.bus_off || seen.bus_down || seen.bad_frame ||
         seen.second_sender || seen.transmit_queue_full ||
+        std::abs(bench_->rig.inputs().load_pressures[0]) > kLoadPressureLimit ||
+        bench_->rig.inputs().load_pressure_ages_ns[0] > test_lab::settings().limits.actuators[0].reading_age_ns ||
         std::ranges::max(bench_->rig.inputs().ages_ns[0]) > test_lab::settings().limits.actuators[0].reading_age_ns;
     expect(!interlock.drive || !cause, "drives in a cycle that has a cause of a fault");
     expect(interlock.fault_out == (interlock.state == RigState::faulted), "its fault output is not its state");
@@ -236,6 +250,7 @@ class Soak {
   }
 
   static constexpr double kMostSayable = 0.19;
+  static constexpr double kLoadPressureLimit = 2e7;  ///< [Pa]
   static constexpr double kPistonPerCommand = 0.5;
   static constexpr double kCurrentPerCommand = 0.1;
 
@@ -256,9 +271,12 @@ class Soak {
   Spell wild_{20'000, 3};
   Spell torn_{20'000, 3};
   Spell jammed_{10'000, 100};
+  Spell gauge_silent_{20'000, 10};
+  Spell overloaded_{20'000, 3};
   double piston_ = 0.0;
   double target_ = 0.0;
   std::uint8_t counter_ = 0;
+  std::uint8_t gauge_counter_ = 0;
   bool arm_on_ = false;
   bool holding_ = false;
   bool broken_ = false;

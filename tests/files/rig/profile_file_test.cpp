@@ -88,6 +88,25 @@ TEST(ProfileFile, LimitsOfAnActuatorAreOneForAllOrAListWithOneForEach) {
   refused_head("[50, 25]", "[50]", {"limits.speed", "for all actuators, or a list of 2, one for each"});
 }
 
+TEST(ProfileFile, LimitOfLoadPressureNeedNotBeSaidAndLeavesNoLineThen) {
+  const std::string rest = "[[profile]]\nkind = \"rest\"\nduration = 1\n";
+  CHECK(lines(rest).find("load_pressure") == std::string::npos);
+  head.replace(head.find("actuators = 1"), 13, "actuators = 2");
+  const std::string without = lines(rest);
+  head.replace(head.find("speed = 50"), 10, "speed = 50\nload_pressure = \"16 MPa\"");
+  std::string with = lines(rest);
+  const std::string line = "limits.load_pressure 0x1.e848p+23,0x1.e848p+23\n";
+  CHECK(with.find(line) != std::string::npos);
+  STRCMP_EQUAL(without.c_str(), with.erase(with.find(line), line.size()).c_str());
+  head.replace(head.find("\"16 MPa\""), 8, "[16e6, 8e6]");
+  test::expect_message(lines(rest), {"limits.load_pressure 0x1.e848p+23,0x1.e848p+22\n"});
+  refused_head("[16e6, 8e6]", "[16e6]", {"p.toml:21", "limits.load_pressure", "for all actuators, or a list of 2"});
+  refused_head("[16e6, 8e6]", "0", {"p.toml:21", "limits.load_pressure", "allowed: 1e-09 to 5e+07 Pa"});
+  refused_head("[16e6, 8e6]", "\"51 MPa\"", {"p.toml:21", "limits.load_pressure", "allowed: 1e-09 to 5e+07 Pa"});
+  refused_head("[16e6, 8e6]", "\"16 mm\"", {"p.toml:21", "limits.load_pressure"});
+  refused_head("load_pressure", "load_presure", {"p.toml:21", "did you mean \"load_pressure\"?"});
+}
+
 TEST(ProfileFile, InterlockAndLinesThatNeedNotBeSaidAreReadWhereTheyAre) {
   head += "start = \"go\"\nsupply_read_back = \"contactor\"\nfault_read_back = \"lamp\"\n";
   const std::string rest = "[[profile]]\nkind = \"rest\"\nduration = 1\n";

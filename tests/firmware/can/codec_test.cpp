@@ -117,8 +117,9 @@ TEST(Codec, FrameOfAnotherActuatorOrDirectionIsRefusedUnderWhateverId) {
       CHECK(!one_shape || decode(*wanted, frame, values, counter) == Decoding::wrong_crc);
     }
   }
-  // Both pistons, both strings and STATUS; the command and the split readings; both sets of each FD length.
-  CHECK(of_one_shape >= 5 * 4 + 5 * 4 + 2 + 2);
+  // Both pistons, both strings, load pressures and STATUS; the command and the split readings; the FD frames of 64 bytes,
+  // and of 48.
+  CHECK(of_one_shape >= 6 * 5 + 5 * 4 + 2 * 1 + 3 * 2);
 }
 
 TEST(Codec, NodeThatIsConfiguredWithTheIdOfAnotherOneIsRefusedThoughItChecksItsOwnFrames) {

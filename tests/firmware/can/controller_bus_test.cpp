@@ -135,7 +135,15 @@ TEST(CanBusLoad, ClassicLayoutFitsAMegabitAndNotHalfOfIt) {
   DOUBLES_EQUAL(0.467, bus_load(Layout::fd_split, 8, kMillisecond, 1e6, 5e6), 5e-4);
   const double strings = 2.0 * hal::longest_classic_frame(8, 1e6) / 4e-3;
   DOUBLES_EQUAL(bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6) + strings,
-                bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6, true), 1e-12);
+                bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6, {.strings = true}), 1e-12);
+  // Load pressures once a period, however often the map says.
+  const double pressures = hal::longest_classic_frame(8, 1e6) / 2e-3;
+  DOUBLES_EQUAL(bus_load(Layout::classic_split, 2, 2 * kMillisecond, 1e6, 1e6) + pressures,
+                bus_load(Layout::classic_split, 2, 2 * kMillisecond, 1e6, 1e6, {.load_pressure = true}), 1e-12);
+  DOUBLES_EQUAL(0.796, bus_load(Layout::classic_split, 2, kMillisecond, 1e6, 1e6, {.load_pressure = true}), 5e-4);
+  DOUBLES_EQUAL(0.606, bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6, {.load_pressure = true}), 5e-4);
+  DOUBLES_EQUAL(0.499, bus_load(Layout::fd, 8, kMillisecond, 1e6, 5e6, {.load_pressure = true}), 5e-4);
+  DOUBLES_EQUAL(0.604, bus_load(Layout::fd_split, 8, kMillisecond, 1e6, 5e6, {.load_pressure = true}), 5e-4);
 }
 
 }  // namespace hotfire::firmware::can

@@ -20,7 +20,7 @@ struct World {
       : layout(frames),
         actuators(plants),
         bus(node, clock, {frames, plants, channels, 5.0, kMillisecond, 20 * kMillisecond, 50 * kMillisecond}),
-        node(wire, plant_ids(frames, plants).subscriptions, plant_ids(frames, plants, true).senders),
+        node(wire, plant_ids(frames, plants).subscriptions, plant_ids(frames, plants, {true, true}).senders),
         controller(wire, heard(frames, plants), controller_ids(frames, plants).senders),
         message(command_message(frames)) {}
 
@@ -81,6 +81,46 @@ struct World {
   Wire::Node controller;
   const Message& message;
   hal::Command command;
+};
+
+/// The same with another plant, which is asked for its load pressures, value 2 of its actuators, and one who listens to
+/// them.
+struct Pressured : World {
+  explicit Pressured(Layout frames) : World(frames, most_actuators(frames), 3), pressures(load_pressure_message(frames)) {
+    for (std::size_t i = 0; i < actuators; ++i) {
+      reading.values[3 * i + 2] = (i % 2 == 0 ? 1e7 : -1e7) * static_cast<double>(i + 1);
+    }
+  }
+
+  bool anything_heard() {
+    listener.receive(0);
+    plant.receive(0);
+    return listener.mailbox(0).fresh;
+  }
+
+  /// Whether the load pressures of a cycle are on the bus; if a reading cannot be said, that is told.
+  bool heard() {
+    CHECK_EQUAL(asked.try_send_reading(reading), asked.unsayable() == 0);
+    ++reading.sequence;
+    return anything_heard();
+  }
+
+  void check(std::uint8_t number) const {
+    std::array<double, 32> values{};
+    std::uint8_t counter = 0;
+    CHECK(decode(pressures, listener.mailbox(0).frame, values, counter) == Decoding::good);
+    BYTES_EQUAL(number, counter);
+    for (std::size_t i = 0; i < actuators; ++i) {
+      DOUBLES_EQUAL(reading.values[3 * i + 2], values[i], 0.0);
+    }
+  }
+
+  const Message& pressures;
+  hal::Reading reading;
+  const std::array<hal::CanSubscription, 1> listened{{{id_of(pressures), pressures.fd}}};
+  Wire::Node listener{wire, listened, {}};
+  Wire::Node plant{wire, {}, plant_ids(layout, actuators, {.load_pressure = true}).senders};
+  Bus asked{plant, clock, {.layout = layout, .actuators = actuators, .channels = 3, .load_pressure = 2}};
 };
 
 }  // namespace
@@ -311,6 +351,32 @@ TEST(CanPlantBus, StringPotentiometersAreSentEveryFourMillisecondsByAPlantThatHa
       }
     }
     UNSIGNED_LONGS_EQUAL(reading.string_count, next);
+  }
+}
+
+TEST(CanPlantBus, LoadPressuresAreSentEveryCycleByAPlantThatIsAskedToAndByNoOther) {
+  for (std::size_t number = 0; number < kLayouts.size(); ++number) {
+    Pressured world{static_cast<Layout>(number)};
+    for (int cycle = 0; cycle < 10; ++cycle) {
+      CHECK(world.heard());
+      world.check(static_cast<std::uint8_t>(cycle));
+    }
+    CHECK(world.bus.try_send_reading(world.reading));
+    CHECK(!world.anything_heard());
+  }
+}
+
+TEST(CanPlantBus, LoadPressuresOfSensorsThatSpeakGoOnAndOneThatCannotBeSaidIsDroppedAndCounted) {
+  for (std::size_t number = 0; number < kLayouts.size(); ++number) {
+    Pressured world{static_cast<Layout>(number)};
+    for (std::size_t i = 0; i < world.actuators; ++i) {
+      world.reading.missing |= 1U << (3 * i + 2);
+      CHECK_EQUAL(i + 1 < world.actuators, world.heard());
+    }
+    world.reading.missing = 0;
+    world.reading.values[2] = 8.1e7;
+    CHECK(!world.heard());
+    UNSIGNED_LONGS_EQUAL(1, world.asked.unsayable());
   }
 }
 

@@ -178,6 +178,32 @@ TEST(Faults, MeasuredSpeedIsThatOverItsTimeAndLimited) {
   CHECK(move(-0.51, 5) == FaultSet(Fault::speed));
 }
 
+TEST(Faults, LoadPressureOfEveryActuatorHasItsOwnLimitEitherWayAndAnAge) {
+  CHECK(!kLimits.has_load_pressure());
+  FaultLimits own = kLimits;
+  for (std::size_t i = 0; i < hal::kMaxActuators; ++i) {
+    own.actuators[i].load_pressure = 1e6 * static_cast<double>(i + 1);
+  }
+  CHECK(own.has_load_pressure());
+  checks = FaultChecks(own, kPeriod);
+  for (std::size_t i = 0; i < hal::kMaxActuators; ++i) {
+    for (const double way : {1.0, -1.0}) {
+      actuators[i].load_pressure = way * own.actuators[i].load_pressure;
+      expect({});
+      actuators[i].load_pressure += way;
+      expect(Fault::load_pressure);
+    }
+    actuators[i].load_pressure = kNan;
+    expect(Fault::not_finite);
+    actuators[i].load_pressure = 0.0;
+    actuators[i].load_pressure_age_ns = kActuatorLimits.reading_age_ns;
+    expect({});
+    ++actuators[i].load_pressure_age_ns;
+    expect(Fault::stale_sensor);
+    actuators[i] = {};
+  }
+}
+
 TEST(Faults, LineThatReadsBackOtherThanItIsSetIsAFaultOnceAContactorHasHadItsTime) {
   const std::vector<std::pair<Fault, bool ObservedRig::*>> lines{
       {Fault::supply_read_back, &ObservedRig::supply_reads_other},

@@ -55,6 +55,21 @@ TEST(LabImage, EveryKeyArrives) {
   STRCMP_EQUAL("hydraulic", read.lines.hydraulic_enable.c_str());
 }
 
+TEST(LabImage, LimitOfLoadPressureMayBeThereAndIsThenOfEveryActuator) {
+  CHECK(!parse_lab_image(image, "image", 1e-3).settings->limits.has_load_pressure());
+  image += "limits.load_pressure 2e7,0x1p+20\n";
+  const LabImage read = parse_lab_image(image, "image", 1e-3);
+  STRCMP_EQUAL("", read.error.c_str());
+  CHECK(read.settings->limits.has_load_pressure());
+  DOUBLES_EQUAL(2e7, read.settings->limits.actuators[0].load_pressure, 0.0);
+  DOUBLES_EQUAL(0x1p+20, read.settings->limits.actuators[1].load_pressure, 0.0);
+  const char* const allowed = "allowed is 2 numbers, commas between them, from 1e-09 to 5e+07 Pa";
+  for (const char* instead : {"2e7,0", "2e7", "2e7,-1", "2e7,5.00001e7", "inf,inf", "nan,nan"}) {
+    refused("limits.load_pressure 2e7,0x1p+20", (std::string("limits.load_pressure ") + instead).c_str(), allowed);
+  }
+  refused("limits.load_pressure", "limits.load_presure", "limits.load_presure = 2e7,0x1p+20: unknown key");
+}
+
 TEST(LabImage, WhatCannotBeIsRefusedWithItsLine) {
   refused("topology lab", "topology simplex", "line 2: topology = simplex: allowed are lab");
   refused("actuators 2", "actuators 9", "allowed is a number from 1 to 8");

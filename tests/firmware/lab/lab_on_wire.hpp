@@ -12,8 +12,9 @@
 
 namespace hotfire::firmware::test_lab {
 
-/// A lab on a wire, with a board of lines, beside a plant that sends what its pistons read in the frames of a layout and
-/// echoes the commands where they have room for that. Emergency stop released, hydraulic supply enabled.
+/// A lab on a wire, with a board of lines, beside a plant that sends what its pistons read in the frames of a layout, and
+/// load pressures if the lab has a limit of them, and echoes the commands where they have room for that. Emergency stop
+/// released, hydraulic supply enabled.
 class LabOnWire {
  public:
   using Wire = hal::sim::CanWire;
@@ -22,6 +23,7 @@ class LabOnWire {
   explicit LabOnWire(LabSettings made, can::Layout frames = can::Layout::classic, const LabLines& lines = usual_lines())
       : layout(frames),
         actuators(made.actuators),
+        measures_load_pressure_(made.limits.has_load_pressure()),
         wiring(lab_gpio(lines, "board")),
         board(wiring.settings),
         lab(std::move(made), kPeriod) {
@@ -35,7 +37,7 @@ class LabOnWire {
 
   /// One cycle of the loop.
   void cycle() {
-    for (std::size_t i = 0; i < can::reading_messages(layout, actuators); ++i) {
+    for (std::size_t i = 0; i < rig.messages(); ++i) {
       if (sends) {
         plant.try_send(reading(i, counter));
       }
@@ -67,18 +69,22 @@ class LabOnWire {
     cycles(held);
   }
 
-  /// What the plant says in reading message `which` under this counter.
+  /// What the plant says in message `which` of those that the lab listens to, under this counter.
   hal::CanFrame reading(std::size_t which, std::uint8_t number) const {
-    const can::Message& message = can::reading_message(layout, which);
+    const can::Message& message = rig.message(which);
     std::array<double, 32> values{};
-    std::fill_n(values.begin(), message.signals.size(), piston);
-    if (can::has_echo(layout)) {
-      values[can::kEchoPlace] = echo;
+    if (is_load_pressure(which)) {
+      std::copy(load_pressures.begin(), load_pressures.end(), values.begin());
+    } else {
+      std::fill_n(values.begin(), message.signals.size(), piston);
+      values[can::kEchoPlace] = can::has_echo(layout) ? echo : values[can::kEchoPlace];
     }
     hal::CanFrame frame;
     CHECK(can::encode(message, std::span(values).first(message.signals.size()), number, frame));
     return frame;
   }
+
+  bool is_load_pressure(std::size_t which) const { return which == can::reading_messages(layout, actuators); }
 
   /// Armed and started, with some cycles of the profile behind it.
   void run() {
@@ -99,8 +105,9 @@ class LabOnWire {
   std::size_t actuators;
 
  private:
-  can::NodeIds own_ = can::controller_ids(layout, actuators);
-  can::NodeIds of_plant_ = can::plant_ids(layout, actuators);
+  bool measures_load_pressure_;
+  can::NodeIds own_ = can::controller_ids(layout, actuators, measures_load_pressure_);
+  can::NodeIds of_plant_ = can::plant_ids(layout, actuators, {.load_pressure = true});
 
  public:
   std::uint8_t counter = 0;  ///< of the readings of the next cycle
@@ -116,6 +123,7 @@ class LabOnWire {
   Wire::Node plant{wire, of_plant_.subscriptions, of_plant_.senders};
   Rig rig{lab, node, board, wiring, clock, layout, kPeriodNs};
   double piston = 0.0;                        ///< what both of its readings say [m]
+  PerActuator load_pressures{};               ///< [Pa]
   std::uint64_t commands = 0;                 ///< that have reached the plant
   std::function<void()> before_lab = [] {};   ///< after the plant has sent
   std::function<void()> after_cycle = [] {};  ///< before the clock goes on

@@ -91,9 +91,12 @@ TEST(Lab, EveryFaultEndsDrivingInItsCycleAndNothingMovesUntilArmedAgain) {
        [](LabInputs& in) {
          in.readings[0] = {NAN, NAN};
        }},
+      {Fault::load_pressure, [](LabInputs& in) { in.load_pressures[0] = -2.00001e7; }},
       {Fault::recorder_full, [](LabInputs& in) { in.rig.dropped_recording = true; }}};
+  LabSettings limited = settings();
+  limited.limits.actuators[0].load_pressure = 2e7;
   for (const auto& [fault, provoke] : provoked) {
-    Lab one(settings(), kPeriod);
+    Lab one(limited, kPeriod);
     LabInputs good;
     const auto press_button = [&] {
       one.step(good);

@@ -1,4 +1,5 @@
-// Two nodes that send one message, frames that are damaged or lost, and commands that nobody answers: in every layout.
+// Two nodes that send one message, frames that are damaged or lost, and commands that nobody answers: in every layout, of
+// every message that a lab with a limit of load pressure listens to.
 
 #include <memory>
 
@@ -19,6 +20,9 @@ LabSettings settings_of(can::Layout layout) {
   LabSettings made = test_lab::settings();
   made.actuators = can::most_actuators(layout);
   made.limits.position_error = 1.0;
+  for (ActuatorLimits& limits : made.limits.actuators) {
+    limits.load_pressure = 2e7;
+  }
   return made;
 }
 
@@ -33,13 +37,13 @@ class Rivals : public LabOnWire {
     other_.receive(clock.now_ns());
   }
 
-  std::size_t messages() const { return can::reading_messages(layout, actuators); }
+  std::size_t messages() const { return rig.messages(); }
   bool drives() const { return lab.outputs().interlock.drive; }
   const FaultSet& faults() const { return lab.outputs().interlock.faults; }
 
  private:
   std::vector<hal::CanId> all_ids() const {
-    std::vector<hal::CanId> ids = can::plant_ids(layout, actuators).senders;
+    std::vector<hal::CanId> ids = can::plant_ids(layout, actuators, {.load_pressure = true}).senders;
     for (const hal::CanId& id : can::controller_ids(layout, actuators).senders) {
       ids.push_back(id);
     }
@@ -49,12 +53,13 @@ class Rivals : public LabOnWire {
   Wire::Node other_{wire, {}, all_ids()};
 };
 
-/// Runs `act(rivals, which)` on a lab of its own for every reading message of every layout.
+/// Runs `act(rivals, which)` on a lab of its own for every message of every layout that it listens to.
 template <class Act>
 void for_every_message(Act&& act) {
   for (std::size_t layout = 0; layout < can::kLayouts.size(); ++layout) {
     const auto frames = static_cast<can::Layout>(layout);
-    for (std::size_t which = 0; which < can::reading_messages(frames, can::most_actuators(frames)); ++which) {
+    const std::size_t messages = Rivals(frames).messages();
+    for (std::size_t which = 0; which < messages; ++which) {
       Rivals rivals(frames);
       act(rivals, which);
     }
@@ -115,6 +120,16 @@ TEST(SecondSender, FramesThatWereHeldUpAndComeAtOnceAreNoFault) {
 
 TEST(SecondSender, TwoFramesWithOneCounterAreFoundOut) {
   for_every_message([](Rivals& rivals, std::size_t which) { expect_found_out(rivals, which, 0); });
+}
+
+TEST(SecondSender, TwoFramesOfOneMessageAloneAreFoundOutInTheirCycle) {
+  for_every_message([](Rivals& rivals, std::size_t which) {
+    rivals.before_lab = [&] { rivals.other_sends(rivals.reading(which, static_cast<std::uint8_t>(rivals.counter - 1))); };
+    rivals.cycle();
+    CHECK(!rivals.drives());
+    CHECK(rivals.faults() == FaultSet(Fault::second_sender));
+    UNSIGNED_LONGS_EQUAL(1, rivals.rig.readings(which).repeated);
+  });
 }
 
 TEST(SecondSender, CounterThatGoesBackIsFoundOut) {
@@ -295,10 +310,13 @@ TEST(LabAuthentication, ReadingWithoutTheKeyIsAFaultAndOneWithItIsNotAndNothingI
     LabOnWire world(settings_of(layout), layout);
     world.rig.authenticate(of_lab);
     world.sends = false;
+    bool seals_load_pressure = true;
     world.before_lab = [&] {
-      for (std::size_t i = 0; i < can::reading_messages(layout, world.actuators); ++i) {
+      for (std::size_t i = 0; i < world.rig.messages(); ++i) {
         hal::CanFrame frame = world.reading(i, static_cast<std::uint8_t>(world.counter - 1));
-        of_plant.seal(can::reading_message(layout, i), frame);
+        if (!world.is_load_pressure(i) || seals_load_pressure) {
+          of_plant.seal(world.rig.message(i), frame);
+        }
         world.plant.try_send(frame);
       }
     };
@@ -311,6 +329,13 @@ TEST(LabAuthentication, ReadingWithoutTheKeyIsAFaultAndOneWithItIsNotAndNothingI
     CHECK(world.lab.outputs().interlock.state == RigState::running);
     std::uint64_t newest = 0;
     CHECK(of_plant.accepts(can::command_message(layout), world.plant.mailbox(0).frame, newest));
+    seals_load_pressure = false;
+    world.cycle();
+    CHECK(world.lab.outputs().interlock.first == Fault::not_authentic);
+    seals_load_pressure = true;
+    world.press();
+    world.press();
+    CHECK(world.on(kSupply));
     world.before_lab = [] {};
     world.sends = true;
     world.cycle();

@@ -22,6 +22,10 @@ inline const std::string kRecordedLabImage =
     "0.1\n"
     "segment.0.from 0\nsegment.0.to 0\nsegment.0.amplitude 0.01\nsegment.0.frequency 10\nsegment.0.last_frequency 20\n";
 
+/// Of a lab that measures load pressures, and what an actuator that lags has of them [Pa/m]: half the limit at the most.
+inline const std::string kLoadPressureLimit = "limits.load_pressure 2e7\n";
+inline constexpr double kPressurePerLag = 1e9;
+
 /// For so many cycles a button is pressed, and then off.
 inline constexpr int kPressed = 10;
 /// From the arming on, before a start may begin.
@@ -30,10 +34,12 @@ inline constexpr int kArmed = 1000;
 inline constexpr std::uint64_t kRunningCycle = 10 + 2 * kPressed + kArmed + 2 * kPressed + 10;
 
 /// Records a lab to a file. It is armed, run, stopped by an emergency stop, armed and run again to the end of its profile,
-/// and is pressed once more when its readings are out of range. Cycle `gap` is left out. Returns how many cycles are in the
-/// file.
-inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~std::uint64_t{0}) {
-  LabImage image = parse_lab_image(kRecordedLabImage, "image", kPeriod);
+/// and is pressed once more when its readings are out of range. Cycle `gap` is left out. `limits`: more lines of its image.
+/// Returns how many cycles are in the file.
+inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~std::uint64_t{0},
+                                const std::string& limits = "") {
+  LabImage image = parse_lab_image(kRecordedLabImage + limits, "image", kPeriod);
+  const bool has_load_pressure = image.settings->limits.has_load_pressure();
   LabOnWire bench(std::move(*image.settings), can::Layout::classic, image.lines);
   Options options;
   options.recording = path;
@@ -41,9 +47,9 @@ inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~st
   RecordedPlant plant;
   plant.topology = kLabTopology;
   plant.input = {"command", "rad"};
-  plant.channels.assign(kLabChannels.begin(), kLabChannels.end());
-  plant.start.assign(kLabChannels.size(), 0.0);
-  plant.image = kRecordedLabImage;
+  plant.channels = lab_channels(has_load_pressure);
+  plant.start.assign(plant.channels.size(), 0.0);
+  plant.image = image.text;
   RecordingSession session(options, plant);
   CHECK(!session.start());
   LabRecorder<LabOnWire::Rig> recorder(session.recorder(), bench.rig);
@@ -57,6 +63,7 @@ inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~st
     }
     ++head.cycle;
     // An actuator that lags.
+    bench.load_pressures[0] = kPressurePerLag * (0.5 * bench.lab.outputs().commands[0] - bench.piston);
     bench.piston += 0.2 * (0.5 * bench.lab.outputs().commands[0] - bench.piston);
   };
   bench.piston = 0.004;

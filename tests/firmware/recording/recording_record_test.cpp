@@ -184,4 +184,21 @@ TEST(RecordingAsRecord, LabIsARecordOfCommandAndPistonAndReplaysByTheCommand) {
   LONGS_EQUAL(0, status_of("check " + scratch.path("lab.csv").string()));
 }
 
+TEST(RecordingAsRecord, LabThatMeasuresLoadPressuresIsARecordOfThemTooThatIsReadBackTheSame) {
+  firmware::test_lab::record_lab(path, ~std::uint64_t{0}, firmware::test_lab::kLoadPressureLimit);
+  const Record record = load_recording(path);
+  UNSIGNED_LONGS_EQUAL(3, record.channels.size());
+  const Channel* pressure = record.find("load_pressure");
+  STRCMP_EQUAL("Pa", pressure->unit.c_str());
+  hal::RecordingReader reader(path);
+  hal::RecordedCycle cycle;
+  for (std::size_t row = 1; reader.next(cycle); ++row) {
+    DOUBLES_EQUAL(cycle.readings[firmware::kLoadPressureRead], pressure->values[row], 0.0);
+  }
+  LONGS_EQUAL(0, status_of("replay " + path + " --from 1 --csv " + scratch.path("lab.csv").string()));
+  const Record again = load_record(scratch.path("lab.csv"));
+  const std::vector<double>& rows = again.find("load_pressure")->values;
+  CHECK(std::equal(rows.begin(), rows.end(), pressure->values.end() - static_cast<std::ptrdiff_t>(rows.size())));
+}
+
 }  // namespace hotfire

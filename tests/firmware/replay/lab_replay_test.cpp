@@ -1,5 +1,7 @@
 #include "firmware/replay/lab_replay.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "tests/files/scratch.hpp"
@@ -12,7 +14,9 @@ TEST_GROUP(LabReplay) {
   test::Scratch scratch;
   const std::string path = scratch.path("lab.hfr").string();
 
-  std::uint64_t record() const { return test_lab::record_lab(path); }
+  std::string limits{};  ///< more lines of its image
+
+  std::uint64_t record() const { return test_lab::record_lab(path, ~std::uint64_t{0}, limits); }
 
   Replay replayed() const { return test_recording::replayed(path); }
 
@@ -61,7 +65,7 @@ TEST(LabReplay, WhatTheLabSawIsTakenOutAsItWasPutIn) {
   std::uint64_t started = 0;
   std::uint64_t edges = 0;
   while (reader.next(cycle)) {
-    const LabInputs inputs = recorded_inputs(cycle.head, cycle.readings);
+    const LabInputs inputs = recorded_inputs(cycle);
     // In the first cycle both lines have just gone on, and a line that has changed is not taken for one that was on.
     CHECK_EQUAL(cycle.head.cycle > 0, inputs.rig.hydraulic_enable);
     CHECK(!inputs.rig.bus_down && !inputs.rig.bad_frame && !inputs.stop);
@@ -96,6 +100,45 @@ TEST(LabReplay, OneThingThatIsNotAsTheLogicWouldHaveItIsNamed) {
   differs(
       "piston of actuator 1: recorded ", [](hal::CycleHead&, std::vector<double>& values) { values[1 + kPiston] = 0.0; },
       test_lab::kRunningCycle + 1);
+}
+
+TEST(LabReplay, LoadPressuresThatTheLabWasGivenDecideItsCyclesAgainToTheSameBits) {
+  limits = test_lab::kLoadPressureLimit;
+  const std::uint64_t stored = record();
+  const Replay result = replayed();
+  STRCMP_EQUAL("", result.difference ? result.difference->what.c_str() : "");
+  UNSIGNED_LONGS_EQUAL(stored, result.proved);
+  hal::RecordingReader reader(path);
+  UNSIGNED_LONGS_EQUAL(9, reader.header().channels.size());
+  hal::RecordedCycle cycle;
+  double most = 0.0;
+  double before = 0.0;
+  while (reader.next(cycle)) {
+    const LabInputs inputs = recorded_inputs(cycle);
+    LONGS_EQUAL(cycle.head.cycle == 0 ? std::int64_t{1} << 62 : 0, inputs.load_pressure_ages_ns[0]);
+    // What a cycle ends with is what the next one is given.
+    DOUBLES_EQUAL(before, inputs.load_pressures[0], 0.0);
+    before = cycle.readings[kLoadPressure];
+    most = std::max(most, std::abs(inputs.load_pressures[0]));
+  }
+  CHECK(most > 1e6 && most < 2e7);
+  differs("recorded 2 and 0, replayed 4 and 20",
+          [](hal::CycleHead&, std::vector<double>& values) { values[1 + kLoadPressureRead] = -2.00001e7; });
+  differs("recorded 2 and 0, replayed 4 and 2",
+          [](hal::CycleHead&, std::vector<double>& values) { values[1 + kLoadPressureAge] = 0.0051; });
+  differs(
+      "load_pressure of actuator 1: recorded ",
+      [](hal::CycleHead&, std::vector<double>& values) { values[1 + kLoadPressure] += 1.0; }, test_lab::kRunningCycle + 1);
+}
+
+TEST(LabReplay, RecordingWithoutLoadPressuresIsWhatItWasAndOneThatLacksThemIsRefused) {
+  record();
+  hal::RecordingReader reader(path);
+  UNSIGNED_LONGS_EQUAL(6, reader.header().channels.size());
+  hal::RecordingHeader header = reader.header();
+  header.model += test_lab::kLoadPressureLimit;
+  scratch.write("lab.hfr", hal::header_text(header));
+  STRCMP_CONTAINS("its channels are not those", replayed().error.c_str());
 }
 
 TEST(LabReplay, NothingBehindADroppedCycleIsClaimed) {

@@ -107,6 +107,12 @@ TEST(Options, WhatABusCannotDoIsRefused) {
   refused({"plant", "--image", "p", "--sync", "can"}, "--sync can needs the CAN bus");
   refused({"plant", "--image", "p", "--strings"}, "--strings is of a plant on a CAN bus");
   refused({"controller", "--bus", "can0", "--strings"}, "--strings is of a plant on a CAN bus");
+  refused({"plant", "--image", "p", "--load-pressure"}, "--load-pressure is of a plant on a CAN bus");
+  refused({"controller", "--bus", "can0", "--load-pressure"}, "--load-pressure is of a plant on a CAN bus");
+  refused({"lab", "--image", "p", "--bus", "can0", "--gpio", "rig", "--rehearsal", "--load-pressure"},
+          "a lab takes load pressures if its profile has limits.load_pressure");
+  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--load-pressure"}).load_pressure);
+  CHECK(!accepted({"plant", "--image", "p", "--bus", "can0"}).load_pressure);
   refused({"plant", "--image", "p", "--bus", ""}, "the name of a CAN interface");
 }
 

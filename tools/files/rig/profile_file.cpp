@@ -42,6 +42,8 @@ constexpr std::array<ProfileNumber, 4> kActuatorLimits{{{"reading_age", "s", 0.0
                                                         {"lowest_position", "m", -kAny, kAny},
                                                         {"highest_position", "m", -kAny, kAny},
                                                         {"speed", "m/s", kAboveZero, kAny}}};
+/// As those, but need not be said: load pressures are then not measured. Bounded by what a frame can say.
+constexpr ProfileNumber kLoadPressureLimit{"load_pressure", "Pa", kAboveZero, 50e6};
 /// A number that need not be said, and what it then is.
 struct Default {
   ProfileNumber number;
@@ -131,7 +133,8 @@ class Reader {
   void read_limits() {
     const toml::table& limits = table("limits");
     Words known = names_of_numbers(kLimitNumbers);
-    for (const Words& more : {names_of_numbers(kActuatorLimits), names_of_numbers(kLimitDefaults), Words{"overruns"}}) {
+    for (const Words& more :
+         {names_of_numbers(kActuatorLimits), names_of_numbers(kLimitDefaults), Words{kLoadPressureLimit.key, "overruns"}}) {
       known.insert(known.end(), more.begin(), more.end());
     }
     refuse_unknown_keys(source_, limits, "limits.", known);
@@ -145,6 +148,9 @@ class Reader {
     }
     for (const ProfileNumber& wanted : kActuatorLimits) {
       read_actuator_limit(limits, wanted, command_rate);
+    }
+    if (limits.contains(kLoadPressureLimit.key)) {
+      read_actuator_limit(limits, kLoadPressureLimit, command_rate);
     }
     const toml::node* overruns = limits.get("overruns");
     line("limits.overruns",
