@@ -49,12 +49,16 @@ void add_import(CLI::App& program) {
       }
       drop_outs.push_back(*drop_out);
     }
-    const Record record = import_record(options->source, map, options->output, options->dbc, drop_outs);
+    std::vector<std::string> notes;
+    const Record record = import_record(options->source, map, options->output, options->dbc, drop_outs, &notes);
     std::cout << fmt::format("{}: {} rows, period {:.6g} s,", options->output, record.rows, record.period);
     for (const Channel& channel : record.channels) {
       std::cout << ' ' << channel.name;
     }
     std::cout << '\n';
+    for (const std::string& note : notes) {
+      std::cout << note << '\n';
+    }
   });
 }
 

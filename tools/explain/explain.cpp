@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "tools/explain/baseline.hpp"
 #include "tools/explain/held_out_records.hpp"
 #include "tools/explain/report/conclusion.hpp"
 #include "tools/explain/report/report_json.hpp"
@@ -77,21 +78,27 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
   if constexpr (std::is_same_v<Family, DirectFamily>) {
     refuse_turned_sign(data, model, search_options, found);
   }
+  options.watch.progress("fitting a linear black box, to compare");
+  const BlackBox box = black_box(data);
   if (!found.interrupted) {
     options.watch.progress("fitting what was found to all rows");
     fit_to_all_rows(data, options.threads, found);
   }
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
+  if (const nlohmann::json baseline = baseline_json(box, data, found.explained.prediction); !baseline.is_null()) {
+    explanation.report["baseline"] = baseline;
+  }
   if (!kept_back.empty()) {
     explanation.report["held_out_records"] = held_out_records_json(options, kept_back, found);
-    for (const Dataset& record : kept_back) {
-      warn_of_rows(record, explanation.report["warnings"]);
+    for (std::size_t i = 0; i < kept_back.size(); ++i) {
+      add_baseline(box, kept_back[i], explanation.report["held_out_records"][i]["channels"]);
+      warn_of_rows(kept_back[i], explanation.report["warnings"]);
     }
   }
   if (found.rival) {
     add_next_experiment(data, *found.rival, found.explained.model, options, explanation);
   }
-  explanation.model.parameters = plant_of(found);
+  explanation.model.parameters = plant_of(found, options.keep_drift);
   return explanation;
 }
 

@@ -138,8 +138,8 @@ TEST(Dataset, ADeclaredNoiseIsTakenAndAnUndeclaredOneIsEstimated) {
   const auto data = hotfire::explain::make_dataset(
       axis(), {record({{"command", "rad", wave}, {"piston", "m", wave}, {"engine", "rad", wave}}, 0.002)});
   DOUBLES_EQUAL(8e-6, data.noise[0], 0.0);
-  CHECK(data.noise_declared[0]);
-  CHECK(!data.noise_declared[1]);
+  CHECK(data.noise_declared(0));
+  CHECK(!data.noise_declared(1));
   // An alternation of +-a has third differences of 8 a: seen as noise of 8 a / sqrt(20) = 1.79 a, up to the median's bias.
   DOUBLES_EQUAL(1.79e-4, data.noise[1], 0.05e-4);
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hotfire::explain {
@@ -63,6 +64,30 @@ double noise_from_differences(std::span<const double> values) {
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
   return std::sqrt(*middle / kMedianBias / 20.0);
+}
+
+double noise_floor(std::span<const double> values) {
+  constexpr double kAgreement = 1e-5;
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto rows = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / rows;
+  double square = 0.0;
+  double size = 0.0;
+  for (const double value : values) {
+    square += (value - mean) * (value - mean);
+    size = std::max(size, std::abs(value));
+  }
+  // Values that differ by less than this were printed or converted differently, not read differently.
+  const double same = 1e-9 * size;
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double apart = std::abs(values[i] - values[i - 1]);
+    step = apart > same ? std::min(step, apart) : step;
+  }
+  const double rounding = std::isfinite(step) ? step / std::sqrt(12.0) : 0.0;
+  return std::max(rounding, kAgreement * std::sqrt(square / rows));
 }
 
 std::vector<double> autocorrelation(std::span<const double> values, std::size_t last_lag) {

@@ -14,6 +14,12 @@ double root_mean_square(std::span<const double> values);
 /// [Garcia 2010 describes the family; von Neumann et al. 1941 the idea].
 double noise_from_differences(std::span<const double> values);
 
+/// The least noise rms that a channel may be said to have: that of the step by which its values are rounded,
+/// q / sqrt(12) [Widrow and Kollar 2008, Quantization Noise, eq. 4.17], or 1e-5 of the rms motion if that is more. A smooth,
+/// filtered or integrated channel has third differences of nothing, and no model of a rig agrees with a record to less: a
+/// clock, a gain or a geometry would have to be right to a hundred-thousandth.
+double noise_floor(std::span<const double> values);
+
 /// Autocorrelation at lags 0..last_lag, mean not removed (a bias is a part of the residual).
 std::vector<double> autocorrelation(std::span<const double> values, std::size_t last_lag);
 

@@ -45,10 +45,10 @@ class Filter {
   Filter(const LatentProblem& problem, const std::optional<LatentPlace>& place, double deviation)
       : problem_(problem), place_(place), variance_(deviation * deviation) {}
 
-  /// Observation of channel c over its noise.
-  FilterVector observation(std::size_t channel) const {
+  /// Observation of channel c over its noise in a record.
+  FilterVector observation(const Experiment& experiment, std::size_t channel) const {
     FilterVector row = FilterVector::Zero();
-    const double noise = problem_.data.noise[channel];
+    const double noise = experiment.noise[channel];
     row(kReadState[channel]) = problem_.scales.state(kReadState[channel]) / noise;
     if (place_ && !place_->port && place_->channel == channel) {
       row(kSignal) = problem_.scales.reading[channel] / noise;
@@ -97,7 +97,7 @@ class Filter {
           if (std::isnan(left)) {
             continue;
           }
-          const FilterVector seen = observation(c);
+          const FilterVector seen = observation(experiment, c);
           const FilterVector spread = covariance * seen;
           const double variance = 1.0 + seen.dot(spread);
           innovation(0) = left;
@@ -141,7 +141,7 @@ class Filter {
           continue;
         }
         Update update;
-        update.row = observation(c);
+        update.row = observation(experiment, c);
         const FilterVector spread = covariance * update.row;
         update.variance = 1.0 + update.row.dot(spread);
         update.gain = spread / update.variance;
@@ -273,7 +273,7 @@ void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput&
         const double left = problem.left[e](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
         if (!std::isnan(left)) {
           const double rest = left - problem.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).dot(input.move) -
-                              filter.observation(c).dot(smoothed);
+                              filter.observation(experiment, c).dot(smoothed);
           square[c] += rest * rest;
           rows[c] += 1.0;
         }

@@ -88,6 +88,12 @@ bool is_fault_of_record(const Candidate& candidate) {
          candidate.name == model::CommandScale::name;
 }
 
+bool is_of_record_time(const Candidate& candidate) {
+  return candidate.name.starts_with("unlisted_") &&
+         (candidate.option_name == "time" || candidate.option_name.ends_with("_along_time") ||
+          candidate.name == model::UnlistedDrift::name);
+}
+
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
   if (first_unlisted(found) != nullptr) {

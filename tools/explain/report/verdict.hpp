@@ -9,6 +9,9 @@ namespace hotfire::explain {
 /// True of an effect that is a fault of the record, not of the plant: a channel that is mis-scaled or late.
 bool is_fault_of_record(const Candidate& candidate);
 
+/// True for a term over the time of the record: it says what drifted, and means nothing in another run.
+bool is_of_record_time(const Candidate& candidate);
+
 /// `explained`, `nothing-missing`, `partly-explained`, `unlisted-effect`, or `undecided`: nothing is kept, more than noise
 /// is left, and the search was interrupted or not asked for. docs/report.md
 template <class Family>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tools/explain/inference/veto.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 
@@ -139,6 +140,10 @@ void UnlistedStage<Family>::take_instead_if_better() {
       !(instead_->leaves_less_than(1.0) && leaves_clearly_less(instead_->model, advantage()))) {
     return;
   }
+  if (const std::string harm = harm_of(data_, instead_->model.prediction, result_.calibrated.prediction); !harm.empty()) {
+    result_.trials[instead_trials_ + *instead_->best].reason += "; refused: " + harm;
+    return;
+  }
   if (!result_.kept.empty()) {
     result_.trials[instead_trials_ + *instead_->best].reason +=
         fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * listed);
@@ -173,7 +178,8 @@ void UnlistedStage<Family>::add_beside() {
                           options_.watch, result_.next_round());
       const std::size_t first = result_.trials.size();
       result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
-      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, kUnlistedAdvantage)) {
+      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, kUnlistedAdvantage) ||
+          !harm_of(data_, beside.model.prediction, result_.calibrated.prediction).empty()) {
         return;
       }
       result_.rival.reset();
