@@ -7,6 +7,7 @@
 
 #include "tools/explain/baseline.hpp"
 #include "tools/explain/held_out_records.hpp"
+#include "tools/explain/inference/common_bias.hpp"
 #include "tools/explain/report/conclusion.hpp"
 #include "tools/explain/report/report_json.hpp"
 #include "tools/explain/search/search.hpp"
@@ -69,6 +70,19 @@ void refuse_turned_sign(const Dataset& data, const ModelFile& model, const Searc
   }
 }
 
+/// Zeros that are those of one null bias of the valve: the plant has it.
+void add_common_bias(const Dataset& data, const SearchResult<SimplexFamily>& found, Explanation& explanation) {
+  auto& plant = std::get<PlainParameters<SimplexFamily>>(explanation.model.parameters);
+  if (const auto bias = common_valve_bias(data, found.explained.zeros, plant)) {
+    plant = with_valve_bias(plant, *bias);
+    explanation.report["valve_bias"] = *bias;
+    explanation.report["warnings"].push_back(
+        fmt::format("The zeros of all records are those of one null bias of the valve, {:.3g} of its full command, or of a "
+                    "command that is off by as much: explained.toml has it as valve_bias.",
+                    *bias));
+  }
+}
+
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
@@ -99,6 +113,9 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
     add_next_experiment(data, *found.rival, found.explained.model, options, explanation);
   }
   explanation.model.parameters = plant_of(found, options.keep_drift);
+  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    add_common_bias(data, found, explanation);
+  }
   return explanation;
 }
 

@@ -88,8 +88,12 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
   return experiment;
 }
 
-/// The noise of every record and channel: declared, or what third differences show, but not less than the floor. What a
-/// channel has over all records is the root of the mean square over their rows.
+/// A record that shows more than this many times the noise that was declared is a noisier one.
+constexpr double kClearlyMore = 1.5;
+
+/// The noise of every record and channel: declared, or what third differences show where that is clearly more or nothing is
+/// declared, but then not less than the floor. What a channel has over all records is the root of the mean square over their
+/// rows.
 void set_noise(const ModelFile& model, Dataset& data) {
   for (Experiment& experiment : data.experiments) {
     experiment.noise.assign(data.channels.size(), 1.0);
@@ -105,12 +109,12 @@ void set_noise(const ModelFile& model, Dataset& data) {
         continue;
       }
       double& noise = experiment.noise[c];
+      const std::vector<double> kept = kept_rows(experiment.measured[c], experiment.excluded);
+      noise = noise_from_differences(kept);
       if (is_declared) {
-        noise = declared->second;
+        noise = noise > kClearlyMore * declared->second ? noise : declared->second;
       } else {
-        const std::vector<double> kept = kept_rows(experiment.measured[c], experiment.excluded);
         const double floor = noise_floor(kept);
-        noise = noise_from_differences(kept);
         source = noise < floor ? NoiseSource::floor : source;
         noise = std::max(noise, floor);
       }
@@ -118,7 +122,7 @@ void set_noise(const ModelFile& model, Dataset& data) {
       rows += static_cast<double>(experiment.rows());
     }
     data.noise_source.push_back(source);
-    data.noise.push_back(is_declared ? declared->second : rows > 0.0 ? std::sqrt(square / rows) : 1.0);
+    data.noise.push_back(rows > 0.0 ? std::sqrt(square / rows) : is_declared ? declared->second : 1.0);
   }
 }
 
