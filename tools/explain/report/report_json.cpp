@@ -34,6 +34,15 @@ json source_of(const Estimate& estimate) {
   return !estimate.interval ? json(nullptr) : json(estimate.from_profile ? "profile" : "curvature");
 }
 
+bool noise_is_known(const Dataset& data) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.used[c] && !data.noise_is_known(c)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 const char* source_of(NoiseSource source) {
   return source == NoiseSource::declared ? "declared" : source == NoiseSource::estimated ? "estimated" : "floor";
 }
@@ -288,7 +297,7 @@ json report_json(const ModelFile& model, const std::vector<Record>& records, con
               {"model", model.path.string()},
               {"name", model.name},
               {"verdict", verdict},
-              {"sentence", sentence_of(verdict, found)},
+              {"sentence", sentence_of(verdict, found, noise_is_known(data))},
               {"records", json::array()},
               {"held_out", held_out_names(data)},
               {"warnings", warnings_of(model, data, found, estimated)},

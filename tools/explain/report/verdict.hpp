@@ -17,9 +17,9 @@ bool is_of_record_time(const Candidate& candidate);
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found);
 
-/// What was found, in one sentence or two.
+/// What was found, in one sentence or two. Errors stand in times of the noise where that is known of every channel.
 template <class Family>
-std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found);
+std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found, bool noise_is_known = true);
 
 /// What the term of unknown law that was kept is not: the listed effect and the other such terms that came closest, and what
 /// they leave.
