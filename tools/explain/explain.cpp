@@ -101,6 +101,10 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
   if (const nlohmann::json baseline = baseline_json(box, data, found.explained.prediction); !baseline.is_null()) {
     explanation.report["baseline"] = baseline;
+    if (baseline["better_than_explained"]) {
+      std::string& sentence = explanation.report["sentence"].get_ref<std::string&>();
+      sentence += " A linear black box meets the records better, so something is missing from it.";
+    }
   }
   if (!kept_back.empty()) {
     explanation.report["held_out_records"] = held_out_records_json(options, kept_back, found);
