@@ -88,11 +88,19 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
   return experiment;
 }
 
-/// A record that shows more than this many times the noise that was declared is a noisier one.
+/// A record that shows more than this many times the noise that was declared, while another does not, is a louder one.
 constexpr double kClearlyMore = 1.5;
 
-/// The noise of every record and channel: declared, or what third differences show where that is clearly more or nothing is
-/// declared, but then not less than the floor. What a channel has over all records is the root of the mean square over their
+/// Whether the declared noise of a channel is that of some record: then the others may be louder.
+bool is_met_somewhere(const Dataset& data, std::size_t channel, double declared) {
+  return std::ranges::any_of(data.experiments, [&](const Experiment& experiment) {
+    return !experiment.measured[channel].empty() &&
+           quiet_noise(kept_rows(experiment.measured[channel], experiment.excluded)) <= kClearlyMore * declared;
+  });
+}
+
+/// The noise of every record and channel: declared, but for a louder record; or what third differences show where nothing is
+/// declared, but not less than the floor. What a channel has over all records is the root of the mean square over their
 /// rows.
 void set_noise(const ModelFile& model, Dataset& data) {
   for (Experiment& experiment : data.experiments) {
@@ -101,6 +109,7 @@ void set_noise(const ModelFile& model, Dataset& data) {
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const auto declared = model.noise.find(data.channels[c]);
     const bool is_declared = declared != model.noise.end();
+    const bool may_be_louder = is_declared && is_met_somewhere(data, c, declared->second);
     NoiseSource source = is_declared ? NoiseSource::declared : NoiseSource::estimated;
     double square = 0.0;
     double rows = 0.0;
@@ -110,11 +119,12 @@ void set_noise(const ModelFile& model, Dataset& data) {
       }
       double& noise = experiment.noise[c];
       const std::vector<double> kept = kept_rows(experiment.measured[c], experiment.excluded);
-      noise = noise_from_differences(kept);
       if (is_declared) {
-        noise = noise > kClearlyMore * declared->second ? noise : declared->second;
+        const bool is_louder = may_be_louder && quiet_noise(kept) > kClearlyMore * declared->second;
+        noise = is_louder ? noise_from_differences(kept) : declared->second;
       } else {
         const double floor = noise_floor(kept);
+        noise = noise_from_differences(kept);
         source = noise < floor ? NoiseSource::floor : source;
         noise = std::max(noise, floor);
       }

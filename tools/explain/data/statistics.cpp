@@ -42,10 +42,12 @@ double root_mean_square(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-double noise_from_differences(std::span<const double> values) {
+namespace {
+
+/// The mean square of third differences over short stretches, at a quantile of all stretches. Of fewer rows than a stretch,
+/// over all of them.
+double square_of_differences(std::span<const double> values, double quantile) {
   constexpr std::size_t kStretch = 64;
-  // The median of a chi-square mean over 64 correlated third differences lies 2 % below its mean (measured on white noise).
-  constexpr double kMedianBias = 0.98;
   std::vector<double> squares;
   double sum = 0.0;
   std::size_t count = 0;
@@ -59,12 +61,24 @@ double noise_from_differences(std::span<const double> values) {
     }
   }
   if (squares.empty()) {
-    return count > 0 ? std::sqrt(sum / static_cast<double>(count) / 20.0) : 0.0;
+    return count > 0 ? sum / static_cast<double>(count) : 0.0;
   }
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::sqrt(*middle / kMedianBias / 20.0);
+  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(squares.size()));
+  std::nth_element(squares.begin(), at, squares.end());
+  return *at;
 }
+
+}  // namespace
+
+double noise_from_differences(std::span<const double> values) {
+  // The median of a chi-square mean over 64 correlated third differences lies 2 % below its mean (measured on white noise).
+  constexpr double kMedianBias = 0.98;
+  constexpr std::size_t kStretch = 64;
+  const double bias = values.size() < kStretch + 3 ? 1.0 : kMedianBias;
+  return std::sqrt(square_of_differences(values, 0.5) / bias / 20.0);
+}
+
+double quiet_noise(std::span<const double> values) { return std::sqrt(square_of_differences(values, 0.1) / 20.0); }
 
 double noise_floor(std::span<const double> values) {
   constexpr double kAgreement = 1e-5;

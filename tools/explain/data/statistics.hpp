@@ -14,6 +14,10 @@ double root_mean_square(std::span<const double> values);
 /// [Garcia 2010 describes the family; von Neumann et al. 1941 the idea].
 double noise_from_differences(std::span<const double> values);
 
+/// The same of the quietest tenth of the stretches, where motion hardly shows even in slow rows: less than the noise by
+/// about a fifth.
+double quiet_noise(std::span<const double> values);
+
 /// The least noise rms that a channel may be said to have: that of the step by which its values are rounded,
 /// q / sqrt(12) [Widrow and Kollar 2008, Quantization Noise, eq. 4.17], or 1e-5 of the rms motion if that is more. A smooth,
 /// filtered or integrated channel has third differences of nothing, and no model of a rig agrees with a record to less: a

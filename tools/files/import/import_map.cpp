@@ -161,6 +161,15 @@ ImportMap load_import_map(const std::filesystem::path& path, ImportSource kind) 
   source.require_schema();
   ImportMap map;
   map.path = path;
+  // Channels before the time: a period below one of their headings is then told from one that lacks.
+  const toml::node* channels = root.get("channels");
+  if (channels == nullptr || source.table(*channels, "channels").empty()) {
+    source.refuse_missing(root, "channels", "missing; write [channels.command] column = \"BETA_CMD\", unit = \"deg\"");
+  }
+  std::vector<ImportColumn> found;
+  for (const auto& [name, node] : source.table(*channels, "channels")) {
+    found.push_back(read_column(source, node, "channels." + std::string(name.str()), std::string(name.str()), kind));
+  }
   if (kind == ImportSource::candump_log) {
     read_can_settings(source, map);
   } else {
@@ -171,13 +180,7 @@ ImportMap load_import_map(const std::filesystem::path& path, ImportSource kind) 
       }
     }
   }
-  const toml::node* channels = root.get("channels");
-  if (channels == nullptr || source.table(*channels, "channels").empty()) {
-    source.refuse_missing(root, "channels", "missing; write [channels.command] column = \"BETA_CMD\", unit = \"deg\"");
-  }
-  for (const auto& [name, node] : source.table(*channels, "channels")) {
-    map.columns.push_back(read_column(source, node, "channels." + std::string(name.str()), std::string(name.str()), kind));
-  }
+  map.columns.insert(map.columns.end(), found.begin(), found.end());
   if (const toml::node* node = root.get("csv")) {
     read_csv_settings(source, *node, map);
   }
