@@ -242,7 +242,8 @@ BlackBox black_box(const Dataset& full) {
       continue;
     }
     Scored best;
-    for (std::size_t order = 1; order <= kHighestOrder; ++order) {
+    const double noise = data.noise[c] * data.noise[c];
+    for (std::size_t order = 1; order <= kHighestOrder && !(best.model && best.error <= noise); ++order) {
       Scored next = best_delay(all, c, order, longest);
       const double worth = (1.0 - kWorthAnOrder) * (1.0 - kWorthAnOrder);
       if (next.model && (!best.model || next.error < worth * best.error)) {

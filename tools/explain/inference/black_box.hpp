@@ -28,7 +28,8 @@ struct BlackBox {
 
 /// Orders 1 to 4 and delays to 0.1 s, each fitted to the simulated output, not to the next row (Steiglitz and McBride 1965,
 /// IEEE Trans. Automatic Control 10, 461); the best by its simulation error on the rows that a fit sees, a further order
-/// where it takes a fiftieth off that. Rows closer than 2 ms are `thinned`. Empty for records of several periods.
+/// where that is more than noise and it takes a fiftieth off. Rows closer than 2 ms are `thinned`. Empty for records of
+/// several periods.
 BlackBox black_box(const Dataset& data);
 
 /// What it predicts of records of the same rig, from the steady state under their first input, or for a force-driven mass

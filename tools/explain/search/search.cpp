@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/search/channel_check.hpp"
 #include "tools/explain/search/finalists.hpp"
@@ -90,7 +91,8 @@ class Search {
     const Fitted<Family>& current = result_.explained.model;
     std::vector<Candidate> candidates = all_candidates<Family>(data_);
     std::erase_if(candidates, [&](const Candidate& c) {
-      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c);
+      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c) ||
+             is_measured_load(data_, c.site);
     });
     const Evaluator<Family> evaluator = refiner_.for_screening(current);
     const Screening<Family> screening(evaluator, current, scales_, options_.threads);

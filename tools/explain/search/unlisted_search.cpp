@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/search/term_proposals.hpp"
@@ -193,7 +194,8 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
     const Screening<Family> screening(evaluator, around, scales, threads);
     std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
     std::erase_if(candidates, [&](const Candidate& candidate) {
-      return around.base.effects.active[candidate.effect] || !located.allows(candidate.site);
+      return around.base.effects.active[candidate.effect] || !located.allows(candidate.site) ||
+             is_measured_load(data, candidate.site);
     });
     auto screened = screening.run(candidates, "unlisted", watch);
     const std::size_t wanted = unlisted_finalists(screened);
