@@ -4,8 +4,8 @@
 
 namespace hotfire::model {
 
-/// Null bias of a servovalve: it is closed at the command -bias, not at zero. Temperature, supply pressure and age move it by
-/// a few percent of the rated current.
+/// Null bias of a servovalve: it is closed at the command -bias, not at zero. Temperature, supply pressure and age move it
+/// by a few percent of the rated current.
 ///   u = K_e (x_c - x_a) - K_d (...) + bias
 /// A servo answers with a constant position error of bias / K_e, as it would to a command that is off by as much.
 /// [SAE ARP490] Electrohydraulic Servovalves, definition of null bias.
