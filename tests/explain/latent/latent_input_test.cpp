@@ -12,13 +12,11 @@ namespace {
 
 using namespace hotfire;
 using explain::Dataset;
-using explain::Evaluator;
 using explain::Fitted;
 using explain::LatentInput;
 using explain::LatentPlace;
 using explain::LatentProblem;
 using explain::Port;
-using explain::Resolution;
 using explain::SimplexFamily;
 
 constexpr double kTorque = 2e3;  // N m
@@ -68,10 +66,9 @@ TEST_GROUP(LatentInput){};
 TEST(LatentInput, TheSignalAtItsOwnPlaceIsReconstructedFromWhatTheSensorsRead) {
   const ModelFile model = declared();
   const Dataset data = explain::make_dataset(model, {record_of()});
-  const Evaluator<SimplexFamily> evaluator(data, Resolution::coarse);
   Fitted<SimplexFamily> about;
   about.base = std::get<SimplexParameters>(model.parameters);
-  const LatentProblem problem = explain::latent_problem(evaluator, about, 1);
+  const LatentProblem problem = explain::latent_problem(data, about, 1);
   const LatentPlace place{Port::engine, 0};
   LatentInput input = explain::most_likely_input(problem, place);
   explain::smooth(problem, place, input);
@@ -92,14 +89,35 @@ TEST(LatentInput, TheSignalAtItsOwnPlaceIsReconstructedFromWhatTheSensorsRead) {
   CHECK(std::sqrt(square) < 0.05 * kTorque);
 }
 
+// The first half of the record is at rest: only a sensor's zero is off there.
+TEST(LatentInput, WhatASensorReadsAtRestIsItsZeroAndNoSignal) {
+  constexpr double kZero = 5e-6;  // rad
+  const ModelFile model = declared();
+  Record record = record_of();
+  for (double& value : record.channels.back().values) {
+    value += kZero;
+  }
+  const Dataset data = explain::make_dataset(model, {record});
+  Fitted<SimplexFamily> about;
+  about.base = std::get<SimplexParameters>(model.parameters);
+  const LatentProblem problem = explain::latent_problem(data, about, 1);
+  const LatentPlace place{Port::engine, 0};
+  LatentInput input = explain::most_likely_input(problem, place);
+  explain::smooth(problem, place, input);
+  CHECK(input.leaves[0] < 1.1);
+  CHECK(input.leaves[1] < 1.1);
+  LONGS_EQUAL(2, input.move.size());
+  const double zero = input.move(1) * data.experiments[0].zero_deviation[1];
+  DOUBLES_EQUAL(kZero, zero, 0.1 * kZero);
+}
+
 TEST(LatentInput, HeldOutRowsAreNotLookedAt) {
   const ModelFile model = declared();
   Dataset data = explain::make_dataset(model, {record_of()});
   const auto likelihood = [&] {
-    const Evaluator<SimplexFamily> evaluator(data, Resolution::coarse);
-    Fitted<SimplexFamily> about;
+      Fitted<SimplexFamily> about;
     about.base = std::get<SimplexParameters>(model.parameters);
-    return explain::most_likely_input(explain::latent_problem(evaluator, about, 1), {Port::spring, 0}).log_likelihood;
+    return explain::most_likely_input(explain::latent_problem(data, about, 1), {Port::spring, 0}).log_likelihood;
   };
   const double before = likelihood();
   for (std::size_t row = data.experiments[0].held_out[0].first; row < data.experiments[0].held_out[0].last; ++row) {

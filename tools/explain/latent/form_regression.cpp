@@ -16,7 +16,7 @@ constexpr Eigen::Index kBatch = 24;
 /// Normal equations of one form's regressors, with the declared parameters and what is left.
 struct Normal {
   Eigen::MatrixXd own;
-  Eigen::MatrixXd cross;  ///< a row a regressor, a column a declared parameter
+  Eigen::MatrixXd cross;  ///< a row a regressor, a column a parameter of the problem
   Eigen::VectorXd right;
 };
 
@@ -141,7 +141,7 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
           continue;
         }
         const auto channel = static_cast<std::size_t>(c);
-        const double noise = problem_.data.noise[channel];
+        const double noise = problem_.data.experiments[e].noise[channel];
         if (place_.port) {
           reading = state.row(kReadState[channel]) * (problem_.scales.state(kReadState[channel]) / noise);
         } else if (place_.channel == channel) {

@@ -176,9 +176,13 @@ class Filter {
 
 }  // namespace
 
-LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fitted<SimplexFamily>& around,
-                             unsigned threads) {
-  const Dataset& data = evaluator.data();
+LatentProblem latent_problem(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads) {
+  // Zeros that are integrated out of the residuals would correlate all rows of a record, which a filter takes one by one.
+  Dataset without_priors = data;
+  for (Experiment& experiment : without_priors.experiments) {
+    experiment.zero_deviation.assign(data.channels.size(), 0.0);
+  }
+  const Evaluator<SimplexFamily> evaluator(without_priors, Resolution::coarse, Resolution::rough);
   const auto parameters = Evaluator<SimplexFamily>::with_values(around.base, around.free, around.u);
   LatentProblem problem{data, parameters, flow_scales(parameters), {}, {}, {}, {}};
   std::vector<std::size_t> declared;
@@ -194,7 +198,14 @@ LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fi
     return problem;
   }
   const auto count = static_cast<Eigen::Index>(declared.size());
-  problem.expected.resize(count);
+  Eigen::Index columns = count;
+  std::vector<std::vector<Eigen::Index>> zero_column(data.experiments.size());
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      zero_column[e].push_back(zero_precision(data.experiments[e], c) > 0.0 ? columns++ : -1);
+    }
+  }
+  problem.expected = Eigen::VectorXd::Zero(columns);
   for (Eigen::Index k = 0; k < count; ++k) {
     problem.expected(k) = -around.u[declared[static_cast<std::size_t>(k)]];
   }
@@ -203,14 +214,20 @@ LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fi
     const auto rows = static_cast<Eigen::Index>(experiment.rows());
     problem.left.emplace_back(Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(kReadState.size()),
                                                         std::numeric_limits<double>::quiet_NaN()));
-    problem.sensitivity.emplace_back(kReadState.size(), Eigen::MatrixXd::Zero(count, rows));
+    problem.sensitivity.emplace_back(kReadState.size(), Eigen::MatrixXd::Zero(columns, rows));
   }
   for (const Stretch& s : evaluator.stretches()) {
+    const Experiment& experiment = data.experiments[s.experiment];
+    Eigen::MatrixXd& sensitivity = problem.sensitivity[s.experiment][s.channel];
+    const Eigen::Index zero = zero_column[s.experiment][s.channel];
     for (std::size_t row = s.first; row < s.last; ++row) {
       const auto i = static_cast<Eigen::Index>(s.offset + row - s.first);
       const auto at = static_cast<Eigen::Index>(row);
       problem.left[s.experiment](at, static_cast<Eigen::Index>(s.channel)) = -residual(i);
-      problem.sensitivity[s.experiment][s.channel].col(at) = jacobian.row(i).transpose();
+      sensitivity.col(at).head(count) = jacobian.row(i).transpose();
+      if (zero >= 0) {
+        sensitivity(zero, at) = experiment.zero_deviation[s.channel] / experiment.noise[s.channel];
+      }
     }
   }
   problem.flows = linear_flow(data, parameters, problem.scales, threads);
