@@ -123,10 +123,10 @@ void set_noise(const ModelFile& model, Dataset& data) {
         const bool is_louder = may_be_louder && quiet_noise(kept) > kClearlyMore * declared->second;
         noise = is_louder ? noise_from_differences(kept) : declared->second;
       } else {
-        const double floor = noise_floor(kept);
+        const NoiseFloor floor = noise_floor(kept);
         noise = noise_from_differences(kept);
-        source = noise < floor ? NoiseSource::floor : source;
-        noise = std::max(noise, floor);
+        source = noise < floor.telling ? NoiseSource::floor : source;
+        noise = std::max(noise, floor.least);
       }
       square += noise * noise * static_cast<double>(experiment.rows());
       rows += static_cast<double>(experiment.rows());

@@ -80,10 +80,11 @@ double noise_from_differences(std::span<const double> values) {
 
 double quiet_noise(std::span<const double> values) { return std::sqrt(square_of_differences(values, 0.1) / 20.0); }
 
-double noise_floor(std::span<const double> values) {
+NoiseFloor noise_floor(std::span<const double> values) {
+  constexpr double kComputed = 1e-7;
   constexpr double kAgreement = 1e-5;
   if (values.empty()) {
-    return 0.0;
+    return {};
   }
   const auto rows = static_cast<double>(values.size());
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / rows;
@@ -101,7 +102,9 @@ double noise_floor(std::span<const double> values) {
     step = apart > same ? std::min(step, apart) : step;
   }
   const double rounding = std::isfinite(step) ? step / std::sqrt(12.0) : 0.0;
-  return std::max(rounding, kAgreement * std::sqrt(square / rows));
+  const double motion = std::sqrt(square / rows);
+  const double least = std::max(rounding, kComputed * motion);
+  return {least, std::max(least, kAgreement * motion)};
 }
 
 std::vector<double> autocorrelation(std::span<const double> values, std::size_t last_lag) {

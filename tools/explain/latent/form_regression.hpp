@@ -18,7 +18,8 @@ struct FormScore {
 
 /// Regression of what a model leaves on the responses of forms at one place: every regressor acts along the linear flow,
 /// and its coefficient is that of least squares on the readings, where the noise is white. Declared parameters move beside
-/// it within their tolerances, and so do the zeros of the records. A coefficient has the full input of its place as prior deviation (`FlowScales`).
+/// it within their tolerances, and so do the zeros of the records. A coefficient has the full input of its place as prior
+/// deviation (`FlowScales`).
 class FormRegression {
  public:
   /// Where the arguments of forms come from. What a smoother makes of the states contains the signal itself and may explain

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -53,29 +52,6 @@ bool falls_as_it_rises(const Fitted<Family>& model, const Candidate& candidate) 
   const auto [low, high] = std::ranges::minmax(signal);
   const double flat = kFlat * (high - low);
   return std::ranges::adjacent_find(signal, [&](double here, double next) { return next < here - flat; }) != signal.end();
-}
-
-/// True if a table over a rate pushes with the motion it is against, or a level of damping is below nothing, by more than a
-/// table's own scatter: friction and damping take energy out. Where the table stands at rate zero is a constant force.
-template <class Family>
-bool feeds_energy(const Fitted<Family>& model, const Candidate& candidate) {
-  const auto table = table_of<Family>(Evaluator<Family>::with_values(model.base, model.free, model.u), candidate);
-  if (!table || table->x.empty()) {
-    return false;
-  }
-  const bool over_rate = table->x_name == "rate";
-  if (!over_rate && table->x_name.find("of_damping") == std::string::npos) {
-    return false;
-  }
-  const auto closest = std::ranges::min_element(table->x, {}, [](double x) { return std::abs(x); });
-  const double at_rest = over_rate ? table->y[static_cast<std::size_t>(closest - table->x.begin())] : 0.0;
-  double in = 0.0;
-  double out = 0.0;
-  for (std::size_t i = 0; i < table->x.size(); ++i) {
-    const double power = (table->y[i] - at_rest) * (over_rate ? table->x[i] : 1.0);
-    (power < 0.0 ? in : out) += std::abs(power);
-  }
-  return in > kFlat * out;
 }
 
 /// Proposed terms in the order of what they leave as they were proposed, simulated: the order of a linear regression is
@@ -139,7 +115,9 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
         left = excess_over_noise(data, finalist.prediction);
         if (falls_as_it_rises(finalist.model, s.candidate)) {
           trial.reason += ", but by a signal that falls where it should rise";
-        } else if (feeds_energy(finalist.model, s.candidate)) {
+        } else if (feeds_energy<Family>(
+                       Evaluator<Family>::with_values(finalist.model.base, finalist.model.free, finalist.model.u),
+                       s.candidate)) {
           trial.reason += ", but by a friction that feeds energy in";
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
