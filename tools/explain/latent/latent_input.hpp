@@ -23,7 +23,8 @@ struct LatentProblem {
   std::vector<Flow> flows;                                ///< by experiment
   std::vector<Eigen::MatrixXd> left;                      ///< by experiment: measured minus predicted over noise, a column a
                                                           ///< channel; NaN where a row is not fitted
-  std::vector<std::vector<Eigen::MatrixXd>> sensitivity;  ///< by experiment and channel: a row a parameter
+  std::vector<std::vector<Eigen::MatrixXd>> sensitivity;  ///< by experiment and channel: a row a parameter of `own`
+  std::vector<std::vector<Eigen::Index>> own;             ///< by experiment: the parameters that move it
   Eigen::VectorXd expected;                               ///< prior mean of the parameters' move, in tolerances
 };
 
