@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include "interface/c/hotfire.h"
 #include "tests/interface/cases.hpp"
 #include "tests/support/allocation_guard.hpp"
+#include "tools/interface/c/hotfire.h"
 
 #include <CppUTest/TestHarness.h>
 

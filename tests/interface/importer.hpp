@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "interface/fmu/fmi2_types.hpp"
-#include "interface/fmu/fmi3_types.hpp"
 #include "tests/files/scratch.hpp"
 #include "tests/interface/cases.hpp"
 #include "tools/export/export_fmu.hpp"
+#include "tools/interface/fmu/fmi2_types.hpp"
+#include "tools/interface/fmu/fmi3_types.hpp"
 
 #include <CppUTest/TestHarness.h>
 

@@ -74,6 +74,7 @@ class LabProgram {
   LabProgram(const LabProgram&) = delete;
   LabProgram& operator=(const LabProgram&) = delete;
 
+  int process() const { return process_; }
   void signal(int number) const;
   /// Changes a number in the memory of the running program, wherever it has it, as memory that goes bad would.
   void change_memory(double from, double to) const;

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "tests/firmware/lab/lab_on_wire.hpp"
+#include "tests/rig/lab_laws.hpp"
 
 namespace hotfire::firmware {
 namespace {
@@ -194,26 +195,10 @@ class Soak {
     }
   }
 
-  static bool may_follow(RigState before, RigState now) {
-    switch (before) {
-      case RigState::safe:
-        return now == RigState::safe || now == RigState::armed || now == RigState::faulted;
-      case RigState::armed:
-        return now != RigState::stopping;
-      case RigState::running:
-        return now != RigState::armed && now != RigState::safe;
-      case RigState::stopping:
-        return now != RigState::armed && now != RigState::running;
-      case RigState::faulted:
-        return now == RigState::faulted || now == RigState::armed;
-    }
-    return false;
-  }
-
   void check() {
     const InterlockOutputs& interlock = bench_->lab.outputs().interlock;
     const ObservedRig& seen = bench_->rig.inputs().rig;
-    expect(may_follow(state_, interlock.state),
+    expect(test::may_follow(state_, interlock.state),
            "came from " + std::string(kRigStates[static_cast<std::size_t>(state_)]) + ", which does not lead here");
     seen_on_after_off_ = seen_on_after_off_ || (seen_off_ && arm_on_ && !broken_);
     seen_off_ = seen_off_ || (!arm_on_ && !broken_);

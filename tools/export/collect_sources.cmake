@@ -1,7 +1,7 @@
 # Copies the sources of an FMU and all that they include, but the standard library, to TARGET/sources.
 cmake_minimum_required(VERSION 3.25)
 
-file(GLOB sources ${ROOT}/interface/plant/*.cpp ${ROOT}/interface/c/*.cpp ${ROOT}/interface/fmu/*.cpp
+file(GLOB sources ${ROOT}/tools/interface/plant/*.cpp ${ROOT}/tools/interface/c/*.cpp ${ROOT}/tools/interface/fmu/*.cpp
   ${ROOT}/firmware/image/image_entries.cpp ${ROOT}/firmware/image/plant_image.cpp ${ROOT}/firmware/text/text.cpp)
 list(FILTER sources EXCLUDE REGEX "no_compiled_plant")
 execute_process(COMMAND ${COMPILER} -std=c++20 -M -DHOTFIRE_VERSION="${VERSION}" -I${ROOT} -isystem ${EIGEN} ${sources}

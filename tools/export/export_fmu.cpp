@@ -9,10 +9,10 @@
 #include <map>
 #include <utility>
 
-#include "interface/plant/parameter_table.hpp"
 #include "tools/export/archive.hpp"
 #include "tools/export/model_description.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/interface/plant/parameter_table.hpp"
 #include "tools/library/declared_plant.hpp"
 
 namespace hotfire {

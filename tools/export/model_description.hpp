@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "interface/plant/plant.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire {
 

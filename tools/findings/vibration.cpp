@@ -5,10 +5,10 @@
 #include <memory>
 #include <numbers>
 
-#include "interface/plant/normal.hpp"
 #include "model/vehicle.hpp"
 #include "tools/findings/parameters.hpp"
 #include "tools/findings/rows.hpp"
+#include "tools/interface/plant/normal.hpp"
 
 namespace hotfire::findings {
 

@@ -3,9 +3,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "interface/plant/normal.hpp"
-#include "interface/plant/setup_text.hpp"
 #include "tools/files/model/model_file.hpp"
+#include "tools/interface/plant/normal.hpp"
+#include "tools/interface/plant/setup_text.hpp"
 #include "tools/simulate/plant_image_text.hpp"
 #include "tools/simulate/vehicle_readings.hpp"
 #include "tools/structure/vehicle_file.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "interface/plant/plant.hpp"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire {
 

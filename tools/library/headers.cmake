@@ -18,7 +18,7 @@ foreach(header IN LISTS headers)
     file(WRITE ${public_headers}/hotfire/${header} "${text}")
   endif()
 endforeach()
-configure_file(${PROJECT_SOURCE_DIR}/interface/c/hotfire.h ${public_headers}/hotfire.h COPYONLY)
+configure_file(${PROJECT_SOURCE_DIR}/tools/interface/c/hotfire.h ${public_headers}/hotfire.h COPYONLY)
 
 add_library(hotfire_headers INTERFACE)
 add_library(hotfire::model ALIAS hotfire_headers)

@@ -3,9 +3,9 @@
 #include <mutex>
 #include <string>
 
-#include "interface/c/hotfire.h"
-#include "interface/c/model_handle.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/interface/c/hotfire.h"
+#include "tools/interface/c/model_handle.hpp"
 #include "tools/library/declared_plant.hpp"
 
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "interface/plant/normal.hpp"
 #include "model/vehicle.hpp"
 #include "model/vehicle_sensors.hpp"
+#include "tools/interface/plant/normal.hpp"
 #include "tools/structure/vehicle_sensors.hpp"
 
 namespace hotfire {

@@ -1,9 +1,9 @@
-# Breaks each rule of layering.cmake once, in a scratch copy of the tree, and expects to be told.
+# Breaks each rule of layering.cmake once, in a scratch copy of the tree, and expects the check to name it.
 cmake_minimum_required(VERSION 3.25)
 
 function(copy_tree)
   file(REMOVE_RECURSE ${SCRATCH})
-  foreach(room model hal firmware interface tools tests)
+  foreach(room model hal firmware tools tests)
     file(COPY ${ROOT}/${room} DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cpp")
   endforeach()
 endfunction()
@@ -11,13 +11,13 @@ endfunction()
 function(look status output)
   execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${ROOT}/tools/style/layering.cmake
     RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  # CMake wraps what it says.
+  # CMake wraps its messages.
   string(REGEX REPLACE "[ \n]+" " " text "${text}")
   set(${status} ${result} PARENT_SCOPE)
   set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
-# expect_fault(FILE CODE WORDS): with CODE in FILE the check fails, and says WORDS.
+# expect_fault(FILE CODE WORDS): with CODE in FILE the check fails, and its message has WORDS.
 function(expect_fault file code words)
   file(WRITE ${SCRATCH}/${file} "${code}\n")
   look(status text)
@@ -54,7 +54,7 @@ expect_fault(hal/wrong.hpp "#include \"model/simplex.hpp\"" "includes model/simp
 expect_fault(hal/linux/wrong.cpp "#include <fmt/format.h>" "includes <fmt/format.h>")
 expect_fault(firmware/wrong.cpp "#include \"tools/files/record/record.hpp\"" "includes tools/files/record/record.hpp")
 expect_fault(firmware/wrong.cpp "#include <ceres/ceres.h>" "includes <ceres/ceres.h>")
-expect_fault(interface/c/wrong.cpp "#include \"tools/files/record/record.hpp\"" "includes tools/files/record/record.hpp")
+expect_fault(tools/interface/c/wrong.cpp "#include \"tools/files/record/record.hpp\"" "includes tools/files/record/record.hpp")
 expect_fault(tools/files/wrong.cpp "#include \"firmware/loop/loop.hpp\"" "includes firmware/loop/loop.hpp")
 expect_fault(tools/files/wrong.cpp "#include \"hal/linux/realtime.hpp\"" "includes hal/linux/realtime.hpp")
 expect_fault(tools/files/wrong.cpp "#include \"tests/support/allocation_guard.hpp\"" "includes tests/support")
@@ -62,9 +62,9 @@ expect_fault(tools/files/wrong.cpp "#include \"record.hpp\"" "includes record.hp
 string(REPEAT "int f();\n" 401 long)
 expect_fault(tools/files/text/wrong.cpp "#include \"tools/files/record/record.hpp\"" "includes tools/files/record/record.hpp; below")
 expect_fault(tools/explain/fit/wrong.cpp "#include \"tools/explain/search/search.hpp\"" "includes tools/explain/search/search.hpp; below")
-expect_fault(tools/explain/report/wrong.cpp "#include \"tools/explain/explain.hpp\"" "includes tools/explain/explain.hpp, which stands above")
+expect_fault(tools/explain/report/wrong.cpp "#include \"tools/explain/explain.hpp\"" "includes tools/explain/explain.hpp, which is above the inner folders")
 expect_fault(firmware/loop/wrong.hpp "#include \"firmware/session/session.hpp\"" "includes firmware/session/session.hpp; below")
-expect_fault(firmware/attic/wrong.hpp "" "stands in firmware/attic, a room that")
+expect_fault(firmware/attic/wrong.hpp "" "is in firmware/attic, a folder that")
 foreach(number RANGE 1 20)
   file(WRITE ${SCRATCH}/firmware/service/more_${number}.hpp "")
 endforeach()
@@ -72,7 +72,7 @@ look(status text)
 file(GLOB more ${SCRATCH}/firmware/service/more_*.hpp)
 file(REMOVE ${more})
 if(status EQUAL 0 OR NOT text MATCHES "firmware/service: [0-9]+ files beside each other, at most 20")
-  message(SEND_ERROR "a room of more than 20 files: expected to be refused, got ${text}")
+  message(SEND_ERROR "a folder of more than 20 files: expected to be refused, got ${text}")
 endif()
 expect_fault(tools/files/wrong.hpp "${long}" "402 lines")
 

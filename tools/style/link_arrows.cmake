@@ -5,6 +5,7 @@
 set(link_model "^model:")
 set(link_hal "^hal:")
 set(link_firmware "^(firmware|model|hal):")
+# tools/interface
 set(link_interface "^(interface|model):")
 set(link_tools "^(tools|interface|model):|^hal:hotfire_hal(_sim|_recording|_schedule)?$")
 
@@ -26,6 +27,7 @@ function(room_of target result)
   get_target_property(imported ${target} IMPORTED)
   if(ours AND NOT imported)
     file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
+    string(REGEX REPLACE "^tools/interface" "interface" folder "${folder}")
     string(REGEX MATCH "^[^/]+" room "${folder}")
   endif()
   set(${result} "${room}" PARENT_SCOPE)
@@ -33,9 +35,10 @@ endfunction()
 
 # Called when every target is known: a link against the arrows ends the configuration.
 function(check_link_arrows)
-  foreach(room model hal firmware interface tools)
-    targets_below(${PROJECT_SOURCE_DIR}/${room} targets)
+  foreach(folder model hal firmware tools)
+    targets_below(${PROJECT_SOURCE_DIR}/${folder} targets)
     foreach(target IN LISTS targets)
+      room_of(${target} room)
       foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES)
         get_target_property(linked ${target} ${property})
         string(REGEX REPLACE "\\$<[A-Z_]+:([^<>]*)>" "\\1" linked "${linked}")

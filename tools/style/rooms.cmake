@@ -2,7 +2,7 @@
 # may include. A file beside the rooms may include all of them; no room includes a file beside the rooms. Checked by
 # layering.cmake; drawn into docs/architecture.md by draw_rooms.cmake.
 
-set(houses tools/explain tools/files tools/study firmware interface)
+set(houses tools/explain tools/files tools/study firmware tools/interface)
 
 # room(HOUSE NAME "what it is for" ROOM_BELOW...): rooms are declared from the lowest up.
 macro(room house name purpose)
@@ -45,6 +45,6 @@ room(firmware replay "a second run of a recording, compared bit for bit" lab ima
 room(firmware session "one run from options to exit status" lab can recording interlock image plant loop service text)
 room(firmware report "what a run prints" session can text)
 
-room(interface plant "a plant of any topology behind tables of variables: steps, state, derivatives")
-room(interface c "the C interface and the reader of plant texts" plant)
-room(interface fmu "the functions of FMI 2.0 and 3.0 for co-simulation" c plant)
+room(tools/interface plant "a plant of any topology behind tables of variables: steps, state, derivatives")
+room(tools/interface c "the C interface and the reader of plant texts" plant)
+room(tools/interface fmu "the functions of FMI 2.0 and 3.0 for co-simulation" c plant)

@@ -48,7 +48,7 @@ expect_fault(tests/firmware/interlock/interlock_test.cpp "TEST.Interlock, Starts
 expect_fault(${page} "`tools/rig can_refusals`" "`tools/rig nothing`" "R26: no case tests/rig/cases/nothing")
 expect_fault(${page} "H6 H8 \\| \\| `service" "H99 | | `service" "R19 is against H99, which is no hazard")
 expect_fault(${page} "H6 H8 \\| \\| `service" " | | `service" "R19 is against no hazard")
-expect_fault(${page} "\n. R20 " "\n| R19 " "R19 stands there twice")
+expect_fault(${page} "\n. R20 " "\n| R19 " "R19 is there twice")
 expect_fault(${page} "\n. R19 [^\n]*" "\n| R19 | half a row |" "not | requirement | text |")
 expect_fault(${page} "\n. R9 [^\n]*" "" "fault 12, position_error: no requirement")
 expect_fault(${page} "H3 . 12 ." "H3 | 12 250 |" "fault 250 of docs/safety-case.md is none")

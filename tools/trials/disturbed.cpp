@@ -4,9 +4,9 @@
 #include <cmath>
 #include <functional>
 
-#include "interface/plant/normal.hpp"
 #include "model/step_size.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/interface/plant/normal.hpp"
 #include "tools/simulate/run.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/profiles.hpp"

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "tools/interface/c/hotfire.h"
+#include "tools/interface/plant/plant.hpp"
+
+/// What is behind the handle of the C interface.
+struct hotfire_model {  // NOLINT(readability-identifier-naming): the name is C
+  explicit hotfire_model(std::unique_ptr<hotfire::plant::Plant> own);
+
+  std::unique_ptr<hotfire::plant::Plant> plant;
+  std::vector<double> wanted;               ///< room for the parameters of hotfire_set
+  std::vector<hotfire::plant::Seed> seeds;  ///< room for those of hotfire_differentiate: every input and parameter twice
+  std::array<char, 512> message{};
+  bool started = false;
+};
+
+namespace hotfire::interface {
+
+inline constexpr double kShortestPeriod = 1e-6;  ///< [s]
+inline constexpr double kLongestPeriod = 1.0;    ///< [s]
+
+/// What is wrong with a period [s]; empty if nothing.
+std::string_view broken_period(double period);
+
+/// Copies a text into a caller's buffer, cut to its size.
+void copy_message(std::string_view text, char* message, std::size_t size) noexcept;
+
+/// Runs `make()`, which gives a plant or throws, and wraps the result as a handle; NULL with the sentence in `message`.
+template <class Make>
+hotfire_model* open_with(Make&& make, char* message, std::size_t size) noexcept {
+  try {
+    copy_message("", message, size);
+    return new hotfire_model(make());
+  } catch (const std::bad_alloc&) {
+    copy_message("no memory for the model", message, size);
+  } catch (const std::exception& error) {
+    copy_message(error.what(), message, size);
+  }
+  return nullptr;
+}
+
+}  // namespace hotfire::interface

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "tools/interface/plant/plant.hpp"
+
+namespace hotfire::interface {
+
+/// Bytes of a state with a header: a mark, the plant's identity, the size and a fingerprint of what follows, so that bytes
+/// of another model, of another build or damaged ones are refused.
+std::size_t saved_size(const plant::Plant& plant) noexcept;
+void save(const plant::Plant& plant, bool started, std::byte* bytes) noexcept;
+
+/// Why these bytes are no state of the plant; empty if they are.
+std::string_view broken_state(const plant::Plant& plant, std::span<const std::byte> bytes) noexcept;
+
+/// Loads what `broken_state` has found good. True if the plant had been started.
+bool load(plant::Plant& plant, const std::byte* bytes) noexcept;
+
+}  // namespace hotfire::interface

@@ -1,0 +1,394 @@
+#include "tools/interface/fmu/slave.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "tools/interface/c/model_handle.hpp"
+
+namespace hotfire::fmu {
+
+/// What a state has beyond that of the model.
+struct Slave::Saved {
+  std::uint32_t phase;
+  std::uint32_t current;
+  std::uint64_t stop_defined;
+  std::uint64_t periods;
+  double start;
+  double stop;
+  double time;
+  double last_successful;
+};
+
+std::unique_ptr<Slave> Slave::open(const std::string& text, const char* token, Log log, void* instance,
+                                   std::string& message) {
+  constexpr std::string_view kKey = "token ";
+  const std::size_t end = text.find('\n');
+  if (!text.starts_with(kKey) || end == std::string::npos) {
+    message = "resources/plant.txt: line 1: expected `token value`; unpack the FMU again";
+    return nullptr;
+  }
+  const std::string own = text.substr(kKey.size(), end - kKey.size());
+  if (token == nullptr || own != token) {
+    message = std::string("the token of the importer is ") + (token == nullptr ? "missing" : token) + "; allowed: " + own +
+              ", as modelDescription.xml says";
+    return nullptr;
+  }
+  std::array<char, 512> problem{};
+  hotfire_model* model = hotfire_open_plant(text.c_str() + end + 1, "resources/plant.txt", problem.data(), problem.size());
+  if (model == nullptr) {
+    message = problem.data();
+    return nullptr;
+  }
+  return std::unique_ptr<Slave>(new Slave(model, log, instance));
+}
+
+Slave::Slave(hotfire_model* model, Log log, void* instance) : model_(model), log_(log), instance_(instance) {
+  for (const hotfire_kind kind : {HOTFIRE_INPUT, HOTFIRE_OUTPUT, HOTFIRE_PARAMETER}) {
+    counts_.at(kind) = hotfire_count(model, kind);
+  }
+  const std::size_t variables = counts_[HOTFIRE_INPUT] + counts_[HOTFIRE_OUTPUT] + counts_[HOTFIRE_PARAMETER];
+  indices_.resize(variables);
+  values_.resize(variables);
+  seeds_.resize(variables);
+  sensitivity_.resize(counts_[HOTFIRE_OUTPUT]);
+}
+
+Slave::~Slave() { hotfire_close(model_); }
+
+void Slave::say(Status status, Category category, const char* message) noexcept {
+  const auto index = static_cast<std::size_t>(category);
+  if (log_ != nullptr && logged_.at(index)) {
+    log_(instance_, status, kCategories.at(index), message);
+  }
+}
+
+Status Slave::refuse(Status status, const char* function, const char* problem) noexcept {
+  std::array<char, 640> message{};
+  std::snprintf(message.data(), message.size(), "%s: %s", function, problem);
+  say(status, status == Status::discard ? Category::discard : Category::error, message.data());
+  if (status == Status::error && phase_ != Phase::terminated) {
+    phase_ = Phase::failed;
+  }
+  return status;
+}
+
+Status Slave::refuse_phase(const char* function) noexcept {
+  constexpr std::array<const char*, 5> kNames{"instantiated", "in initialization mode", "in step mode", "terminated",
+                                              "failed: reset it or set a state"};
+  std::array<char, 128> problem{};
+  std::snprintf(problem.data(), problem.size(), "is not allowed now; the instance is %s",
+                kNames.at(static_cast<std::size_t>(phase_)));
+  return refuse(Status::error, function, problem.data());
+}
+
+Status Slave::refuse_reference(const char* function, Reference reference) noexcept {
+  std::array<char, 128> problem{};
+  std::snprintf(problem.data(), problem.size(),
+                "value reference %u: no such variable for this call; see modelDescription.xml", reference);
+  return refuse(Status::error, function, problem.data());
+}
+
+Status Slave::refuse_model(const char* function, hotfire_status status) noexcept {
+  return refuse(status == HOTFIRE_BAD_DATA ? Status::discard : Status::error, function, hotfire_message(model_));
+}
+
+Status Slave::set_logging(bool on, std::span<const char* const> categories) noexcept {
+  std::array<bool, kCategories.size()> wanted{};
+  wanted.fill(on && categories.empty());
+  if (!on && categories.empty()) {
+    logged_ = {true, true, false};
+    return Status::ok;
+  }
+  if (!categories.empty()) {
+    wanted = logged_;
+  }
+  for (const char* category : categories) {
+    const auto found = std::find_if(kCategories.begin(), kCategories.end(),
+                                    [category](const char* own) { return std::strcmp(own, category) == 0; });
+    if (found == kCategories.end()) {
+      return refuse(Status::error, "SetDebugLogging",
+                    "unknown category; allowed: logStatusError, logStatusDiscard, logEvents");
+    }
+    wanted.at(static_cast<std::size_t>(found - kCategories.begin())) = on;
+  }
+  logged_ = wanted;
+  return Status::ok;
+}
+
+Status Slave::set_up(double start, bool stop_defined, double stop) noexcept {
+  if (phase_ != Phase::instantiated) {
+    return refuse_phase("setting up the experiment");
+  }
+  if (!std::isfinite(start) || (stop_defined && !(stop > start))) {
+    return refuse(Status::error, "setting up the experiment",
+                  "start or stop time; allowed: a finite start time, and a stop time after it");
+  }
+  start_ = start;
+  time_ = start;
+  last_successful_ = start;
+  stop_defined_ = stop_defined;
+  stop_ = stop;
+  return Status::ok;
+}
+
+Status Slave::enter_initialization() noexcept {
+  if (phase_ != Phase::instantiated) {
+    return refuse_phase("EnterInitializationMode");
+  }
+  phase_ = Phase::initialization;
+  return Status::ok;
+}
+
+Status Slave::start_if_needed(const char* function) noexcept {
+  if (current_) {
+    return Status::ok;
+  }
+  if (const hotfire_status status = hotfire_start(model_, start_); status != HOTFIRE_OK) {
+    return refuse(Status::error, function, hotfire_message(model_));
+  }
+  current_ = true;
+  periods_ = 0;
+  return Status::ok;
+}
+
+Status Slave::exit_initialization() noexcept {
+  if (phase_ != Phase::initialization) {
+    return refuse_phase("ExitInitializationMode");
+  }
+  const Status status = start_if_needed("ExitInitializationMode");
+  if (status == Status::ok) {
+    phase_ = Phase::step;
+    say(Status::ok, Category::event, "the model stands in its steady state");
+  }
+  return status;
+}
+
+Status Slave::terminate() noexcept {
+  if (phase_ != Phase::step) {
+    return refuse_phase("Terminate");
+  }
+  phase_ = Phase::terminated;
+  say(Status::ok, Category::event, "the run is over");
+  return Status::ok;
+}
+
+Status Slave::reset() noexcept {
+  model_->started = false;
+  current_ = false;
+  phase_ = Phase::instantiated;
+  for (const hotfire_kind kind : {HOTFIRE_INPUT, HOTFIRE_PARAMETER}) {
+    for (std::size_t i = 0; i < counts_.at(kind); ++i) {
+      hotfire_variable variable{};
+      hotfire_describe(model_, kind, i, &variable);
+      indices_[i] = i;
+      values_[i] = variable.start;
+    }
+    if (const hotfire_status status = hotfire_set(model_, kind, indices_.data(), values_.data(), counts_.at(kind));
+        status != HOTFIRE_OK) {
+      return refuse(Status::error, "Reset", hotfire_message(model_));
+    }
+  }
+  start_ = time_ = last_successful_ = 0.0;
+  stop_defined_ = false;
+  say(Status::ok, Category::event, "the instance is as it was made");
+  return Status::ok;
+}
+
+bool Slave::find(Reference reference, Place& place) const noexcept {
+  if (reference < kFirstInput) {
+    return false;
+  }
+  std::size_t index = reference - kFirstInput;
+  for (const hotfire_kind kind : {HOTFIRE_INPUT, HOTFIRE_OUTPUT, HOTFIRE_PARAMETER}) {
+    if (index < counts_.at(kind)) {
+      place = {kind, index};
+      return true;
+    }
+    index -= counts_.at(kind);
+  }
+  return false;
+}
+
+Status Slave::set_of_kind(hotfire_kind kind, std::span<const Reference> references,
+                          std::span<const double> values) noexcept {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    Place place{};
+    find(references[i], place);
+    if (place.kind == kind) {
+      indices_[count] = place.index;
+      values_[count++] = values[i];
+    }
+  }
+  if (count == 0) {
+    return Status::ok;
+  }
+  if (phase_ == Phase::initialization) {
+    // The start is calculated again with the new values.
+    model_->started = false;
+    current_ = false;
+  }
+  const hotfire_status status = hotfire_set(model_, kind, indices_.data(), values_.data(), count);
+  return status == HOTFIRE_OK ? Status::ok : refuse_model("setting variables", status);
+}
+
+Status Slave::set(std::span<const Reference> references, std::span<const double> values) noexcept {
+  if (phase_ != Phase::instantiated && phase_ != Phase::initialization && phase_ != Phase::step) {
+    return refuse_phase("setting variables");
+  }
+  if (references.size() != values.size() || references.size() > indices_.size()) {
+    return refuse(Status::error, "setting variables", "as many values as value references are allowed, each variable once");
+  }
+  for (const Reference reference : references) {
+    Place place{};
+    if (!find(reference, place) || place.kind == HOTFIRE_OUTPUT) {
+      return refuse_reference("setting variables", reference);
+    }
+  }
+  const Status status = set_of_kind(HOTFIRE_PARAMETER, references, values);
+  return status == Status::ok ? set_of_kind(HOTFIRE_INPUT, references, values) : status;
+}
+
+Status Slave::get(std::span<const Reference> references, std::span<double> values) noexcept {
+  if (references.size() != values.size()) {
+    return refuse(Status::error, "getting variables", "as many values as value references are allowed");
+  }
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    if (references[i] == kTime) {
+      values[i] = time_;
+      continue;
+    }
+    Place place{};
+    if (!find(references[i], place)) {
+      return refuse_reference("getting variables", references[i]);
+    }
+    if (place.kind == HOTFIRE_OUTPUT) {
+      if (phase_ == Phase::instantiated) {
+        return refuse_phase("getting outputs");
+      }
+      if (const Status status = phase_ == Phase::initialization ? start_if_needed("getting outputs") : Status::ok;
+          status != Status::ok) {
+        return status;
+      }
+    }
+    if (const hotfire_status status = hotfire_get(model_, place.kind, &place.index, &values[i], 1); status != HOTFIRE_OK) {
+      return refuse_model("getting variables", status);
+    }
+  }
+  return Status::ok;
+}
+
+Status Slave::do_step(double current, double step) noexcept {
+  if (phase_ != Phase::step) {
+    return refuse_phase("DoStep");
+  }
+  const double period = hotfire_period(model_);
+  if (!(step > 0.0) || !std::isfinite(current) || !std::isfinite(step)) {
+    return refuse(Status::error, "DoStep", "communicationStepSize; allowed: above 0");
+  }
+  if (std::abs(current - time_) > kEarly * period) {
+    std::array<char, 160> problem{};
+    std::snprintf(problem.data(), problem.size(),
+                  "currentCommunicationPoint = %.17g: allowed: %.17g, where the last step ended", current, time_);
+    return refuse(Status::error, "DoStep", problem.data());
+  }
+  const double end = current + step;
+  if (stop_defined_ && end > stop_ + kEarly * period) {
+    return refuse(Status::error, "DoStep", "the step ends after the stop time of the experiment; allowed: up to it");
+  }
+  const double wanted = std::floor((end - start_) / period + kEarly);
+  while (static_cast<double>(periods_) < wanted) {
+    if (const hotfire_status status = hotfire_step(model_); status != HOTFIRE_OK) {
+      last_successful_ = start_ + static_cast<double>(periods_) * period;
+      return refuse(Status::error, "DoStep", hotfire_message(model_));
+    }
+    ++periods_;
+  }
+  time_ = end;
+  last_successful_ = end;
+  return Status::ok;
+}
+
+Status Slave::differentiate(std::span<const Reference> unknowns, std::span<const Reference> knowns,
+                            std::span<const double> seed, std::span<double> sensitivity) noexcept {
+  constexpr const char* kName = "GetDirectionalDerivative";
+  if (phase_ != Phase::initialization && phase_ != Phase::step) {
+    return refuse_phase(kName);
+  }
+  if (unknowns.size() != sensitivity.size() || knowns.size() != seed.size() || knowns.size() > seeds_.size()) {
+    return refuse(Status::error, kName, "as many seeds as knowns and as many places as unknowns are allowed");
+  }
+  for (std::size_t i = 0; i < knowns.size(); ++i) {
+    Place place{};
+    if (!find(knowns[i], place) || place.kind == HOTFIRE_OUTPUT) {
+      return refuse_reference(kName, knowns[i]);
+    }
+    seeds_[i] = {place.kind, place.index, seed[i]};
+  }
+  for (const Reference unknown : unknowns) {
+    if (Place place{}; !find(unknown, place) || place.kind != HOTFIRE_OUTPUT) {
+      return refuse_reference(kName, unknown);
+    }
+  }
+  if (const Status status = start_if_needed(kName); status != Status::ok) {
+    return status;
+  }
+  if (const hotfire_status status =
+          hotfire_differentiate(model_, seeds_.data(), knowns.size(), sensitivity_.data(), sensitivity_.size());
+      status != HOTFIRE_OK) {
+    return refuse_model(kName, status);
+  }
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    Place place{};
+    find(unknowns[i], place);
+    sensitivity[i] = sensitivity_[place.index];
+  }
+  return Status::ok;
+}
+
+std::size_t Slave::saved_size() const noexcept { return sizeof(Saved) + hotfire_state_size(model_); }
+
+Status Slave::save(std::span<std::byte> bytes) noexcept {
+  if (bytes.size() < saved_size()) {
+    return refuse(Status::error, "saving a state", "too few bytes; allowed: as many as the size of the state");
+  }
+  const Saved saved{static_cast<std::uint32_t>(phase_),
+                    current_ ? 1U : 0U,
+                    stop_defined_ ? 1U : 0U,
+                    periods_,
+                    start_,
+                    stop_,
+                    time_,
+                    last_successful_};
+  std::memcpy(bytes.data(), &saved, sizeof saved);
+  hotfire_save(model_, bytes.data() + sizeof saved, bytes.size() - sizeof saved);
+  return Status::ok;
+}
+
+Status Slave::load(std::span<const std::byte> bytes) noexcept {
+  Saved saved{};
+  if (bytes.size() < sizeof saved) {
+    return refuse(Status::error, "setting a state", "too few bytes for a state of this FMU");
+  }
+  std::memcpy(&saved, bytes.data(), sizeof saved);
+  if (saved.phase > static_cast<std::uint32_t>(Phase::failed) || saved.current > 1 || saved.stop_defined > 1) {
+    return refuse(Status::error, "setting a state", "not a state of this FMU");
+  }
+  if (hotfire_load(model_, bytes.data() + sizeof saved, bytes.size() - sizeof saved) != HOTFIRE_OK) {
+    return refuse(Status::error, "setting a state", hotfire_message(model_));
+  }
+  phase_ = static_cast<Phase>(saved.phase);
+  current_ = saved.current == 1;
+  stop_defined_ = saved.stop_defined == 1;
+  periods_ = saved.periods;
+  start_ = saved.start;
+  stop_ = saved.stop;
+  time_ = saved.time;
+  last_successful_ = saved.last_successful;
+  return Status::ok;
+}
+
+}  // namespace hotfire::fmu

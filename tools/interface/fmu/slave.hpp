@@ -1,0 +1,122 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/interface/c/hotfire.h"
+
+namespace hotfire::fmu {
+
+/// What a function of FMI 2.0 or 3.0 returns: both standards have these numbers.
+enum class Status { ok = 0, warning = 1, discard = 2, error = 3, fatal = 4 };
+
+/// The states of a co-simulation FMU that both standards have.
+enum class Phase : std::uint32_t { instantiated, initialization, step, terminated, failed };
+
+/// Categories of log messages, as modelDescription.xml names them.
+inline constexpr std::array<const char*, 3> kCategories{"logStatusError", "logStatusDiscard", "logEvents"};
+enum class Category { error, discard, event };
+
+/// Gives a message to the importer.
+using Log = void (*)(void* instance, Status status, const char* category, const char* message);
+
+/// The numbers of the model as value references: 0 is time, then inputs, outputs and parameters in the order of their
+/// tables.
+using Reference = std::uint32_t;
+inline constexpr Reference kTime = 0;
+inline constexpr Reference kFirstInput = 1;
+
+/// A communication point may be this part of a period before a multiple of the period, and is taken for it: an importer that
+/// adds up its steps is never exact.
+inline constexpr double kEarly = 1e-3;
+
+/// What both versions of the standard have in common: one model, its phase and its communication time. Every function checks
+/// that the phase allows it. No allocation but in `open` and `saved`.
+class Slave {
+ public:
+  /// `text` is resources/plant.txt of the FMU: its token, then a plant text. Null with a message if it is refused.
+  static std::unique_ptr<Slave> open(const std::string& text, const char* token, Log log, void* instance,
+                                     std::string& message);
+  ~Slave();
+  Slave(const Slave&) = delete;
+  Slave& operator=(const Slave&) = delete;
+
+  /// Turns messages of all categories on or off, or of those that are named.
+  Status set_logging(bool on, std::span<const char* const> categories) noexcept;
+
+  Status set_up(double start, bool stop_defined, double stop) noexcept;
+  Status enter_initialization() noexcept;
+  Status exit_initialization() noexcept;
+  Status terminate() noexcept;
+  Status reset() noexcept;
+
+  Status set(std::span<const Reference> references, std::span<const double> values) noexcept;
+  Status get(std::span<const Reference> references, std::span<double> values) noexcept;
+
+  /// Advances to `current` + `step`: the model by its whole periods up to there. Outputs are those of the last of them.
+  Status do_step(double current, double step) noexcept;
+  double last_successful_time() const noexcept { return last_successful_; }
+
+  Status differentiate(std::span<const Reference> unknowns, std::span<const Reference> knowns, std::span<const double> seed,
+                       std::span<double> sensitivity) noexcept;
+
+  /// The state as bytes.
+  std::size_t saved_size() const noexcept;
+  Status save(std::span<std::byte> bytes) noexcept;
+  Status load(std::span<const std::byte> bytes) noexcept;
+
+  /// Logs a failure. `error` makes the instance unusable until it is reset or gets a state; `discard` does not.
+  Status refuse(Status status, const char* function, const char* problem) noexcept;
+
+ private:
+  struct Place {
+    hotfire_kind kind;
+    std::size_t index;
+  };
+  struct Saved;
+
+  Slave(hotfire_model* model, Log log, void* instance);
+
+  bool find(Reference reference, Place& place) const noexcept;
+  Status refuse_reference(const char* function, Reference reference) noexcept;
+  Status refuse_phase(const char* function) noexcept;
+  Status refuse_model(const char* function, hotfire_status status) noexcept;
+  Status start_if_needed(const char* function) noexcept;
+  Status set_of_kind(hotfire_kind kind, std::span<const Reference> references, std::span<const double> values) noexcept;
+  void say(Status status, Category category, const char* message) noexcept;
+
+  hotfire_model* model_;
+  Log log_;
+  void* instance_;
+  std::array<bool, kCategories.size()> logged_{true, true, false};
+  std::array<std::size_t, 3> counts_{};  ///< of the tables
+  Phase phase_ = Phase::instantiated;
+  bool current_ = false;  ///< the model has been started under the present values
+  double start_ = 0.0;
+  bool stop_defined_ = false;
+  double stop_ = 0.0;
+  double time_ = 0.0;  ///< the communication point that was reached
+  double last_successful_ = 0.0;
+  std::uint64_t periods_ = 0;
+  // Room for the arguments of the C interface.
+  std::vector<std::size_t> indices_;
+  std::vector<double> values_;
+  std::vector<hotfire_seed> seeds_;
+  std::vector<double> sensitivity_;
+};
+
+/// The text in resources/plant.txt of a folder, or what was compiled into the FMU. Throws std::runtime_error.
+std::string plant_document(const std::string& resources);
+
+/// The folder of a file URI: "file:///a/b%20c" gives "/a/b c". Throws std::runtime_error.
+std::string path_of_uri(const std::string& uri);
+
+/// Compiled into an FMU from its sources: the plant, so that a target needs no files. Null where it is read from resources/.
+extern const char* const kCompiledPlant;
+
+}  // namespace hotfire::fmu

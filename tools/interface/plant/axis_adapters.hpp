@@ -1,0 +1,155 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/key_text.hpp"
+#include "model/step_size.hpp"
+#include "tools/interface/plant/plant.hpp"
+
+namespace hotfire::plant {
+
+// What `PlantOf` asks of a topology, in any scalar: its parameters, its model, its state, and what goes in and out.
+
+inline constexpr double kLargest = std::numeric_limits<double>::max();
+
+inline std::string_view meaning_of_channel(std::string_view channel) {
+  return channel == "piston"     ? "piston position as its sensor reads it"
+         : channel == "engine"   ? "engine angle as its sensor reads it"
+         : channel == "position" ? "position of the mass as its sensor reads it"
+                                 : "pressure across the piston as its sensor reads it";
+}
+
+/// The first broken relation between the values of an active effect; empty if there is none.
+template <class Parameters>
+std::string_view broken_effect(const Parameters& axis) {
+  std::string_view broken;
+  model::visit_effects(axis, [&]<class E>(std::size_t index, const auto& values) {
+    if constexpr (requires { E::broken_relation(values); }) {
+      if (broken.empty() && axis.effects.active[index]) {
+        broken = E::broken_relation(values);
+      }
+    }
+  });
+  return broken;
+}
+
+/// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
+template <class S>
+struct SimplexAdapter {
+  using Model = model::Simplex<S>;
+  using Parameters = typename Model::Parameters;
+  struct State {
+    typename Model::State plant{};
+  };
+  static constexpr std::size_t kOutputs = Model::channels.size();
+
+  static int steps(const typename Model::Parameters&, double period) { return model::steps_per_period(period); }
+
+  static std::vector<Variable> inputs(const Parameters&) {
+    return {{"command", "rad", "commanded engine angle, held over a period", 0.0, -kLargest, kLargest},
+            {"torque", "N.m", "torque on the engine towards positive angles, held over a period", 0.0, -kLargest, kLargest}};
+  }
+
+  static std::vector<Variable> outputs(const Setup&) {
+    std::vector<Variable> variables;
+    for (std::size_t c = 0; c < kOutputs; ++c) {
+      variables.push_back({std::string(Model::channels[c]), std::string(Model::channel_units[c]),
+                           std::string(meaning_of_channel(Model::channels[c])), 0.0, -kLargest, kLargest});
+    }
+    return variables;
+  }
+
+  static std::vector<Variable> further_parameters() { return {}; }
+
+  template <class Visitor, class AnyOf>
+  static void visit(AnyOf& parameters, Visitor& visitor) {
+    model::visit_keys(parameters, visitor);
+  }
+
+  static std::string_view broken(const Parameters& parameters) { return broken_effect(parameters); }
+
+  static const Parameters& of_model(const Parameters& parameters) { return parameters; }
+
+  static State first_state(const Parameters&, const Setup&) { return {}; }
+
+  static void settle(const Model& model, State& state, std::span<const S> inputs, const Parameters&, std::span<const S>,
+                     double time) {
+    state.plant = model.steady(inputs[0]);
+    state.plant.clock = {model::Precise<S>(time)};
+  }
+
+  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
+    const S& arm = model.parameters().actuator.moment_arm;
+    const model::Coupling<S> around{S(0.0), arm, S(-inputs[1])};
+    model.step(state.plant, inputs[0], [&](const S&) { return around; });
+  }
+
+  static void smooth(Parameters&) {}
+  static void begin_reading(State&, const Parameters&) noexcept {}
+
+  static void read(State& state, double, std::span<S> outputs) noexcept {
+    const auto& measured = Model::measured(state.plant);
+    std::copy(measured.begin(), measured.end(), outputs.begin());
+  }
+};
+
+/// A mass that a force drives. Input: force, in the record's own units.
+template <class S>
+struct DirectAdapter {
+  using Model = model::Direct<S>;
+  using Parameters = typename Model::Parameters;
+  struct State {
+    typename Model::State plant{};
+  };
+  static constexpr std::size_t kOutputs = Model::channels.size();
+
+  static int steps(const typename Model::Parameters& parameters, double period) {
+    return model::steps_per_period<Model>(parameters, period);
+  }
+
+  static std::vector<Variable> inputs(const Parameters&) {
+    return {{"force", "", "force on the mass, held over a period", 0.0, -kLargest, kLargest}};
+  }
+
+  static std::vector<Variable> outputs(const Setup&) {
+    return {{"position", "", std::string(meaning_of_channel("position")), 0.0, -kLargest, kLargest}};
+  }
+
+  static std::vector<Variable> further_parameters() {
+    return {{"start.position", "", "position at the start", 0.0, -kLargest, kLargest},
+            {"start.velocity", "position/time", "velocity at the start", 0.0, -kLargest, kLargest}};
+  }
+
+  template <class Visitor, class AnyOf>
+  static void visit(AnyOf& parameters, Visitor& visitor) {
+    model::visit_keys(parameters, visitor);
+  }
+
+  static std::string_view broken(const Parameters& parameters) { return broken_effect(parameters); }
+
+  static const Parameters& of_model(const Parameters& parameters) { return parameters; }
+
+  static State first_state(const Parameters&, const Setup&) { return {}; }
+
+  static void settle(const Model& model, State& state, std::span<const S>, const Parameters&, std::span<const S> further,
+                     double time) {
+    state.plant = model.moving(further[0], further[1]);
+    state.plant.clock = {model::Precise<S>(time)};
+  }
+
+  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
+    model.step(state.plant, inputs[0]);
+  }
+
+  static void smooth(Parameters&) {}
+  static void begin_reading(State&, const Parameters&) noexcept {}
+
+  static void read(State& state, double, std::span<S> outputs) noexcept { outputs[0] = Model::measured(state.plant)[0]; }
+};
+
+}  // namespace hotfire::plant

@@ -1,0 +1,17 @@
+#include "tools/interface/plant/plant_of.hpp"
+#include "tools/interface/plant/vehicle_adapter.hpp"
+
+namespace hotfire::plant {
+
+namespace {
+
+template <class S>
+using TaosAdapter = VehicleAdapter<model::Taos<S>>;
+
+}  // namespace
+
+std::unique_ptr<Plant> make_plant(const model::InstrumentedVehicle<model::Taos<double>>& parameters, const Setup& setup) {
+  return PlantOf<TaosAdapter>::make(parameters, setup);
+}
+
+}  // namespace hotfire::plant

@@ -1,0 +1,120 @@
+# Checks that pages and messages use the standard terms: no word of the lists below. The build runs it; by hand:
+#   cmake -D ROOT=$PWD -P tools/style/english.cmake
+# Pages are checked outside of code, which shows names and what a program prints. Messages, help and the pages that a program
+# writes are checked as string literals of the sources.
+cmake_minimum_required(VERSION 3.25)
+
+# A word and what to write in its place. A word stays out of pages and messages once no text has it.
+set(replaced_everywhere
+  "stood|was, were"
+  "lacking|missing"
+  "mended|fixed, corrected"
+  "mending|correction"
+  "house|layers, folders"
+  "at the soonest|at least, not before"
+  "let go|released"
+  "who only|to ... only"
+  "whoever|anyone who")
+# The same for words that messages still have.
+set(replaced_in_pages
+  "told|identified, reported, known"
+  "tells|identifies, reports, shows"
+  "stands|is, represents"
+  "lack|is missing in"
+  "lacks|is missing in"
+  "mend|fix, correct, remedy"
+  "mends|fixes, corrects"
+  "goes no faster|limited speed"
+  "for good|permanent"
+  "anew|again"
+  "rooms|folders"
+  "looked for|searched for, checked")
+
+set(pages README.md CONTRIBUTING.md CHANGELOG.md examples/README.md)
+file(GLOB found RELATIVE ${ROOT} ${ROOT}/docs/*.md)
+list(APPEND pages ${found})
+# Pages that a program writes.
+list(REMOVE_ITEM pages docs/findings.md docs/performance.md)
+
+function(fault file number word instead line)
+  string(STRIP "${line}" line)
+  set_property(GLOBAL APPEND_STRING PROPERTY faults "\n  ${file}:${number}: '${word}', write: ${instead}\n    ${line}")
+endfunction()
+
+# Lines of a file without what CMake takes for a list, and whether a word of the lists is anywhere in it.
+function(read_lines file words result)
+  file(READ ${ROOT}/${file} text)
+  string(TOLOWER "${text}" text)
+  set(${result} "" PARENT_SCOPE)
+  if(text MATCHES "(^|[^a-z0-9_])(${words})([^a-z0-9_]|$)")
+    string(REPLACE "\\\"" "'" text "${text}")
+    string(REPLACE "'\"'" "' '" text "${text}")
+    string(REGEX REPLACE "[][;\\]" " " text "${text}")
+    string(REGEX REPLACE "\n" " ;" text "${text}")
+    set(${result} "${text}" PARENT_SCOPE)
+  endif()
+endfunction()
+
+# check_line(FILE NUMBER TEXT REPLACED): a fault for each word of the list in the text.
+function(check_line file number text replaced)
+  foreach(pair IN LISTS replaced)
+    string(REGEX MATCH "^([^|]*)[|](.*)$" matched "${pair}")
+    set(word "${CMAKE_MATCH_1}")
+    set(instead "${CMAKE_MATCH_2}")
+    if(text MATCHES "(^|[^a-z0-9_])${word}([^a-z0-9_]|$)")
+      fault(${file} ${number} "${word}" "${instead}" "${text}")
+    endif()
+  endforeach()
+endfunction()
+
+function(words_of replaced result)
+  list(TRANSFORM replaced REPLACE "[|].*$" "")
+  list(JOIN replaced "|" words)
+  set(${result} "${words}" PARENT_SCOPE)
+endfunction()
+
+set(all_replaced ${replaced_everywhere} ${replaced_in_pages})
+words_of("${all_replaced}" words)
+foreach(page IN LISTS pages)
+  read_lines(${page} "${words}" lines)
+  set(number 0)
+  set(in_code FALSE)
+  foreach(line IN LISTS lines)
+    math(EXPR number "${number} + 1")
+    if(line MATCHES "^ *```")
+      if(in_code)
+        set(in_code FALSE)
+      else()
+        set(in_code TRUE)
+      endif()
+    elseif(NOT in_code AND NOT line MATCHES "^<!--")
+      string(REGEX REPLACE "`[^`]*`" "`...`" line "${line}")
+      check_line(${page} ${number} "${line}" "${all_replaced}")
+    endif()
+  endforeach()
+endforeach()
+
+words_of("${replaced_everywhere}" words)
+set(sources "")
+foreach(folder model hal firmware interface tools)
+  foreach(pattern *.hpp *.h *.cpp)
+    file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/${folder}/${pattern})
+    list(APPEND sources ${found})
+  endforeach()
+endforeach()
+foreach(source IN LISTS sources)
+  read_lines(${source} "${words}" lines)
+  set(number 0)
+  foreach(line IN LISTS lines)
+    math(EXPR number "${number} + 1")
+    if(line MATCHES "\"" AND NOT line MATCHES "^ *//")
+      string(REGEX MATCHALL "\"[^\"]*\"" literals "${line}")
+      check_line(${source} ${number} "${literals}" "${replaced_everywhere}")
+    endif()
+  endforeach()
+endforeach()
+
+get_property(faults GLOBAL PROPERTY faults)
+if(faults)
+  message(FATAL_ERROR "words that have a standard term (tools/style/english.cmake has the list):${faults}")
+endif()

@@ -1,0 +1,65 @@
+# Writes replaced words into a scratch copy of the pages and the sources, and expects english.cmake to name each.
+cmake_minimum_required(VERSION 3.25)
+
+function(copy_tree)
+  file(REMOVE_RECURSE ${SCRATCH})
+  file(COPY ${ROOT}/README.md ${ROOT}/CONTRIBUTING.md ${ROOT}/CHANGELOG.md DESTINATION ${SCRATCH})
+  file(COPY ${ROOT}/examples/README.md DESTINATION ${SCRATCH}/examples)
+  file(COPY ${ROOT}/docs DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.md")
+  foreach(folder model hal firmware interface tools)
+    file(COPY ${ROOT}/${folder} DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "*.cpp")
+  endforeach()
+endfunction()
+
+function(look status output)
+  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${ROOT}/tools/style/english.cmake
+    RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  # CMake wraps its messages.
+  string(REGEX REPLACE "[ \n]+" " " text "${text}")
+  set(${status} ${result} PARENT_SCOPE)
+  set(${output} "${text}" PARENT_SCOPE)
+endfunction()
+
+# expect_fault(FILE TEXT FAULT): with TEXT at the end of FILE the check fails, and its message has FAULT.
+function(expect_fault file text fault)
+  set(old "")
+  if(EXISTS ${SCRATCH}/${file})
+    file(READ ${SCRATCH}/${file} old)
+  endif()
+  file(APPEND ${SCRATCH}/${file} "${text}\n")
+  look(status output)
+  file(WRITE ${SCRATCH}/${file} "${old}")
+  string(FIND "${output}" "${fault}" position)
+  if(status EQUAL 0 OR position EQUAL -1)
+    message(SEND_ERROR "${file} with '${text}': expected '${fault}', got status ${status}: ${output}")
+  endif()
+endfunction()
+
+# expect_none(FILE TEXT): a new FILE with TEXT is allowed.
+function(expect_none file text)
+  file(WRITE ${SCRATCH}/${file} "${text}\n")
+  look(status output)
+  file(REMOVE ${SCRATCH}/${file})
+  if(NOT status EQUAL 0)
+    message(SEND_ERROR "${file} with '${text}' is allowed, but: ${output}")
+  endif()
+endfunction()
+
+copy_tree()
+look(status output)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "the tree as it is: ${output}")
+endif()
+
+expect_fault(docs/wrong.md "# A page\n\nThe effect is told by the record." "docs/wrong.md:3: 'told', write: identified")
+expect_fault(docs/trials.md "Mend the record; then go on." "'mend', write: fix")
+expect_fault(README.md "| [a model lacks] |" "'lacks', write: is missing in")
+expect_fault(CONTRIBUTING.md "A value (which stands; for now) is exact." "'stands', write: is, represents")
+expect_fault(CHANGELOG.md "The lab starts a second later at the soonest." "'at the soonest', write: at least")
+expect_fault(examples/README.md "`x` stood" "'stood', write: was")
+expect_fault(docs/wrong.md "```\nmended\n```\nmended" "docs/wrong.md:4: 'mended'")
+expect_fault(tools/cli/wrong.cpp "int f();\nconst char* kText = \"run it \\\"mended\\\"\";" "tools/cli/wrong.cpp:2: 'mended'")
+expect_fault(firmware/wrong.hpp "g(\"a[1]; Whoever runs it\");" "firmware/wrong.hpp:1: 'whoever'")
+
+expect_none(docs/right.md "Understand `mends` and StandsStill.\n```\nthe model lacks friction\n```\nbold")
+expect_none(tools/cli/right.cpp "// mended\nint house = 0;\nconst char* kText = \"amended, housed\";")
