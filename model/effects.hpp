@@ -32,6 +32,7 @@
 #include "model/effects/unlisted_signal.hpp"
 #include "model/effects/unlisted_wiper_play.hpp"
 #include "model/effects/valve_asymmetry.hpp"
+#include "model/effects/valve_bias.hpp"
 #include "model/effects/valve_deadband.hpp"
 #include "model/effects/valve_hysteresis.hpp"
 #include "model/effects/variable_moment_arm.hpp"
@@ -42,7 +43,7 @@ namespace hotfire::model {
 /// command and valve; at the load spring geometry first, then play, then the spring itself.
 using SimplexEffects =
     EffectList<CommandScale, RateLimit, CommandDelay, UnlistedSignal<Site::command>, Term<Site::command>,
-               UnlistedSignal<Site::valve_command>, Term<Site::valve_command>, ValveHysteresis, UnlistedOpening,
+               UnlistedSignal<Site::valve_command>, Term<Site::valve_command>, ValveBias, ValveHysteresis, UnlistedOpening,
                ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, Term<Site::flow>, UnlistedPressure, PistonFriction,
                UnlistedMotion<Site::piston>, Term<Site::piston>, UnlistedDeflection, Term<Site::load_spring>,
                VariableMomentArm, Backlash, SoftStiffness, StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening,
@@ -53,8 +54,9 @@ using SimplexEffects =
 /// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
 /// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most
 /// of the state of eight. A `Taos` knows the whole list.
-using MasvEffects = EffectList<RateLimit, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction, Backlash,
-                               SoftStiffness, DuctHardening, TorqueOffset, CrossAxis, SensorNonlinearity, SensorLag>;
+using MasvEffects =
+    EffectList<RateLimit, ValveBias, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction, Backlash,
+               SoftStiffness, DuctHardening, TorqueOffset, CrossAxis, SensorNonlinearity, SensorLag>;
 
 /// Every effect a force-driven mass knows.
 using DirectEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, PositionDamping,

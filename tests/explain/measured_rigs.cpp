@@ -1,5 +1,6 @@
-// The closed loop on other people's rigs: measured_rigs emps|silverbox. The data are not part of the project; the folder
-// that holds emps/ and silverbox/ is named by HOTFIRE_MEASURED_DATA (docs/explain.md). Exit 77 without it.
+// The closed loop on other people's rigs: measured_rigs emps|silverbox, whose data are not part of the project (the folder
+// that holds emps/ and silverbox/ is named by HOTFIRE_MEASURED_DATA, docs/explain.md; exit 77 without it), and measured_rigs
+// mts ARCHIVE FOLDER RECORD..., whose raw logs are in tests/data/measured.
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +8,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "tools/explain/explain.hpp"
+#include "tools/files/import/import.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace {
@@ -68,12 +72,60 @@ bool silverbox(const fs::path& folder) {
          good;
 }
 
+/// The servo-hydraulic frame: raw logs in the archive, explained from all of `trained` and judged on the record that no fit
+/// saw. The finder is given logs with zeros of their own, of which one has seven times the noise of the others.
+bool mts(const fs::path& archive, const fs::path& folder, const std::vector<std::string>& trained) {
+  fs::create_directories(folder);
+  const std::string unpack = "cd '" + folder.string() + "' && cmake -E tar xf '" + archive.string() + "'";
+  if (std::system(unpack.c_str()) != 0) {
+    throw std::runtime_error("cannot unpack " + archive.string());
+  }
+  const fs::path logs = folder / "mts";
+  const auto imported = [&](const std::string& name) {
+    const auto map = hotfire::load_import_map(logs / (name == "0A" ? "map_0A.toml" : "map_15Hz.toml"));
+    return hotfire::import_record(logs / (name + ".txt"), map, folder / (name + ".csv"));
+  };
+  std::vector<hotfire::Record> records;
+  for (const std::string& name : trained) {
+    records.push_back(imported(name));
+  }
+  hotfire::explain::ExplainOptions options;
+  options.threads = 2;
+  options.kept_back = {imported("15Hz0x5A")};
+  const auto result = hotfire::explain::explain(hotfire::load_model(logs / "declared.toml"), records, options);
+  std::set<std::string> found;
+  for (const auto& effect : result.report["effects"]) {
+    found.insert(effect["name"].get<std::string>());
+    std::printf("found %s\n", effect["name"].get<std::string>().c_str());
+  }
+  for (const auto& record : result.report["records"]) {
+    std::printf("%s: noise %.2f um, zero %.1f um\n", record["path"].get<std::string>().c_str(),
+                1e6 * record["channels"]["piston"]["noise"].get<double>(),
+                1e6 * record["channels"]["piston"]["zero"].get<double>());
+  }
+  const auto& piston = result.report["held_out_records"][0]["channels"]["piston"];
+  const auto left = [&](const char* stage) { return 1e3 * piston[stage]["rms"].get<double>(); };
+  std::printf("%s\n", result.report["sentence"].get<std::string>().c_str());
+  std::printf("declared %.4f, calibrated %.4f, linear black box %.4f thousandths\n", left("before"), left("calibrated"),
+              left("black_box"));
+  const std::set<std::string> wanted{"valve_asymmetry", "valve_deadband"};
+  return check("test record", left("after"), 0.014) && found == wanted;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc >= 5 && std::strcmp(argv[1], "mts") == 0) {
+    try {
+      return mts(argv[2], argv[3], {argv + 4, argv + argc}) ? 0 : 1;
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "measured_rigs: %s\n", error.what());
+      return 6;
+    }
+  }
   const char* data = std::getenv("HOTFIRE_MEASURED_DATA");
   if (argc != 2 || (std::strcmp(argv[1], "emps") != 0 && std::strcmp(argv[1], "silverbox") != 0)) {
-    std::fprintf(stderr, "usage: measured_rigs emps|silverbox\n");
+    std::fprintf(stderr, "usage: measured_rigs emps|silverbox, or mts ARCHIVE FOLDER RECORD...\n");
     return 2;
   }
   const fs::path folder = fs::path(data != nullptr ? data : "") / argv[1];

@@ -40,6 +40,7 @@ struct ExplainArguments {
   std::vector<std::string> excluded;
   std::vector<std::string> held_out;
   std::string lab;
+  bool keep_drift = false;
   bool json = false;
   CandumpOptions candump;
 };
@@ -79,9 +80,10 @@ std::string number(const nlohmann::json& value) { return fmt::format("{:.4g}", v
 std::string error_rows(const nlohmann::json& channels) {
   std::string text;
   for (const auto& [name, channel] : channels.items()) {
-    text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   noise {}\n", name, channel["unit"].get<std::string>(),
+    text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   noise {}{}\n", name, channel["unit"].get<std::string>(),
                         number(channel["before"]["rms"]), number(channel["calibrated"]["rms"]),
-                        number(channel["after"]["rms"]), number(channel["noise"]));
+                        number(channel["after"]["rms"]), number(channel["noise"]),
+                        channel.contains("black_box") ? ", linear black box " + number(channel["black_box"]["rms"]) : "");
   }
   return text;
 }
@@ -95,6 +97,9 @@ std::string summary(const nlohmann::json& report, const std::filesystem::path& o
   for (const auto& record : report.value("held_out_records", nlohmann::json::array())) {
     text += fmt::format("\n{}, held out\n", record["path"].get<std::string>());
     text += error_rows(record["channels"]);
+  }
+  if (report.contains("baseline")) {
+    text += "\n" + report["baseline"]["sentence"].get<std::string>() + "\n";
   }
   for (const auto& effect : report["effects"]) {
     text += fmt::format("\n{} at {}{}{}\n", effect["name"].get<std::string>(), effect["site"].get<std::string>(),
@@ -220,6 +225,7 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   Progress progress;
   options.threads = arguments.threads;
   options.most_effects = arguments.most_effects;
+  options.keep_drift = arguments.keep_drift;
   options.watch.progress = [&](const std::string& what) { progress.say(what); };
   options.watch.interrupted = [&] {
     return interrupted != 0 || (arguments.seconds && progress.seconds() > *arguments.seconds);
@@ -280,6 +286,8 @@ void add_explain(CLI::App& program, const std::string& typed) {
       "--lab", arguments->lab,
       "profile of the rig (docs/lab.md): the next experiment stays within its limits, and is written as one");
   add_candump_options(*command, arguments->candump);
+  command->add_flag("--keep-drift", arguments->keep_drift,
+                    "write what drifts over the time of a record into explained.toml as a table over time, not its mean");
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(
       "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv --hold-out ramps.csv\n"

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "tools/explain/baseline.hpp"
 #include "tools/explain/held_out_records.hpp"
+#include "tools/explain/inference/common_bias.hpp"
 #include "tools/explain/report/conclusion.hpp"
 #include "tools/explain/report/report_json.hpp"
 #include "tools/explain/search/search.hpp"
@@ -68,6 +70,19 @@ void refuse_turned_sign(const Dataset& data, const ModelFile& model, const Searc
   }
 }
 
+/// Zeros that are those of one null bias of the valve: the plant has it.
+void add_common_bias(const Dataset& data, const SearchResult<SimplexFamily>& found, Explanation& explanation) {
+  auto& plant = std::get<PlainParameters<SimplexFamily>>(explanation.model.parameters);
+  if (const auto bias = common_valve_bias(data, found.explained.zeros, plant)) {
+    plant = with_valve_bias(plant, *bias);
+    explanation.report["valve_bias"] = *bias;
+    explanation.report["warnings"].push_back(
+        fmt::format("The zeros of all records are those of one null bias of the valve, {:.3g} of its full command, or of a "
+                    "command that is off by as much: explained.toml has it as valve_bias.",
+                    *bias));
+  }
+}
+
 template <class Family>
 Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
@@ -77,21 +92,34 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
   if constexpr (std::is_same_v<Family, DirectFamily>) {
     refuse_turned_sign(data, model, search_options, found);
   }
+  options.watch.progress("fitting a linear black box, to compare");
+  const BlackBox box = black_box(data);
   if (!found.interrupted) {
     options.watch.progress("fitting what was found to all rows");
     fit_to_all_rows(data, options.threads, found);
   }
   Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
+  if (const nlohmann::json baseline = baseline_json(box, data, found.explained.prediction); !baseline.is_null()) {
+    explanation.report["baseline"] = baseline;
+    if (baseline["better_than_explained"]) {
+      std::string& sentence = explanation.report["sentence"].get_ref<std::string&>();
+      sentence += " A linear black box meets the records better, so something is missing from it.";
+    }
+  }
   if (!kept_back.empty()) {
     explanation.report["held_out_records"] = held_out_records_json(options, kept_back, found);
-    for (const Dataset& record : kept_back) {
-      warn_of_rows(record, explanation.report["warnings"]);
+    for (std::size_t i = 0; i < kept_back.size(); ++i) {
+      add_baseline(box, kept_back[i], explanation.report["held_out_records"][i]["channels"]);
+      warn_of_rows(kept_back[i], explanation.report["warnings"]);
     }
   }
   if (found.rival) {
     add_next_experiment(data, *found.rival, found.explained.model, options, explanation);
   }
-  explanation.model.parameters = plant_of(found);
+  explanation.model.parameters = plant_of(found, options.keep_drift);
+  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    add_common_bias(data, found, explanation);
+  }
   return explanation;
 }
 

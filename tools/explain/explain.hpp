@@ -29,6 +29,7 @@ struct ExplainOptions {
   Watch watch;
   std::vector<Exclusion> exclusions{};
   std::optional<CommandLimits> limits{};  ///< of the rig, for the next experiment; none: the records' largest command
+  bool keep_drift = false;                ///< tables over a record's time go into the explained model
   std::vector<Record> kept_back{};        ///< whole records that no fit and no choice is to see: judged at the end
 };
 

@@ -76,6 +76,7 @@ void judge_together(const TaosParameters& declared, unsigned threads, const TwoA
     if (found[i]) {
       Assessed<SimplexFamily>& assessed = (*found[i]).*stage;
       assessed.prediction = run->prediction[i];
+      assessed.zeros = run->zeros[i];
       assessed.goodness = goodness(axes[i].data, run->prediction[i]);
     }
   }
@@ -176,7 +177,7 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   TaosParameters plant = together(declared, found, &Found::explained);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (found[i]) {
-      plant.axes[i].effects.active = plant_of(*found[i]).effects.active;
+      plant.axes[i].effects = plant_of(*found[i], options.keep_drift).effects;
     }
   }
   explanation.model.parameters = plant;

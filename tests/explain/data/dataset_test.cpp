@@ -138,8 +138,8 @@ TEST(Dataset, ADeclaredNoiseIsTakenAndAnUndeclaredOneIsEstimated) {
   const auto data = hotfire::explain::make_dataset(
       axis(), {record({{"command", "rad", wave}, {"piston", "m", wave}, {"engine", "rad", wave}}, 0.002)});
   DOUBLES_EQUAL(8e-6, data.noise[0], 0.0);
-  CHECK(data.noise_declared[0]);
-  CHECK(!data.noise_declared[1]);
+  CHECK(data.noise_declared(0));
+  CHECK(!data.noise_declared(1));
   // An alternation of +-a has third differences of 8 a: seen as noise of 8 a / sqrt(20) = 1.79 a, up to the median's bias.
   DOUBLES_EQUAL(1.79e-4, data.noise[1], 0.05e-4);
 }
@@ -185,4 +185,54 @@ TEST(Dataset, AFastRecordIsThinnedToEveryKthRowUnderTheMeanOfTheCommandsBetween)
   // A record that is no faster stays as it is.
   LONGS_EQUAL(data.experiments[1].rows(), thin.experiments[1].rows());
   CHECK(thin.experiments[1].input == data.experiments[1].input);
+}
+
+namespace {
+
+/// Four cycles of a slow sine, read with an alternation of +-noise.
+std::vector<double> slow_sine(double noise) {
+  std::vector<double> values;
+  for (int i = 0; i < 20000; ++i) {
+    values.push_back(0.01 * std::sin(1.2566e-3 * i) + (i % 2 == 0 ? noise : -noise));
+  }
+  return values;
+}
+
+}  // namespace
+
+// An alternation of +-a is seen as a noise of 1.79 a.
+TEST(Dataset, ALouderRecordHasANoiseOfItsOwnWhetherOneIsDeclaredOrNot) {
+  const auto quiet = slow_sine(4e-6);
+  const auto loud = slow_sine(4e-5);
+  const auto records = {record({{"command", "rad", quiet}, {"piston", "m", quiet}, {"engine", "rad", quiet}}, 0.002),
+                        record({{"command", "rad", quiet}, {"piston", "m", loud}, {"engine", "rad", loud}}, 0.002)};
+  const auto data = hotfire::explain::make_dataset(axis(), records);
+  DOUBLES_EQUAL(8e-6, data.experiments[0].noise[0], 1e-12);
+  DOUBLES_EQUAL(7.2e-5, data.experiments[1].noise[0], 0.1e-5);
+  DOUBLES_EQUAL(7.2e-6, data.experiments[0].noise[1], 0.1e-6);
+  DOUBLES_EQUAL(7.2e-5, data.experiments[1].noise[1], 0.1e-5);
+}
+
+TEST(Dataset, ASmoothChannelHasAFloorAndNoNoiseToBeSaidInTimesOf) {
+  const auto smooth = slow_sine(0.0);
+  const auto data = hotfire::explain::make_dataset(
+      axis(), {record({{"command", "rad", smooth}, {"piston", "m", smooth}, {"engine", "rad", smooth}}, 0.002)});
+  CHECK(data.noise_is_known(0));
+  CHECK(!data.noise_is_known(1));
+  const double motion = 0.01 / std::sqrt(2.0);
+  CHECK(data.noise[1] > 0.99e-7 * motion);
+  CHECK(data.noise[1] < 1e-6 * motion);
+}
+
+TEST(Dataset, AMeasuredTorqueIsAnInputAndAChannelWithoutAPlaceIsNamed) {
+  const auto values = slow_sine(1e-5);
+  const auto data = hotfire::explain::make_dataset(
+      axis(),
+      {record({{"command", "rad", values}, {"piston", "m", values}, {"torque", "N.m", values}, {"force", "N", values}},
+              0.002)});
+  LONGS_EQUAL(values.size(), data.experiments[0].torque.size());
+  LONGS_EQUAL(1, data.experiments[0].unused.size());
+  STRCMP_EQUAL("force", data.experiments[0].unused[0].c_str());
+  const auto thin = hotfire::explain::thinned(data, 4e-3);
+  LONGS_EQUAL(values.size() / 2, thin.experiments[0].torque.size());
 }

@@ -30,6 +30,8 @@ Dataset records() {
   explain::Experiment experiment;
   experiment.period = 0.004;
   experiment.input = {0.0, kLargest, -0.5 * kLargest};
+  experiment.noise = data.noise;
+  experiment.zero_deviation.assign(data.channels.size(), 0.0);
   data.experiments.push_back(experiment);
   return data;
 }

@@ -18,7 +18,7 @@ Dataset smooth_dataset() {
   data.channels = {"piston", "engine", "load_pressure"};
   data.used = {true, true, false};
   data.noise = {8e-6, 6e-5, 1.0};
-  data.noise_declared = {true, true, false};
+  data.noise_source = {NoiseSource::declared, NoiseSource::declared, NoiseSource::estimated};
   for (int e = 0; e < 2; ++e) {
     Experiment experiment;
     experiment.name = "smooth";
@@ -29,6 +29,8 @@ Dataset smooth_dataset() {
     experiment.measured = {std::vector<double>(500, 0.0), std::vector<double>(500, 0.0), {}};
     experiment.fitted = {{0, 100}, {200, 500}};
     experiment.held_out = {{100, 200}};
+    experiment.noise = data.noise;
+    experiment.zero_deviation.assign(data.channels.size(), 0.0);
     data.experiments.push_back(experiment);
   }
   return data;

@@ -19,12 +19,14 @@ Dataset standing_piston(double stays, double declared) {
   data.channels = {"piston"};
   data.used = {true};
   data.noise = {declared > 0.0 ? declared : 1.0};
-  data.noise_declared = {declared > 0.0};
+  data.noise_source = {declared > 0.0 ? NoiseSource::declared : NoiseSource::estimated};
   Experiment experiment;
   experiment.period = 0.002;
   experiment.input.assign(kRows, 0.0);
   experiment.measured = {hotfire::test::coloured_noise(kRows, stays, 7)};
   experiment.fitted = {{0, kRows}};
+  experiment.noise = data.noise;
+  experiment.zero_deviation.assign(data.channels.size(), 0.0);
   data.experiments.push_back(experiment);
   return data;
 }

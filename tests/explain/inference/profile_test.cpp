@@ -24,7 +24,7 @@ struct LeakingAxis {
     data.channels = {"piston", "engine", "load_pressure"};
     data.used = {true, true, false};
     data.noise = {1.0, 1.0, 1.0};
-    data.noise_declared = {true, true, false};
+    data.noise_source = {NoiseSource::declared, NoiseSource::declared, NoiseSource::estimated};
     Experiment experiment;
     experiment.name = "smooth";
     experiment.period = 0.002;
@@ -33,6 +33,8 @@ struct LeakingAxis {
     }
     experiment.measured = {std::vector<double>(1500, 0.0), std::vector<double>(1500, 0.0), {}};
     experiment.fitted = {{0, 1500}};
+    experiment.noise = data.noise;
+    experiment.zero_deviation.assign(data.channels.size(), 0.0);
     data.experiments.push_back(experiment);
 
     for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
@@ -70,6 +72,7 @@ struct LeakingAxis {
     const Evaluator<SimplexFamily> silent(data, Resolution::fine);
     CHECK_TRUE(silent.differentiate(fitted.base, fitted.free, fitted.u, all, 1, jacobian));
     data.noise.assign(3, told * jacobian.norm());
+    data.experiments.front().noise = data.noise;
     Prediction truth;
     CHECK_TRUE(silent.predict(fitted.base, fitted.free, fitted.u, 1, truth));
     std::mt19937_64 generator(3);

@@ -23,7 +23,7 @@ Dataset record(std::vector<double> input, std::vector<double> measured) {
   data.channels = {"piston"};
   data.used = {true};
   data.noise = {1.0};
-  data.noise_declared = {true};
+  data.noise_source = {NoiseSource::declared};
   Experiment experiment;
   experiment.period = kPeriod;
   experiment.input = std::move(input);
@@ -31,6 +31,8 @@ Dataset record(std::vector<double> input, std::vector<double> measured) {
   for (std::size_t first = 0; first < kRows; first += 2000) {
     (first / 2000 % 4 == 1 ? experiment.held_out : experiment.fitted).push_back({first, first + 2000});
   }
+  experiment.noise = data.noise;
+  experiment.zero_deviation.assign(data.channels.size(), 0.0);
   data.experiments.push_back(experiment);
   return data;
 }

@@ -69,3 +69,21 @@ TEST(Verdict, AnInterruptedSearchNamesWhatPromisedMostByThen) {
   found.trials.clear();
   STRCMP_CONTAINS("off on held-out data.", sentence_of("undecided", found).c_str());
 }
+
+TEST(Verdict, TimesTheNoiseIsNotSaidWhereAFloorStandsForIt) {
+  SearchResult<SimplexFamily> found;
+  found.declared = leaving(8.0);
+  found.calibrated = leaving(4.0);
+  found.explained = leaving(1.0);
+  found.kept.push_back({tried(kLeakage), {}});
+  const std::string sentence = sentence_of("partly-explained", found, false);
+  STRCMP_CONTAINS("falls to 12.5 % of what the declared model leaves", sentence.c_str());
+  CHECK(sentence.find("times the noise") == std::string::npos);
+}
+
+TEST(Verdict, TermsOverTheTimeOfARecordAreTold) {
+  CHECK_TRUE(is_of_record_time({0, 4, "unlisted_torque", "friction_along_time", "engine_torque"}));
+  CHECK_TRUE(is_of_record_time({0, 0, "unlisted_drift", "piston", "sensor.piston"}));
+  CHECK_FALSE(is_of_record_time({0, 0, "unlisted_torque", "friction_along_position", "engine_torque"}));
+  CHECK_FALSE(is_of_record_time(kLeakage));
+}

@@ -30,6 +30,8 @@ std::pair<Dataset, Prediction> engine_at(double factor) {
   }
   experiment.measured = {{}, measured, {}};
   experiment.fitted = {{0, 5000}};
+  experiment.noise = data.noise;
+  experiment.zero_deviation.assign(data.channels.size(), 0.0);
   data.experiments.push_back(experiment);
   return {data, {{std::vector<double>(5000, 0.0), predicted, std::vector<double>(5000, 0.0)}}};
 }

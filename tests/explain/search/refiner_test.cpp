@@ -17,8 +17,8 @@ using explain::Fitted;
 using explain::Resolution;
 using explain::SimplexFamily;
 
-/// Steps of a degree and back, simulated by the declared model, the piston read 0.1 mm off; with or without the load
-/// pressure, to which rough steps do most.
+/// Steps of a degree and back, simulated by the declared model, the piston read a hundredth of its way off; with or without
+/// the load pressure, to which rough steps do most.
 Dataset stepped(const ModelFile& model, bool with_pressure) {
   Record record;
   record.name = "steps.csv";
@@ -33,7 +33,7 @@ Dataset stepped(const ModelFile& model, bool with_pressure) {
   const Record modelled = simulate(model, record);
   record.channels.push_back(*modelled.find("piston"));
   for (double& piston : record.channels.back().values) {
-    piston += 1e-4;
+    piston *= 1.01;
   }
   if (with_pressure) {
     record.channels.push_back(*modelled.find("load_pressure"));

@@ -91,3 +91,58 @@ TEST(table_points, a_table_that_reaches_over_every_row_stays_as_it_is) {
     DOUBLES_EQUAL(before.y[i], after.y[i], 1e-12);
   }
 }
+
+namespace {
+
+/// A curve against the motion: of the mass over its rate, of the engine as a term of the grammar over the engine's rate or
+/// angle.
+bool mass_feeds_energy(double at_negative, double at_rest, double at_positive) {
+  DirectParameters parameters;
+  explain::Candidate candidate;
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& effect) {
+    if constexpr (std::is_same_v<E, model::UnlistedMotion<model::Site::mass_force>>) {
+      candidate = {index, 1, std::string(E::name), "rate", std::string(model::site_name(E::site))};
+      parameters.effects.active[index] = true;
+      effect.option = 1;
+      effect.table.points = 3;
+      effect.table.x = {-0.1, 0.0, 0.1};
+      effect.table.y = {at_negative, at_rest, at_positive};
+    }
+  });
+  return explain::feeds_energy<DirectFamily>(parameters, candidate);
+}
+
+bool term_feeds_energy(model::Argument argument, double slope) {
+  SimplexParameters parameters;
+  explain::Candidate candidate;
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& effect) {
+    if constexpr (std::is_same_v<E, model::Term<model::Site::engine_torque>>) {
+      candidate = {
+          index, 0, std::string(E::name), "", std::string(model::site_name(E::site)), {static_cast<int>(argument), 0, 0}};
+      parameters.effects.active[index] = true;
+      effect.argument = static_cast<int>(argument);
+      effect.table.points = 3;
+      effect.table.x = {-0.1, 0.0, 0.1};
+      effect.table.y = {-0.1 * slope, 0.0, 0.1 * slope};
+    }
+  });
+  return explain::feeds_energy<explain::SimplexFamily>(parameters, candidate);
+}
+
+}  // namespace
+
+TEST(table_points, a_force_that_pushes_with_the_motion_feeds_energy_and_a_constant_one_does_not) {
+  CHECK_FALSE(mass_feeds_energy(-2.0, 0.0, 2.0));
+  CHECK_FALSE(mass_feeds_energy(3.0, 5.0, 7.0));
+  CHECK(mass_feeds_energy(2.0, 0.0, -2.0));
+  CHECK(mass_feeds_energy(7.0, 5.0, 3.0));
+  // Within a table's scatter, and beyond it.
+  CHECK_FALSE(mass_feeds_energy(0.05, 0.0, 2.0));
+  CHECK(mass_feeds_energy(0.2, 0.0, 2.0));
+}
+
+TEST(table_points, a_term_over_the_rate_at_its_site_is_held_to_the_same_and_one_over_the_angle_is_a_spring) {
+  CHECK_FALSE(term_feeds_energy(model::Argument::angle_rate, 1e4));
+  CHECK(term_feeds_energy(model::Argument::angle_rate, -1e4));
+  CHECK_FALSE(term_feeds_energy(model::Argument::angle, -1e4));
+}

@@ -106,3 +106,46 @@ TEST(Import, AMapIsRefusedWithLineKeyAndMend) {
   expect_message(refused("schema = 1\nperiod = \"2 s\"\n[channels.piston]\ncolumn = \"x\"\nunit = \"m\"\n", ""),
                  {"map.toml:2", "period", "50 us to 20 ms"});
 }
+
+TEST(Import, AFactorComesBeforeAnOffsetInTheColumnsUnit) {
+  const Record record = imported(
+      "schema = 1\nperiod = \"4 ms\"\n[channels.piston]\ncolumn = \"x\"\nunit = \"mm\"\nfactor = -10\noffset = \"1 cm\"\n",
+      "x\n0\n1\n2\n");
+  DOUBLES_EQUAL(0.010, record.find("piston")->values[0], 1e-15);
+  DOUBLES_EQUAL(-0.010, record.find("piston")->values[2], 1e-15);
+}
+
+TEST(Import, ALogThatSaysOnSomeRowsWhatHappenedIsRead) {
+  const std::string log =
+      "Sampling Rate:  1000\nNo, CHANNEL0, CHANNEL1, Events\n 1, 0.5, 1.0, DAQ Start\n 2, 0.6, 1.5\n 3, 0.7, 2.0, DAQ "
+      "Pause, DAQ "
+      "Stop\n";
+  const std::string map =
+      "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\ncolumn = \"CHANNEL0\"\nunit = \"m\"\n[csv]\nskip_lines "
+      "= 1\n";
+  const Record record = imported(map + "events = \"Events\"\n", log);
+  LONGS_EQUAL(3, record.rows);
+  DOUBLES_EQUAL(0.7, record.find("piston")->values[2], 0.0);
+  expect_message(refused(map, log), {"run.txt:4", "3 columns", "the header has 4", "[csv] events = \"Events\""});
+  expect_message(refused(map + "events = \"CHANNEL1\"\n", log), {"run.txt:2", "has to be the last column", "Events"});
+  expect_message(refused(map + "events = \"Events\"\n", log + " 4, 0.8\n"), {"run.txt:6", "2 columns"});
+}
+
+TEST(Import, AKeyInAnotherTableIsRefusedWithWhereItBelongs) {
+  const std::string channel = "[channels.piston]\ncolumn = \"x\"\nunit = \"m\"\n";
+  expect_message(refused("schema = 1\n" + channel + "period = \"2 ms\"\n", ""),
+                 {"map.toml:5", "channels.piston.period", "before the first [table]"});
+  expect_message(refused("schema = 1\nunit = \"m\"\nperiod = \"2 ms\"\n" + channel, ""),
+                 {"map.toml:2", "unit", "[channels.NAME]"});
+  expect_message(refused("schema = 1\nskip_lines = 2\nperiod = \"2 ms\"\n" + channel, ""),
+                 {"map.toml:2", "skip_lines", "[csv]"});
+}
+
+TEST(Import, ALogOfTenHertzIsRefusedWithTheKeyThatResamplesIt) {
+  const std::string channel = "[channels.piston]\ncolumn = \"x\"\nunit = \"m\"\n";
+  expect_message(refused("schema = 1\nperiod = \"100 ms\"\n" + channel, "x\n0\n1\n"), {"map.toml:2", "[resample]"});
+  const Record record =
+      imported("schema = 1\nperiod = \"100 ms\"\n" + channel + "[resample]\nperiod = \"20 ms\"\n", "x\n0\n0\n0\n0\n0\n");
+  LONGS_EQUAL(21, record.rows);
+  DOUBLES_EQUAL(0.02, record.period, 1e-12);
+}

@@ -8,6 +8,7 @@
 
 #include "tools/explain/data/hold_out.hpp"
 #include "tools/explain/data/statistics.hpp"
+#include "tools/explain/data/zeros.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
@@ -61,6 +62,17 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
   experiment.excluded = excluded_rows(record, exclusions);
   experiment.input_is_held = is_missing_somewhere(*record.find(input));
   experiment.input = held_where_missing(*record.find(input), record);
+  const bool is_hydraulic = data.channels.size() > 1;
+  if (const Channel* torque = record.find("torque"); torque != nullptr && is_hydraulic) {
+    require_values(*torque, experiment);
+    experiment.torque = bridged(torque->values, experiment.excluded);
+  }
+  for (const Channel& channel : record.channels) {
+    const bool is_input = channel.name == input || (channel.name == "torque" && is_hydraulic);
+    if (!is_input && std::ranges::find(data.channels, channel.name) == data.channels.end()) {
+      experiment.unused.push_back(channel.name);
+    }
+  }
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const Channel* channel = record.find(data.channels[c]);
     experiment.measured.emplace_back();
@@ -74,6 +86,76 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
     require_channel(record, data.channels.front(), "without a measured channel there is nothing to explain");
   }
   return experiment;
+}
+
+/// A record that shows more than this many times the noise that was declared, while another does not, is a louder one.
+constexpr double kClearlyMore = 1.5;
+
+/// Whether the declared noise of a channel is that of some record: then the others may be louder.
+bool is_met_somewhere(const Dataset& data, std::size_t channel, double declared) {
+  return std::ranges::any_of(data.experiments, [&](const Experiment& experiment) {
+    return !experiment.measured[channel].empty() &&
+           quiet_noise(kept_rows(experiment.measured[channel], experiment.excluded)) <= kClearlyMore * declared;
+  });
+}
+
+/// The noise of every record and channel: declared, but for a louder record; or what third differences show where nothing is
+/// declared, but not less than the floor. What a channel has over all records is the root of the mean square over their
+/// rows.
+void set_noise(const ModelFile& model, Dataset& data) {
+  for (Experiment& experiment : data.experiments) {
+    experiment.noise.assign(data.channels.size(), 1.0);
+  }
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    const auto declared = model.noise.find(data.channels[c]);
+    const bool is_declared = declared != model.noise.end();
+    const bool may_be_louder = is_declared && is_met_somewhere(data, c, declared->second);
+    NoiseSource source = is_declared ? NoiseSource::declared : NoiseSource::estimated;
+    double square = 0.0;
+    double rows = 0.0;
+    for (Experiment& experiment : data.experiments) {
+      if (experiment.measured[c].empty()) {
+        continue;
+      }
+      double& noise = experiment.noise[c];
+      const std::vector<double> kept = kept_rows(experiment.measured[c], experiment.excluded);
+      if (is_declared) {
+        const bool is_louder = may_be_louder && quiet_noise(kept) > kClearlyMore * declared->second;
+        noise = is_louder ? noise_from_differences(kept) : declared->second;
+      } else {
+        const NoiseFloor floor = noise_floor(kept);
+        noise = noise_from_differences(kept);
+        source = noise < floor.telling ? NoiseSource::floor : source;
+        noise = std::max(noise, floor.least);
+      }
+      square += noise * noise * static_cast<double>(experiment.rows());
+      rows += static_cast<double>(experiment.rows());
+    }
+    data.noise_source.push_back(source);
+    data.noise.push_back(rows > 0.0 ? std::sqrt(square / rows) : is_declared ? declared->second : 1.0);
+  }
+}
+
+/// What a channel's zero may be off by: a share of the channel's largest half travel in any record.
+void set_zero_deviations(const ModelFile& model, Dataset& data) {
+  for (Experiment& experiment : data.experiments) {
+    experiment.zero_deviation.assign(data.channels.size(), 0.0);
+  }
+  if (std::holds_alternative<DirectParameters>(model.parameters)) {
+    return;
+  }
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    double travel = 0.0;
+    for (const Experiment& experiment : data.experiments) {
+      if (!experiment.measured[c].empty()) {
+        const auto [low, high] = std::ranges::minmax(experiment.measured[c]);
+        travel = std::max(travel, 0.5 * (high - low));
+      }
+    }
+    for (Experiment& experiment : data.experiments) {
+      experiment.zero_deviation[c] = kZeroShare * travel;
+    }
+  }
 }
 
 }  // namespace
@@ -105,30 +187,17 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   }
   hold_out(data.experiments);
 
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    const auto declared = model.noise.find(data.channels[c]);
-    data.noise_declared.push_back(declared != model.noise.end());
-    if (declared != model.noise.end()) {
-      data.noise.push_back(declared->second);
-      continue;
-    }
-    std::vector<double> estimates;
-    for (const Experiment& experiment : data.experiments) {
-      if (!experiment.measured[c].empty()) {
-        estimates.push_back(noise_from_differences(kept_rows(experiment.measured[c], experiment.excluded)));
-      }
-    }
-    data.noise.push_back(estimates.empty() ? 1.0 : *std::min_element(estimates.begin(), estimates.end()));
-  }
+  set_noise(model, data);
+  set_zero_deviations(model, data);
   if (const auto* mass = std::get_if<DirectParameters>(&model.parameters)) {
     for (Experiment& experiment : data.experiments) {
       experiment.start_state =
-          start_state(*mass, experiment.input, experiment.measured.front(), experiment.period, data.noise.front());
+          start_state(*mass, experiment.input, experiment.measured.front(), experiment.period, experiment.noise.front());
     }
   } else {
     for (Experiment& experiment : data.experiments) {
       experiment.first_scored = rows_to_forget_start(std::get<SimplexParameters>(model.parameters), experiment.input,
-                                                     experiment.measured, experiment.period, data.noise);
+                                                     experiment.measured, experiment.period, experiment.noise);
     }
   }
   for (Experiment& experiment : data.experiments) {
@@ -174,7 +243,8 @@ Dataset thinned(const Dataset& data, double period) {
     for (std::vector<double>& channel : experiment.measured) {
       thin_rows(channel);
     }
-    for (std::vector<double>* motion : {&experiment.other.angle, &experiment.other.rate, &experiment.other.force}) {
+    for (std::vector<double>* motion :
+         {&experiment.torque, &experiment.other.angle, &experiment.other.rate, &experiment.other.force}) {
       thin_rows(*motion);
     }
     experiment.period *= static_cast<double>(every);

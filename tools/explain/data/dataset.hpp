@@ -19,10 +19,14 @@ struct Experiment {
   double start = 0.0;
   double period = 0.0;
   std::vector<double> input;
+  std::vector<double> torque;                 ///< measured, on the engine of a hydraulic axis alone [N m]; empty: none
   std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record lacks the channel
+  std::vector<double> noise;                  ///< rms of the sensor noise by channel; 1 where the record lacks it
+  std::vector<double> zero_deviation;         ///< of the prior of each channel's zero (zeros.hpp); 0: the zero is known
   std::vector<Block> fitted;                  ///< rows that a fit sees
   std::vector<Block> held_out;                ///< rows that no fit sees
   std::vector<Block> excluded;                ///< rows that the user excludes
+  std::vector<std::string> unused;            ///< channels of the record that the model has no place for
   bool input_is_held = false;                 ///< the input is missing in some of those: it holds there
   StartState start_state;                     ///< of a force-driven mass
   std::size_t first_scored = 0;               ///< rows before it are simulated, not compared: the start is not at rest
@@ -34,21 +38,28 @@ struct Experiment {
   std::vector<Block> scored() const;
 };
 
+/// Where the noise of a channel is known from: declared, estimated from the records, or a floor below which neither tells
+/// anything (`noise_floor`).
+enum class NoiseSource { declared, estimated, floor };
+
 /// All records of one run of the finder.
 struct Dataset {
   std::vector<std::string> channels;  ///< of the model, in its order
   std::vector<bool> used;             ///< channels that at least one record has
-  std::vector<double> noise;          ///< rms by channel; 1 where unused
-  std::vector<bool> noise_declared;
+  std::vector<double> noise;          ///< rms over all records by channel; 1 where unused
+  std::vector<NoiseSource> noise_source;
   std::vector<Experiment> experiments;
   AxisGeometry geometry;  ///< read where experiments have another axis
 
+  bool noise_declared(std::size_t channel) const { return noise_source[channel] == NoiseSource::declared; }
+  /// True if the noise of a channel is a size of the sensor, so that an error may be said in times of it.
+  bool noise_is_known(std::size_t channel) const { return noise_source[channel] != NoiseSource::floor; }
   /// True if the axis is one of two.
   bool has_other_axis() const { return !experiments.empty() && experiments.front().other.is_there(); }
 };
 
-/// Puts records into the model's channels, estimates noise where it is not declared, and holds blocks out (`hold_out`). Over
-/// excluded rows channels are `bridged`; exclusions of other records have no meaning here.
+/// Puts records into the model's channels, estimates the noise of each record where it is not declared, and holds blocks out
+/// (`hold_out`). Over excluded rows channels are `bridged`; exclusions of other records have no meaning here.
 /// Throws FileError if a record lacks the input or has none of the model's channels, UsageError if an exclusion leaves
 /// nothing of a record.
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,

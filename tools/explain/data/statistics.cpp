@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hotfire::explain {
@@ -41,10 +42,12 @@ double root_mean_square(std::span<const double> values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-double noise_from_differences(std::span<const double> values) {
+namespace {
+
+/// The mean square of third differences over short stretches, at a quantile of all stretches. Of fewer rows than a stretch,
+/// over all of them.
+double square_of_differences(std::span<const double> values, double quantile) {
   constexpr std::size_t kStretch = 64;
-  // The median of a chi-square mean over 64 correlated third differences lies 2 % below its mean (measured on white noise).
-  constexpr double kMedianBias = 0.98;
   std::vector<double> squares;
   double sum = 0.0;
   std::size_t count = 0;
@@ -58,11 +61,50 @@ double noise_from_differences(std::span<const double> values) {
     }
   }
   if (squares.empty()) {
-    return count > 0 ? std::sqrt(sum / static_cast<double>(count) / 20.0) : 0.0;
+    return count > 0 ? sum / static_cast<double>(count) : 0.0;
   }
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::sqrt(*middle / kMedianBias / 20.0);
+  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(squares.size()));
+  std::nth_element(squares.begin(), at, squares.end());
+  return *at;
+}
+
+}  // namespace
+
+double noise_from_differences(std::span<const double> values) {
+  // The median of a chi-square mean over 64 correlated third differences lies 2 % below its mean (measured on white noise).
+  constexpr double kMedianBias = 0.98;
+  constexpr std::size_t kStretch = 64;
+  const double bias = values.size() < kStretch + 3 ? 1.0 : kMedianBias;
+  return std::sqrt(square_of_differences(values, 0.5) / bias / 20.0);
+}
+
+double quiet_noise(std::span<const double> values) { return std::sqrt(square_of_differences(values, 0.1) / 20.0); }
+
+NoiseFloor noise_floor(std::span<const double> values) {
+  constexpr double kComputed = 1e-7;
+  constexpr double kAgreement = 1e-5;
+  if (values.empty()) {
+    return {};
+  }
+  const auto rows = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / rows;
+  double square = 0.0;
+  double size = 0.0;
+  for (const double value : values) {
+    square += (value - mean) * (value - mean);
+    size = std::max(size, std::abs(value));
+  }
+  // Values that differ by less than this were printed or converted differently, not read differently.
+  const double same = 1e-9 * size;
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double apart = std::abs(values[i] - values[i - 1]);
+    step = apart > same ? std::min(step, apart) : step;
+  }
+  const double rounding = std::isfinite(step) ? step / std::sqrt(12.0) : 0.0;
+  const double motion = std::sqrt(square / rows);
+  const double least = std::max(rounding, kComputed * motion);
+  return {least, std::max(least, kAgreement * motion)};
 }
 
 std::vector<double> autocorrelation(std::span<const double> values, std::size_t last_lag) {

@@ -82,7 +82,7 @@ class Writer {
       return true;
     }
     const auto i = static_cast<Eigen::Index>(stretches[next]->offset + row - stretches[next]->first);
-    const double weight = 1.0 / data_.noise[channel];
+    const double weight = 1.0 / data_.experiments[stretches[next]->experiment].noise[channel];
     const auto lanes = static_cast<Eigen::Index>(chunk.wanted.size());
     for (Eigen::Index lane = 0; lane < lanes; ++lane) {
       jacobian_(i, chunk.first_column + lane) = reading.v[lane] * weight;
@@ -138,7 +138,7 @@ typename Evaluator<Family>::Parameters Evaluator<Family>::with_values(const Para
 
 template <class Family>
 bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
-                                unsigned threads, Prediction& prediction) const {
+                                unsigned threads, Prediction& prediction, Zeros& zeros) const {
   using Plant = typename Family::template Plant<double>;
   const auto plants = plants_by_period<Plant>(data_, with_values(base, free, u),
                                               [&](const Experiment& e) { return steps_of(base, e, resolution_); });
@@ -164,7 +164,15 @@ bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreePara
       finite = false;
     }
   });
+  zeros = add_zeros(data_, prediction);
   return finite;
+}
+
+template <class Family>
+bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                                unsigned threads, Prediction& prediction) const {
+  Zeros zeros;
+  return predict(base, free, u, threads, prediction, zeros);
 }
 
 template <class Family>
@@ -187,10 +195,32 @@ Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const
     const auto& predicted = prediction[s.experiment][s.channel];
     for (std::size_t row = s.first; row < s.last; ++row) {
       residual(static_cast<Eigen::Index>(s.offset + row - s.first)) =
-          (predicted[row] - measured[row]) / data_.noise[s.channel];
+          (predicted[row] - measured[row]) / data_.experiments[s.experiment].noise[s.channel];
     }
   }
+  // A prediction has the most likely zero, which leaves 1 / (1 + n s^2) of a mean; whitened by the prior it is the root.
+  for_each_zero([&](Eigen::Index first, Eigen::Index rows, double precision) {
+    auto part = residual.segment(first, rows);
+    part.array() += part.mean() * (std::sqrt(1.0 + precision) - 1.0);
+  });
   return residual;
+}
+
+template <class Family>
+template <class F>
+void Evaluator<Family>::for_each_zero(F&& f) const {
+  for (std::size_t i = 0; i < stretches_.size();) {
+    const Stretch& first = stretches_[i];
+    std::size_t rows = 0;
+    for (; i < stretches_.size() && stretches_[i].experiment == first.experiment && stretches_[i].channel == first.channel;
+         ++i) {
+      rows += stretches_[i].last - stretches_[i].first;
+    }
+    const double precision = zero_precision(data_.experiments[first.experiment], first.channel);
+    if (precision > 0.0) {
+      f(static_cast<Eigen::Index>(first.offset), static_cast<Eigen::Index>(rows), precision);
+    }
+  }
 }
 
 template <class Family>
@@ -249,6 +279,10 @@ bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const Fr
     if (!ran || !good) {
       finite = false;
     }
+  });
+  for_each_zero([&](Eigen::Index first, Eigen::Index rows, double precision) {
+    auto part = jacobian.middleRows(first, rows);
+    part.rowwise() -= (1.0 - 1.0 / std::sqrt(1.0 + precision)) * part.colwise().mean();
   });
   return finite;
 }

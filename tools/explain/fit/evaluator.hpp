@@ -6,6 +6,7 @@
 
 #include "tools/explain/data/dataset.hpp"
 #include "tools/explain/data/plants.hpp"
+#include "tools/explain/data/zeros.hpp"
 #include "tools/explain/fit/parameter_space.hpp"
 
 namespace hotfire::explain {
@@ -45,15 +46,21 @@ class Evaluator {
   /// Residuals a fit sees, over all experiments and channels.
   std::size_t fit_rows() const { return fit_rows_; }
 
-  /// Simulates all experiments. False if a state became non-finite.
+  /// Simulates all experiments, and adds to each channel of each the zero that is most likely then (zeros.hpp). False if a
+  /// state became non-finite.
   bool predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u, unsigned threads,
                Prediction& prediction) const;
+  /// The same with those zeros.
+  bool predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u, unsigned threads,
+               Prediction& prediction, Zeros& zeros) const;
 
   /// This evaluator with every prediction shifted by as much as one under finer steps differs from its `own` at one model:
   /// what long steps are wrong by changes little from there to models nearby.
   Evaluator shifted(const Prediction& own, const Prediction& finer) const;
 
-  /// (prediction - measured) / noise on the rows a fit sees.
+  /// (prediction - measured) / noise on the rows a fit sees, of a prediction that `predict` made. The zeros are integrated
+  /// out: the n rows of a channel of a record are whitened by the rank-one covariance that its zero adds to their noise,
+  /// I + s^2 1 1^T with s = S / noise, which takes from each the share 1 - 1 / sqrt(1 + n s^2) of their mean.
   Eigen::VectorXd residuals(const Prediction& prediction) const;
 
   /// Sum of squares of such residuals, by channel.
@@ -68,6 +75,9 @@ class Evaluator {
   static Parameters with_values(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u);
 
  private:
+  /// Calls f(first row, rows, precision) for the residuals of every channel of every record that has a zero.
+  template <class F>
+  void for_each_zero(F&& f) const;
   int steps_of(const Parameters& base, const Experiment& experiment, Resolution resolution) const;
 
   const Dataset& data_;

@@ -36,7 +36,8 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
   return state;
 }
 
-/// Steps a plant through an experiment; an axis that is one of two, beside the motion of the other.
+/// Steps a plant through an experiment; an axis that is one of two, beside the motion of the other; one alone, under the
+/// torque that was measured.
 template <class Plant, class Sink>
 bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& experiment, typename Plant::State& state,
                     int steps, Sink&& sink) {
@@ -55,6 +56,9 @@ bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& e
                    [&](const S& own) { return beside(own, other_angle, other_rate, other_force); });
       };
       return run_rows<Plant>(experiment.rows(), state, steps, advance, sink);
+    }
+    if (!experiment.torque.empty()) {
+      return run_under_torque(plant, experiment.input, experiment.torque, state, steps, sink);
     }
   }
   return run(plant, experiment.input, state, steps, sink);

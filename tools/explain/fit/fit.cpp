@@ -160,6 +160,12 @@ class SimulationError : public ceres::CostFunction {
   mutable int weighted_revision_ = 0;  ///< the derivatives that `weighted_` is of
 };
 
+/// Variance of the noise of a stretch over that of its channel in all records.
+double relative_variance(const Dataset& data, const Stretch& stretch) {
+  const double ratio = data.experiments[stretch.experiment].noise[stretch.channel] / data.noise[stretch.channel];
+  return ratio * ratio;
+}
+
 }  // namespace
 
 template <class Family>
@@ -211,7 +217,7 @@ Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& resi
   for (const Stretch& s : evaluator.stretches()) {
     const std::span<const double> part(residual.data() + s.offset, s.last - s.first);
     const double sum = std::inner_product(part.begin(), part.end(), part.begin(), 0.0);
-    inflated[s.channel] += sum * statistical_inefficiency(part);
+    inflated[s.channel] += sum * statistical_inefficiency(part) * relative_variance(evaluator.data(), s);
     count[s.channel] += static_cast<double>(part.size());
   }
   Temper temper(channels, 1.0);
@@ -227,8 +233,9 @@ template <class Family>
 Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& temper) {
   Eigen::VectorXd weights(static_cast<Eigen::Index>(evaluator.fit_rows()));
   for (const Stretch& s : evaluator.stretches()) {
+    const double variance = relative_variance(evaluator.data(), s);
     weights.segment(static_cast<Eigen::Index>(s.offset), static_cast<Eigen::Index>(s.last - s.first))
-        .setConstant(1.0 / std::sqrt(temper[s.channel]));
+        .setConstant(std::sqrt(variance / (variance + temper[s.channel] - 1.0)));
   }
   return weights;
 }

@@ -12,6 +12,9 @@ namespace hotfire::explain {
 /// How far the residuals of each channel are inflated against sensor noise: one sample of channel c counts as 1/temper[c]
 /// samples of noise. A model that lacks an effect leaves residuals that are large and coloured; without this they would
 /// press declared parameters through their tolerances. 1 where the model reaches the noise.
+///
+/// What a model lacks is beside the noise of a record, not times it: with t = (temper - 1) times the channel's mean noise
+/// variance over all records, a sample of a record of noise v counts as v^2 / (v^2 + t) samples of its noise.
 using Temper = std::vector<double>;
 
 /// A parameterised model at a point, and how it fits.
@@ -46,11 +49,12 @@ struct FitOptions {
 template <class Family>
 bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options);
 
-/// The temper that residuals ask for: mean square times statistical inefficiency, at least 1.
+/// The temper that residuals ask for: mean square times statistical inefficiency over the channel's mean noise variance, at
+/// least 1.
 template <class Family>
 Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& residual);
 
-/// What one over sensor noise of every residual counts under a temper: 1 / sqrt(temper of its channel).
+/// What one over sensor noise of every residual counts under a temper: the root of the share of its variance that is noise.
 template <class Family>
 Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& temper);
 

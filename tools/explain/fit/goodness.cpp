@@ -15,12 +15,13 @@ struct Sums {
   double rows = 0.0;
   double square = 0.0;
   double inflated = 0.0;
+  double over_noise = 0.0;  ///< sum of squares of residual over noise
   double sum = 0.0;
   double max = 0.0;
   double measured = 0.0;
   double measured_square = 0.0;
 
-  void add(const std::vector<double>& predicted, const std::vector<double>& measured_values, Block block) {
+  void add(const std::vector<double>& predicted, const std::vector<double>& measured_values, double noise, Block block) {
     std::vector<double> residual;
     residual.reserve(block.last - block.first);
     double block_square = 0.0;
@@ -35,17 +36,18 @@ struct Sums {
     }
     rows += static_cast<double>(residual.size());
     square += block_square;
-    inflated += block_square * statistical_inefficiency(residual);
+    over_noise += block_square / (noise * noise);
+    inflated += block_square / (noise * noise) * statistical_inefficiency(residual);
   }
 
-  ChannelFit result(double noise) const {
+  ChannelFit result() const {
     ChannelFit fit;
     if (rows <= 0.0) {
       return fit;
     }
     fit.rows = rows;
-    fit.effective_rows = inflated > 0.0 ? rows * square / inflated : rows;
-    fit.mean_square = square / rows / (noise * noise);
+    fit.effective_rows = inflated > 0.0 ? rows * over_noise / inflated : rows;
+    fit.mean_square = over_noise / rows;
     fit.rms = std::sqrt(square / rows);
     fit.max = max;
     fit.bias = sum / rows;
@@ -78,14 +80,14 @@ Goodness goodness(const Dataset& data, const Prediction& prediction) {
         continue;
       }
       for (const Block& block : experiment.fitted) {
-        fitted.add(prediction[e][c], experiment.measured[c], block);
+        fitted.add(prediction[e][c], experiment.measured[c], experiment.noise[c], block);
       }
       for (const Block& block : experiment.held_out) {
-        held.add(prediction[e][c], experiment.measured[c], block);
+        held.add(prediction[e][c], experiment.measured[c], experiment.noise[c], block);
       }
     }
-    result.fitted.push_back(fitted.result(data.noise[c]));
-    result.held_out.push_back(held.result(data.noise[c]));
+    result.fitted.push_back(fitted.result());
+    result.held_out.push_back(held.result());
   }
   return result;
 }
@@ -141,8 +143,7 @@ std::vector<double> scored_residual(const Experiment& experiment, const std::vec
 }
 
 double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel) {
-  double square = 0.0;
-  double floor = 0.0;
+  double over_noise = 0.0;
   double rows = 0.0;
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
     const std::vector<double> residual = scored_residual(data.experiments[e], prediction[e], channel);
@@ -151,12 +152,13 @@ double excess_over_noise(const Dataset& data, const Prediction& prediction, std:
     }
     const auto count = static_cast<double>(residual.size());
     const double seen = noise_from_differences(residual);
-    const double noise = data.noise_declared[channel] ? std::max(seen, data.noise[channel]) : seen;
-    square += std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
-    floor += noise * noise * count;
+    const double least = data.noise_source[channel] == NoiseSource::estimated ? 0.0 : data.experiments[e].noise[channel];
+    const double noise = std::max(seen, least);
+    const double square = std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
+    over_noise += noise > 0.0 ? square / (noise * noise) : 0.0;
     rows += count;
   }
-  return rows > 0.0 && floor > 0.0 ? std::sqrt(std::max(0.0, square / floor - 1.0)) : 0.0;
+  return rows > 0.0 ? std::sqrt(std::max(0.0, over_noise / rows - 1.0)) : 0.0;
 }
 
 double excess_over_noise(const Dataset& data, const Prediction& prediction) {

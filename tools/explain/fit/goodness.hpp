@@ -10,7 +10,7 @@ namespace hotfire::explain {
 struct ChannelFit {
   double rows = 0.0;
   double effective_rows = 0.0;  ///< rows over the statistical inefficiency of the residual
-  double mean_square = 0.0;     ///< of residual over noise
+  double mean_square = 0.0;     ///< of residual over the noise of its record
   double rms = 0.0;             ///< in the channel's unit
   double max = 0.0;
   double bias = 0.0;
@@ -47,7 +47,8 @@ std::vector<double> scored_residual(const Experiment& experiment, const std::vec
                                     std::size_t channel);
 
 /// What of the residual on all rows is not sensor noise: its rms over the noise, where the noise is told from the residual's
-/// own third differences, or as large as was declared if that is more: third differences do not see slow noise. Zero where
+/// own third differences, record by record, or as large as was declared (or the floor) if that is more: third differences do
+/// not see slow noise. Zero where
 /// the model reaches the noise, even if less was declared.
 double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel);
 

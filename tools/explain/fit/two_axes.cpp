@@ -168,6 +168,11 @@ std::optional<CoupledRun> run_coupled(const TaosParameters& parameters, const Tw
       finite = false;
     }
   });
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].measured) {
+      run.zeros[i] = add_zeros(axes[i].data, run.prediction[i]);
+    }
+  }
   return finite ? std::optional(std::move(run)) : std::nullopt;
 }
 

@@ -27,7 +27,8 @@ TwoAxes axes_of(const VehicleFile& vehicle, const std::vector<Record>& records, 
 
 /// What the model of both axes together says of every record, by axis.
 struct CoupledRun {
-  std::array<Prediction, 2> prediction;          ///< by record, channel, row
+  std::array<Prediction, 2> prediction;          ///< by record, channel, row; with the zeros of a measured axis
+  std::array<Zeros, 2> zeros;                    ///< of a measured axis
   std::array<std::vector<OtherAxis>, 2> motion;  ///< of each axis, by record
 };
 

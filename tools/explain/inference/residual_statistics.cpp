@@ -178,7 +178,7 @@ std::vector<Band> error_by_frequency(const Dataset& data, const Prediction& pred
       for (std::size_t band = 0; band < edges.size(); ++band) {
         const double from = band == 0 ? 0.0 : edges[band - 1];
         const double width = std::max(0.0, std::min(edges[band], nyquist(experiment)) - from);
-        noise[band] += count * data.noise[channel] * data.noise[channel] * width / nyquist(experiment);
+        noise[band] += count * experiment.noise[channel] * experiment.noise[channel] * width / nyquist(experiment);
       }
       rows += count;
     }

@@ -16,7 +16,7 @@ constexpr Eigen::Index kBatch = 24;
 /// Normal equations of one form's regressors, with the declared parameters and what is left.
 struct Normal {
   Eigen::MatrixXd own;
-  Eigen::MatrixXd cross;  ///< a row a regressor, a column a declared parameter
+  Eigen::MatrixXd cross;  ///< a row a regressor, a column a parameter of the problem
   Eigen::VectorXd right;
 };
 
@@ -61,6 +61,9 @@ FormRegression::FormRegression(const LatentProblem& problem, const LatentPlace& 
   for (std::size_t e = 0; e < problem.data.experiments.size(); ++e) {
     const double share = arguments == Arguments::smoothed ? 1.0 : 0.0;
     quantities_.push_back(explain::quantities(problem, e, share * input.states[e]));
+    const auto own = static_cast<Eigen::Index>(problem.own[e].size());
+    Eigen::MatrixXd own_normal = Eigen::MatrixXd::Zero(own, own);
+    Eigen::VectorXd own_right = Eigen::VectorXd::Zero(own);
     for (Eigen::Index c = 0; c < problem.left[e].cols(); ++c) {
       for (Eigen::Index row = 0; row < problem.left[e].rows(); ++row) {
         const double left = problem.left[e](row, c);
@@ -68,12 +71,14 @@ FormRegression::FormRegression(const LatentProblem& problem, const LatentPlace& 
           continue;
         }
         const auto slopes = problem.sensitivity[e][static_cast<std::size_t>(c)].col(row);
-        nuisance_.noalias() += slopes * slopes.transpose();
-        nuisance_right_.noalias() += slopes * left;
+        own_normal.noalias() += slopes * slopes.transpose();
+        own_right.noalias() += slopes * left;
         square_ += left * left;
         count_ += 1.0;
       }
     }
+    nuisance_(problem.own[e], problem.own[e]) += own_normal;
+    nuisance_right_(problem.own[e]) += own_right;
   }
 }
 
@@ -135,13 +140,14 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
   for (std::size_t e = 0; e < quantities_.size(); ++e) {
     state.setZero();
     const Eigen::MatrixXd& left = problem_.left[e];
+    Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(columns, static_cast<Eigen::Index>(problem_.own[e].size()));
     for (Eigen::Index row = 0; row < left.rows(); ++row) {
       for (Eigen::Index c = 0; c < left.cols(); ++c) {
         if (std::isnan(left(row, c))) {
           continue;
         }
         const auto channel = static_cast<std::size_t>(c);
-        const double noise = problem_.data.noise[channel];
+        const double noise = problem_.data.experiments[e].noise[channel];
         if (place_.port) {
           reading = state.row(kReadState[channel]) * (problem_.scales.state(kReadState[channel]) / noise);
         } else if (place_.channel == channel) {
@@ -153,9 +159,9 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
         for (std::size_t f = 0; f < forms.size(); ++f) {
           const auto own = reading.segment(first[f], forms[f].size()).transpose();
           normals[f].own.noalias() += own * own.transpose();
-          normals[f].cross.noalias() += own * slopes.transpose();
           normals[f].right.noalias() += own * left(row, c);
         }
+        cross.noalias() += reading.transpose() * slopes.transpose();
       }
       if (place_.port && row + 1 < left.rows()) {
         const RowFlow& flow = problem_.flows[e].rows[static_cast<std::size_t>(row)];
@@ -164,6 +170,9 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
             flow.response.col(static_cast<int>(*place_.port)) * (0.5 * (added[e].row(row) + added[e].row(row + 1)));
         state.swap(next);
       }
+    }
+    for (std::size_t f = 0; f < forms.size(); ++f) {
+      normals[f].cross(Eigen::all, problem_.own[e]) += cross.middleRows(first[f], forms[f].size());
     }
   }
   for (std::size_t f = 0; f < forms.size(); ++f) {

@@ -13,12 +13,13 @@ struct FormScore {
   double criterion = 0.0;        ///< BIC with an unknown level of noise; less is better
   double left = 0.0;             ///< mean square over noise of what it leaves
   Eigen::VectorXd coefficients;  ///< in the site's unit for a unit of each regressor
-  Eigen::VectorXd move;          ///< of the declared parameters beside them [tolerances]
+  Eigen::VectorXd move;          ///< of the problem's parameters beside them
 };
 
 /// Regression of what a model leaves on the responses of forms at one place: every regressor acts along the linear flow,
 /// and its coefficient is that of least squares on the readings, where the noise is white. Declared parameters move beside
-/// it within their tolerances. A coefficient has the full input of its place as prior deviation (`FlowScales`).
+/// it within their tolerances, and so do the zeros of the records. A coefficient has the full input of its place as prior
+/// deviation (`FlowScales`).
 class FormRegression {
  public:
   /// Where the arguments of forms come from. What a smoother makes of the states contains the signal itself and may explain
@@ -47,7 +48,7 @@ class FormRegression {
   LatentPlace place_;
   std::vector<Eigen::VectorXd> signal_;
   std::vector<Eigen::MatrixXd> quantities_;  ///< by experiment
-  Eigen::MatrixXd nuisance_;                 ///< normal matrix of the declared parameters with their prior
+  Eigen::MatrixXd nuisance_;                 ///< normal matrix of the problem's parameters with their prior
   Eigen::VectorXd nuisance_right_;
   double square_ = 0.0;  ///< of what is left
   double count_ = 0.0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace hotfire::explain {
 
@@ -45,10 +46,10 @@ class Filter {
   Filter(const LatentProblem& problem, const std::optional<LatentPlace>& place, double deviation)
       : problem_(problem), place_(place), variance_(deviation * deviation) {}
 
-  /// Observation of channel c over its noise.
-  FilterVector observation(std::size_t channel) const {
+  /// Observation of channel c over its noise in a record.
+  FilterVector observation(const Experiment& experiment, std::size_t channel) const {
     FilterVector row = FilterVector::Zero();
-    const double noise = problem_.data.noise[channel];
+    const double noise = experiment.noise[channel];
     row(kReadState[channel]) = problem_.scales.state(kReadState[channel]) / noise;
     if (place_ && !place_->port && place_->channel == channel) {
       row(kSignal) = problem_.scales.reading[channel] / noise;
@@ -79,16 +80,18 @@ class Filter {
 
   /// Least squares of the innovations on the parameters, with the tolerances as prior: the log likelihood.
   double likelihood(Eigen::VectorXd& move) const {
-    const Eigen::Index parameters = problem_.expected.size();
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(parameters, parameters);
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Identity(problem_.expected.size(), problem_.expected.size());
     Eigen::VectorXd right = problem_.expected;
     double square = problem_.expected.squaredNorm();
     double logarithms = 0.0;
     double count = 0.0;
-    Eigen::RowVectorXd innovation(parameters + 1);
     for (std::size_t e = 0; e < problem_.data.experiments.size(); ++e) {
       const Experiment& experiment = problem_.data.experiments[e];
       const double kept = memory(experiment);
+      const auto parameters = static_cast<Eigen::Index>(problem_.own[e].size());
+      Eigen::MatrixXd own_normal = Eigen::MatrixXd::Zero(parameters, parameters);
+      Eigen::VectorXd own_right = Eigen::VectorXd::Zero(parameters);
+      Eigen::RowVectorXd innovation(parameters + 1);
       Means means = Means::Zero(kFilterStates, parameters + 1);
       FilterMatrix covariance = start();
       for (std::size_t row = 0; row < experiment.rows(); ++row) {
@@ -97,7 +100,7 @@ class Filter {
           if (std::isnan(left)) {
             continue;
           }
-          const FilterVector seen = observation(c);
+          const FilterVector seen = observation(experiment, c);
           const FilterVector spread = covariance * seen;
           const double variance = 1.0 + seen.dot(spread);
           innovation(0) = left;
@@ -106,18 +109,20 @@ class Filter {
           means.noalias() += (spread / variance) * innovation;
           covariance.noalias() -= spread * spread.transpose() / variance;
           const auto slopes = innovation.tail(parameters).transpose();
-          normal.noalias() += slopes * slopes.transpose() / variance;
-          right.noalias() += slopes * (innovation(0) / variance);
+          own_normal.noalias() += slopes * slopes.transpose() / variance;
+          own_right.noalias() += slopes * (innovation(0) / variance);
           square += innovation(0) * innovation(0) / variance;
           logarithms += std::log(variance);
           count += 1.0;
         }
         if (row + 1 < experiment.rows()) {
           const FilterMatrix moves = transition(problem_.flows[e].rows[row], kept);
-          means = moves * means;
+          means = moves.lazyProduct(means).eval();
           advance(moves, kept, covariance);
         }
       }
+      normal(problem_.own[e], problem_.own[e]) += own_normal;
+      right(problem_.own[e]) += own_right;
     }
     const Eigen::LLT<Eigen::MatrixXd> factor(normal);
     move = factor.solve(right);
@@ -129,6 +134,7 @@ class Filter {
   std::vector<Step> forward(std::size_t e, const Eigen::VectorXd& move) const {
     const Experiment& experiment = problem_.data.experiments[e];
     const double kept = memory(experiment);
+    const Eigen::VectorXd moved = move(problem_.own[e]);
     std::vector<Step> steps(experiment.rows());
     FilterVector mean = FilterVector::Zero();
     FilterMatrix covariance = start();
@@ -141,12 +147,12 @@ class Filter {
           continue;
         }
         Update update;
-        update.row = observation(c);
+        update.row = observation(experiment, c);
         const FilterVector spread = covariance * update.row;
         update.variance = 1.0 + update.row.dot(spread);
         update.gain = spread / update.variance;
         update.innovation =
-            left - problem_.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).dot(move) - update.row.dot(mean);
+            left - problem_.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).dot(moved) - update.row.dot(mean);
         mean += update.gain * update.innovation;
         covariance.noalias() -= spread * update.gain.transpose();
         steps[row].updates.push_back(update);
@@ -176,11 +182,15 @@ class Filter {
 
 }  // namespace
 
-LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fitted<SimplexFamily>& around,
-                             unsigned threads) {
-  const Dataset& data = evaluator.data();
+LatentProblem latent_problem(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads) {
+  // Zeros that are integrated out of the residuals would correlate all rows of a record, which a filter takes one by one.
+  Dataset without_priors = data;
+  for (Experiment& experiment : without_priors.experiments) {
+    experiment.zero_deviation.assign(data.channels.size(), 0.0);
+  }
+  const Evaluator<SimplexFamily> evaluator(without_priors, Resolution::coarse, Resolution::rough);
   const auto parameters = Evaluator<SimplexFamily>::with_values(around.base, around.free, around.u);
-  LatentProblem problem{data, parameters, flow_scales(parameters), {}, {}, {}, {}};
+  LatentProblem problem{data, parameters, flow_scales(parameters), {}, {}, {}, {}, {}};
   std::vector<std::size_t> declared;
   for (std::size_t k = 0; k < around.free.size(); ++k) {
     if (around.free[k].is_declared()) {
@@ -194,23 +204,40 @@ LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fi
     return problem;
   }
   const auto count = static_cast<Eigen::Index>(declared.size());
-  problem.expected.resize(count);
+  Eigen::Index parameters_in_all = count;
+  const Eigen::VectorXd residual = evaluator.residuals(prediction);
+  std::vector<std::vector<Eigen::Index>> zero_row(data.experiments.size());
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    std::vector<Eigen::Index>& own = problem.own.emplace_back(declared.size());
+    std::iota(own.begin(), own.end(), Eigen::Index{0});
+    for (std::size_t c = 0; c < data.channels.size(); ++c) {
+      zero_row[e].push_back(-1);
+      if (zero_precision(data.experiments[e], c) > 0.0) {
+        zero_row[e].back() = static_cast<Eigen::Index>(own.size());
+        own.push_back(parameters_in_all++);
+      }
+    }
+    const auto rows = static_cast<Eigen::Index>(data.experiments[e].rows());
+    problem.left.emplace_back(Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(kReadState.size()),
+                                                        std::numeric_limits<double>::quiet_NaN()));
+    problem.sensitivity.emplace_back(kReadState.size(), Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(own.size()), rows));
+  }
+  problem.expected = Eigen::VectorXd::Zero(parameters_in_all);
   for (Eigen::Index k = 0; k < count; ++k) {
     problem.expected(k) = -around.u[declared[static_cast<std::size_t>(k)]];
   }
-  const Eigen::VectorXd residual = evaluator.residuals(prediction);
-  for (const Experiment& experiment : data.experiments) {
-    const auto rows = static_cast<Eigen::Index>(experiment.rows());
-    problem.left.emplace_back(Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(kReadState.size()),
-                                                        std::numeric_limits<double>::quiet_NaN()));
-    problem.sensitivity.emplace_back(kReadState.size(), Eigen::MatrixXd::Zero(count, rows));
-  }
   for (const Stretch& s : evaluator.stretches()) {
+    const Experiment& experiment = data.experiments[s.experiment];
+    Eigen::MatrixXd& sensitivity = problem.sensitivity[s.experiment][s.channel];
+    const Eigen::Index zero = zero_row[s.experiment][s.channel];
     for (std::size_t row = s.first; row < s.last; ++row) {
       const auto i = static_cast<Eigen::Index>(s.offset + row - s.first);
       const auto at = static_cast<Eigen::Index>(row);
       problem.left[s.experiment](at, static_cast<Eigen::Index>(s.channel)) = -residual(i);
-      problem.sensitivity[s.experiment][s.channel].col(at) = jacobian.row(i).transpose();
+      sensitivity.col(at).head(count) = jacobian.row(i).transpose();
+      if (zero >= 0) {
+        sensitivity(zero, at) = experiment.zero_deviation[s.channel] / experiment.noise[s.channel];
+      }
     }
   }
   problem.flows = linear_flow(data, parameters, problem.scales, threads);
@@ -254,6 +281,7 @@ void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput&
     const Experiment& experiment = problem.data.experiments[e];
     const double kept = filter.memory(experiment);
     const std::vector<Step> steps = filter.forward(e, input.move);
+    const Eigen::VectorXd moved = input.move(problem.own[e]);
     Eigen::VectorXd signal(static_cast<Eigen::Index>(experiment.rows()));
     Eigen::MatrixXd states(kFlowStates, static_cast<Eigen::Index>(experiment.rows()));
     FilterVector adjoint = FilterVector::Zero();
@@ -272,8 +300,8 @@ void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput&
       for (std::size_t c = 0; c < kReadState.size(); ++c) {
         const double left = problem.left[e](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c));
         if (!std::isnan(left)) {
-          const double rest = left - problem.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).dot(input.move) -
-                              filter.observation(c).dot(smoothed);
+          const double rest = left - problem.sensitivity[e][c].col(static_cast<Eigen::Index>(row)).dot(moved) -
+                              filter.observation(experiment, c).dot(smoothed);
           square[c] += rest * rest;
           rows[c] += 1.0;
         }

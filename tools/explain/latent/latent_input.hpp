@@ -23,19 +23,20 @@ struct LatentProblem {
   std::vector<Flow> flows;                                ///< by experiment
   std::vector<Eigen::MatrixXd> left;                      ///< by experiment: measured minus predicted over noise, a column a
                                                           ///< channel; NaN where a row is not fitted
-  std::vector<std::vector<Eigen::MatrixXd>> sensitivity;  ///< by experiment and channel: a row a parameter
+  std::vector<std::vector<Eigen::MatrixXd>> sensitivity;  ///< by experiment and channel: a row a parameter of `own`
+  std::vector<std::vector<Eigen::Index>> own;             ///< by experiment: the parameters that move it
   Eigen::VectorXd expected;                               ///< prior mean of the parameters' move, in tolerances
 };
 
-/// The problem about a fitted model. Empty flows if the model could not be simulated.
-LatentProblem latent_problem(const Evaluator<SimplexFamily>& evaluator, const Fitted<SimplexFamily>& around,
-                             unsigned threads);
+/// The problem about a fitted model. Empty flows if the model could not be simulated. Its parameters are the declared ones,
+/// in tolerances, then the zero of every channel of every record, in its prior's deviation (zeros.hpp).
+LatentProblem latent_problem(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads);
 
 /// An unknown signal w(t) at one place, as an Ornstein-Uhlenbeck process.
 struct LatentInput {
   double log_likelihood = 0.0;  ///< of the records, parameters and signal integrated out
   double deviation = 0.0;       ///< stationary rms of the signal over its scale, the most likely one
-  Eigen::VectorXd move;         ///< of the declared parameters [tolerances]
+  Eigen::VectorXd move;         ///< of the problem's parameters
   std::vector<double> leaves;  ///< by channel: mean square over noise of what the smoothed signal leaves; filled by `smooth`
   std::vector<Eigen::VectorXd> signal;  ///< by experiment, a value a row, over its scale; filled by `smooth`
   std::vector<Eigen::MatrixXd> states;  ///< by experiment, deviations from the simulated states over their scales, a column
@@ -48,9 +49,9 @@ double likelihood_without(const LatentProblem& problem);
 /// The most likely size of a signal at `place`.
 ///
 /// w' = -w / T + white noise, T a few time constants of the servo. The plant's deviation, linear along its simulation, and w
-/// are the state of a Kalman filter; records reset them. Declared parameters are constants over all records: the filter runs
-/// on their sensitivities beside the residuals, and their move follows by least squares on the innovations, with their
-/// tolerances as prior [de Jong 1991, The diffuse Kalman filter, Annals of Statistics 19].
+/// are the state of a Kalman filter; records reset them. Declared parameters are constants over all records, zeros over one:
+/// the filter runs on their sensitivities beside the residuals, and their move follows by least squares on the innovations,
+/// with tolerances and deviations as prior [de Jong 1991, The diffuse Kalman filter, Annals of Statistics 19].
 LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& place);
 
 /// The same with signal and what is left, by a fixed-interval smoother [Bryson and Frazier 1963].

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "model/sites.hpp"
+#include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/fit/parallel.hpp"
 
 namespace hotfire::explain {
@@ -33,8 +34,10 @@ std::vector<std::pair<LatentPlace, std::vector<std::string>>> places_of(const Da
       {{Port::torque_motor, 0}, {site(command), site(valve_command)}},
       {{Port::oil, 0}, {site(valve), site(flow), site(pressure)}},
       {{Port::piston, 0}, {site(piston)}},
-      {{Port::spring, 0}, {site(load_spring), site(structure)}},
-      {{Port::engine, 0}, {site(engine_torque)}}};
+      {{Port::spring, 0}, {site(load_spring), site(structure)}}};
+  if (!is_measured_load(data, site(engine_torque))) {
+    places.push_back({{Port::engine, 0}, {site(engine_torque)}});
+  }
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     if (data.used[c]) {
       places.push_back({{std::nullopt, c}, {site(sensor) + "." + data.channels[c]}});
@@ -69,9 +72,8 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
     seconds += static_cast<double>(experiment.rows()) * experiment.period;
   }
   const Dataset thin = rows > kMostRows ? thinned(data, seconds / kMostRows) : data;
-  const Evaluator<SimplexFamily> evaluator(thin, Resolution::coarse, Resolution::rough);
   Located located;
-  const LatentProblem problem = latent_problem(evaluator, around, threads);
+  const LatentProblem problem = latent_problem(thin, around, threads);
   if (problem.flows.empty()) {
     return located;
   }

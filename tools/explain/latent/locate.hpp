@@ -16,7 +16,7 @@ struct Place {
   bool is_likely = false;          ///< no other place explains clearly more
   LatentPlace where{};
   double deviation = 0.0;  ///< of the most likely signal, over its scale
-  Eigen::VectorXd move{};  ///< of the declared parameters beside it [tolerances]
+  Eigen::VectorXd move{};  ///< of the parameters of its problem beside it
 };
 
 /// Where the term acts that a model is missing.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <numeric>
+
 #include "tools/explain/inference/profile.hpp"
 #include "tools/explain/report/verdict.hpp"
 #include "tools/explain/search/search.hpp"
@@ -38,14 +41,21 @@ ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, 
   return series;
 }
 
-/// The explained model as a rig runs it: what is a fault of the records and not of the plant is left out.
+/// The explained model as a rig runs it: what is a fault of the records and not of the plant is left out. What drifted over
+/// the time of a record stands at its mean, since another run has another clock; unless `keep_drift`.
 template <class Family>
-PlainParameters<Family> plant_of(const SearchResult<Family>& found) {
+PlainParameters<Family> plant_of(const SearchResult<Family>& found, bool keep_drift) {
   const Fitted<Family>& fitted = found.explained.model;
   PlainParameters<Family> plant = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);
   for (const Kept& kept : found.kept) {
-    if (is_fault_of_record(kept.trial.candidate)) {
-      plant.effects.active[kept.trial.candidate.effect] = false;
+    const Candidate& candidate = kept.trial.candidate;
+    if (is_fault_of_record(candidate)) {
+      plant.effects.active[candidate.effect] = false;
+    } else if (is_of_record_time(candidate) && !keep_drift) {
+      visit_table(plant, candidate, [&]<class>(const auto&, auto& table) {
+        const auto end = table.y.begin() + table.points;
+        std::fill(table.y.begin(), end, std::accumulate(table.y.begin(), end, 0.0) / table.points);
+      });
     }
   }
   return plant;

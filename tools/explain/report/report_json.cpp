@@ -1,6 +1,7 @@
 #include "tools/explain/report/report_json.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,19 @@ json source_of(const Estimate& estimate) {
   return !estimate.interval ? json(nullptr) : json(estimate.from_profile ? "profile" : "curvature");
 }
 
+bool noise_is_known(const Dataset& data) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.used[c] && !data.noise_is_known(c)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+const char* source_of(NoiseSource source) {
+  return source == NoiseSource::declared ? "declared" : source == NoiseSource::estimated ? "estimated" : "floor";
+}
+
 template <class Family>
 std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
   const Fitted<Family>& model = found.explained.model;
@@ -61,7 +75,7 @@ json channels_json(const Dataset& data, const std::vector<Record>& records, cons
     }
     channels[data.channels[c]] = {{"unit", unit},
                                   {"noise", data.noise[c]},
-                                  {"noise_source", data.noise_declared[c] ? "declared" : "estimated"},
+                                  {"noise_source", source_of(data.noise_source[c])},
                                   {"before", errors_of(found.declared.goodness.held_out[c])},
                                   {"calibrated", errors_of(found.calibrated.goodness.held_out[c])},
                                   {"after", errors_of(found.explained.goodness.held_out[c])}};
@@ -167,6 +181,12 @@ json calibration_json(const SearchResult<Family>& found, const std::vector<Estim
 /// Effects that are no fault of the plant.
 void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
   for (const Kept& kept : found) {
+    if (is_of_record_time(kept.trial.candidate)) {
+      warnings.push_back(fmt::format(
+          "{} at {} drifts over the time of these records: explained.toml, which runs others, has its mean; the report has "
+          "its table, and --keep-drift writes it.",
+          kept.trial.candidate.name, kept.trial.candidate.site));
+    }
     const std::string& name = kept.trial.candidate.name;
     if (is_fault_of_record(kept.trial.candidate)) {
       warnings.push_back(fmt::format(
@@ -205,7 +225,7 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
     }
   }
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (!data.used[c] || !data.noise_declared[c]) {
+    if (!data.used[c] || !data.noise_declared(c)) {
       continue;
     }
     std::vector<double> residual;
@@ -224,7 +244,28 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
 
 }  // namespace
 
+json record_channels_json(const Dataset& data, std::size_t experiment, const Zeros& zeros) {
+  const Experiment& record = data.experiments[experiment];
+  json channels = json::object();
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (!record.measured[c].empty()) {
+      channels[data.channels[c]] = {{"noise", record.noise[c]}};
+      if (record.zero_deviation[c] > 0.0) {
+        channels[data.channels[c]]["zero"] = zeros[experiment][c];
+      }
+    }
+  }
+  return channels;
+}
+
 void warn_of_rows(const Dataset& data, json& warnings) {
+  for (const Experiment& experiment : data.experiments) {
+    for (const std::string& channel : experiment.unused) {
+      warnings.push_back(fmt::format("{}: channel {} is not used: the model has no such channel (it has {}{}).",
+                                     experiment.name, channel, fmt::join(data.channels, ", "),
+                                     data.channels.size() > 1 ? "; a measured load is an input, torque" : ""));
+    }
+  }
   for (const Experiment& experiment : data.experiments) {
     if (experiment.first_scored > 0) {
       warnings.push_back(fmt::format("{} does not start at rest: its first {:.2f} s are simulated but not compared.",
@@ -256,7 +297,7 @@ json report_json(const ModelFile& model, const std::vector<Record>& records, con
               {"model", model.path.string()},
               {"name", model.name},
               {"verdict", verdict},
-              {"sentence", sentence_of(verdict, found)},
+              {"sentence", sentence_of(verdict, found, noise_is_known(data))},
               {"records", json::array()},
               {"held_out", held_out_names(data)},
               {"warnings", warnings_of(model, data, found, estimated)},
@@ -272,11 +313,15 @@ json report_json(const ModelFile& model, const std::vector<Record>& records, con
   for (const std::string& sentence : not_told_apart(found.explained.model)) {
     report["identifiability"].push_back({{"text", sentence}});
   }
-  for (const Record& record : records) {
-    report["records"].push_back({{"path", record.path.string()}, {"rows", record.rows}, {"period", record.period}});
+  for (std::size_t e = 0; e < records.size(); ++e) {
+    report["records"].push_back({{"path", records[e].path.string()},
+                                 {"rows", records[e].rows},
+                                 {"period", records[e].period},
+                                 {"channels", record_channels_json(data, e, found.explained.zeros)}});
   }
   // What the calibrated model lacks: against the declared one a wrong value would show as well.
-  if (const json trace = trace_json(reconstruct(data, calibrated), found.kept); !trace.is_null()) {
+  if (const json trace = trace_json(reconstruct(without_zeros(data, found.calibrated.zeros), calibrated), found.kept);
+      !trace.is_null()) {
     report["trace"] = trace;
   }
   return report;

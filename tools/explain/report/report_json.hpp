@@ -13,6 +13,9 @@ template <class Family>
 nlohmann::json report_json(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
                            const SearchResult<Family>& found);
 
+/// Noise and zero of each channel of one record, in the channel's unit.
+nlohmann::json record_channels_json(const Dataset& data, std::size_t experiment, const Zeros& zeros);
+
 /// Warnings of the rows that are simulated and not compared.
 void warn_of_rows(const Dataset& data, nlohmann::json& warnings);
 

@@ -210,8 +210,8 @@ std::vector<Trace> reconstruct(const Dataset& data, const SimplexParameters& par
     }
     Experiment still = experiment;
     still.input.assign(experiment.rows(), 0.0);
-    return left_over(still, parameters, noise_like(experiment.rows(), data.noise[0], generator),
-                     noise_like(experiment.rows(), data.noise[1], generator));
+    return left_over(still, parameters, noise_like(experiment.rows(), experiment.noise[0], generator),
+                     noise_like(experiment.rows(), experiment.noise[1], generator));
   });
 }
 
@@ -222,7 +222,7 @@ std::vector<Trace> reconstruct(const Dataset& data, const DirectParameters& para
     }
     Experiment still = experiment;
     still.input.assign(experiment.rows(), 0.0);
-    return left_over(still, parameters, noise_like(experiment.rows(), data.noise[0], generator));
+    return left_over(still, parameters, noise_like(experiment.rows(), experiment.noise[0], generator));
   });
 }
 

@@ -88,6 +88,12 @@ bool is_fault_of_record(const Candidate& candidate) {
          candidate.name == model::CommandScale::name;
 }
 
+bool is_of_record_time(const Candidate& candidate) {
+  return candidate.name.starts_with("unlisted_") &&
+         (candidate.option_name == "time" || candidate.option_name.ends_with("_along_time") ||
+          candidate.name == model::UnlistedDrift::name);
+}
+
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
   if (first_unlisted(found) != nullptr) {
@@ -103,9 +109,13 @@ std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
 }
 
 template <class Family>
-std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found) {
+std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found, bool noise_is_known) {
   const double before = Goodness::combined(found.declared.goodness.held_out);
   const double after = Goodness::combined(found.explained.goodness.held_out);
+  // Times a floor that is no size of the sensor says nothing.
+  const std::string falls = noise_is_known
+                                ? fmt::format("from {:.1f} to {:.2f} times the noise", before, after)
+                                : fmt::format("to {:.3g} % of what the declared model leaves", 100.0 * after / before);
   if (verdict == "nothing-missing" && !is_within_tolerances(found.explained.model)) {
     const Moved farthest = farthest_from_declared(found.explained.model);
     return fmt::format(
@@ -122,20 +132,23 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
   }
   if (verdict == "unlisted-effect" && !found.kept.empty()) {
     return fmt::format(
-        "The records hold an effect that is in no list. The explained model has {}: the error on held-out data falls from "
-        "{:.1f} to {:.2f} times the noise.",
-        terms_in_words(found), before, after);
+        "The records hold an effect that is in no list. The explained model has {}: the error on held-out data falls {}.",
+        terms_in_words(found), falls);
   }
   if (verdict == "unlisted-effect") {
     return fmt::format(
-        "The records hold an effect that is in no list: the error of the calibrated model on held-out data is {:.1f} times "
-        "the noise, and no candidate is supported.{}",
-        after, found.located.places.empty() ? "" : " " + place_in_words(found.located) + ".");
+        "The records hold an effect that is in no list: the error of the calibrated model on held-out data is {}, and no "
+        "candidate is supported.{}",
+        noise_is_known ? fmt::format("{:.1f} times the noise", after)
+                       : fmt::format("{:.3g} % of the declared model's", 100.0 * after / before),
+        found.located.places.empty() ? "" : " " + place_in_words(found.located) + ".");
   }
   if (verdict == "undecided") {
     return fmt::format(
-        "{}: the calibrated model is {:.1f} times the noise off on held-out data{}.",
-        found.searched ? "Undecided, since the search was interrupted" : "Undecided, since no effect was looked for", after,
+        "{}: the calibrated model is {} off on held-out data{}.",
+        found.searched ? "Undecided, since the search was interrupted" : "Undecided, since no effect was looked for",
+        noise_is_known ? fmt::format("{:.1f} times the noise", after)
+                       : fmt::format("{:.3g} % of what the declared model is", 100.0 * after / before),
         promising(found.trials));
   }
   std::vector<std::string> lacks;
@@ -147,8 +160,8 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
   if (!faults.empty()) {
     text += fmt::format("{} at fault: {}", lacks.empty() ? "The records are" : ", and the records are", listed(faults));
   }
-  return fmt::format("{}: with {} the error on held-out data falls from {:.1f} to {:.2f} times the noise{}.", text,
-                     found.kept.size() == 1 ? "it" : "them", before, after,
+  return fmt::format("{}: with {} the error on held-out data falls {}{}.", text, found.kept.size() == 1 ? "it" : "them",
+                     falls,
                      verdict == "explained" ? ", close to what the sensors can tell" : "; a part is left unexplained");
 }
 
@@ -176,9 +189,9 @@ std::string what_it_is_not(const SearchResult<Family>& found) {
   return text;
 }
 
-#define HOTFIRE_INSTANTIATE(Family)                                                          \
-  template std::string verdict_of<Family>(const Dataset&, const SearchResult<Family>&);      \
-  template std::string sentence_of<Family>(const std::string&, const SearchResult<Family>&); \
+#define HOTFIRE_INSTANTIATE(Family)                                                                \
+  template std::string verdict_of<Family>(const Dataset&, const SearchResult<Family>&);            \
+  template std::string sentence_of<Family>(const std::string&, const SearchResult<Family>&, bool); \
   template std::string what_it_is_not<Family>(const SearchResult<Family>&);
 
 HOTFIRE_INSTANTIATE(SimplexFamily)

@@ -9,14 +9,17 @@ namespace hotfire::explain {
 /// True of an effect that is a fault of the record, not of the plant: a channel that is mis-scaled or late.
 bool is_fault_of_record(const Candidate& candidate);
 
+/// True for a term over the time of the record: it says what drifted, and means nothing in another run.
+bool is_of_record_time(const Candidate& candidate);
+
 /// `explained`, `nothing-missing`, `partly-explained`, `unlisted-effect`, or `undecided`: nothing is kept, more than noise
 /// is left, and the search was interrupted or not asked for. docs/report.md
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found);
 
-/// What was found, in one sentence or two.
+/// What was found, in one sentence or two. Errors stand in times of the noise where that is known of every channel.
 template <class Family>
-std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found);
+std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found, bool noise_is_known = true);
 
 /// What the term of unknown law that was kept is not: the listed effect and the other such terms that came closest, and what
 /// they leave.

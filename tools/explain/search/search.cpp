@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "tools/explain/data/measured_load.hpp"
+#include "tools/explain/inference/veto.hpp"
 #include "tools/explain/search/channel_check.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/refiner.hpp"
@@ -76,6 +78,7 @@ class Search {
     }
     if (options_.most_effects > 0) {
       unlisted_.finish();
+      take_out_harmful();
     }
     result_.searched = options_.most_effects > 0;
     result_.interrupted = options_.watch.interrupted();
@@ -88,7 +91,8 @@ class Search {
     const Fitted<Family>& current = result_.explained.model;
     std::vector<Candidate> candidates = all_candidates<Family>(data_);
     std::erase_if(candidates, [&](const Candidate& c) {
-      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c);
+      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c) ||
+             is_measured_load(data_, c.site);
     });
     const Evaluator<Family> evaluator = refiner_.for_screening(current);
     const Screening<Family> screening(evaluator, current, scales_, options_.threads);
@@ -97,6 +101,10 @@ class Search {
     RoundResult<Family> found = fits.run();
     result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());
     if (!found.kept) {
+      return false;
+    }
+    if (const std::string harm = harm_of(data_, found.model.prediction, result_.calibrated.prediction); !harm.empty()) {
+      refuse(found.kept->trial.candidate, round, harm);
       return false;
     }
     if (result_.rival) {
@@ -108,6 +116,39 @@ class Search {
     is_settled_ = found.settled;
     polish_earlier(round);
     return true;
+  }
+
+  /// Says of the trial that was to be kept why it is not.
+  void refuse(const Candidate& candidate, int round, const std::string& harm) {
+    for (Trial& trial : result_.trials) {
+      if (trial.round == round && trial.decision == "kept" && label(trial.candidate) == label(candidate)) {
+        trial.decision = "dropped";
+        trial.reason += "; refused: " + harm;
+      }
+    }
+  }
+
+  /// Takes out, the last first, what leaves more of a record or of a band than the calibrated model does.
+  void take_out_harmful() {
+    while (!result_.kept.empty() && !options_.watch.interrupted()) {
+      const std::string harm = harm_of(data_, result_.explained.prediction, result_.calibrated.prediction);
+      if (harm.empty()) {
+        return;
+      }
+      const Kept last = std::move(result_.kept.back());
+      result_.kept.pop_back();
+      Trial trial{result_.next_round(), last.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", "refused: " + harm};
+      Assessed<Family> rest =
+          result_.kept.empty() ? result_.calibrated : refiner_.without(result_.explained.model, last.trial.candidate);
+      if (!rest.good()) {
+        rest = result_.calibrated;
+        result_.kept.clear();
+      }
+      compare(trial, rest, result_.explained, rest.goodness.fitted);
+      result_.trials.push_back(std::move(trial));
+      result_.rival.reset();
+      result_.explained = std::move(rest);
+    }
   }
 
   /// True for an effect that was taken out twice: adding it again would go round in a circle.

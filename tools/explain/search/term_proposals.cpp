@@ -143,9 +143,8 @@ std::vector<Screened<SimplexFamily>> propose_terms(const Dataset& data, const Fi
     seconds += static_cast<double>(experiment.rows()) * experiment.period;
   }
   const Dataset thin = rows > kMostRows ? thinned(data, seconds / kMostRows) : data;
-  const Evaluator<SimplexFamily> evaluator(thin, Resolution::coarse, Resolution::rough);
   std::vector<Screened<SimplexFamily>> proposals;
-  const LatentProblem problem = latent_problem(evaluator, around, threads);
+  const LatentProblem problem = latent_problem(thin, around, threads);
   if (problem.flows.empty()) {
     return proposals;
   }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/search/term_proposals.hpp"
@@ -114,6 +115,10 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
         left = excess_over_noise(data, finalist.prediction);
         if (falls_as_it_rises(finalist.model, s.candidate)) {
           trial.reason += ", but by a signal that falls where it should rise";
+        } else if (feeds_energy<Family>(
+                       Evaluator<Family>::with_values(finalist.model.base, finalist.model.free, finalist.model.u),
+                       s.candidate)) {
+          trial.reason += ", but by a friction that feeds energy in";
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
           result.model = std::move(finalist);
@@ -167,7 +172,8 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
     const Screening<Family> screening(evaluator, around, scales, threads);
     std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
     std::erase_if(candidates, [&](const Candidate& candidate) {
-      return around.base.effects.active[candidate.effect] || !located.allows(candidate.site);
+      return around.base.effects.active[candidate.effect] || !located.allows(candidate.site) ||
+             is_measured_load(data, candidate.site);
     });
     auto screened = screening.run(candidates, "unlisted", watch);
     const std::size_t wanted = unlisted_finalists(screened);

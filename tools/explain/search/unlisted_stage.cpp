@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tools/explain/inference/veto.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 
@@ -17,6 +18,9 @@ constexpr double kUnlistedAdvantage = 0.7;
 constexpr double kLittleExplained = 0.5;
 /// ... and give way to a term of unknown law that is only a little better.
 constexpr double kAdvantageOverLittle = 0.9;
+/// ... but a curve over the signal that the names are laws of, such as dead band and asymmetry of a valve, is a finer word
+/// for the same and not another: it has to stay below this share of what they leave.
+constexpr double kAdvantageOverSameCurve = 0.5;
 /// Held-out data agree that a model leaves clearly less where their error is below this share: from 1 to 0.7 of the noise
 /// beyond it is 0.87 of the whole.
 constexpr double kHeldOutAgrees = 0.9;
@@ -24,6 +28,20 @@ constexpr double kHeldOutAgrees = 0.9;
 constexpr double kNearNoise = 3.0;
 /// A name beside a term of unknown law has to carry its weight: without it the held-out error grows by this factor.
 constexpr double kWeightOfName = 1.3;
+
+/// True if names are static laws of the opening that a term of unknown law is a curve over.
+bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names) {
+  const auto is_of_opening = [](const Candidate& candidate) {
+    return candidate.site == model::site_name(model::Site::valve) ||
+           candidate.site == model::site_name(model::Site::valve_command);
+  };
+  return !names.empty() && term.option_name == "value" && is_of_opening(term) &&
+         std::ranges::all_of(names, [](const Kept& kept) {
+           const std::string& name = kept.trial.candidate.name;
+           return name == model::ValveDeadband::name || name == model::ValveAsymmetry::name ||
+                  name == model::ValveBias::name;
+         });
+}
 
 }  // namespace
 
@@ -135,8 +153,14 @@ void UnlistedStage<Family>::look_instead() {
 template <class Family>
 void UnlistedStage<Family>::take_instead_if_better() {
   const double listed = left_by_listed();
-  if (!instead_->leaves_less_than(advantage() * listed) &&
-      !(instead_->leaves_less_than(1.0) && leaves_clearly_less(instead_->model, advantage()))) {
+  const bool is_same = instead_->best && is_curve_of_the_same(instead_->trials[*instead_->best].candidate, result_.kept);
+  const double share = is_same ? kAdvantageOverSameCurve : advantage();
+  if (!instead_->leaves_less_than(share * listed) &&
+      !(instead_->leaves_less_than(1.0) && leaves_clearly_less(instead_->model, share))) {
+    return;
+  }
+  if (const std::string harm = harm_of(data_, instead_->model.prediction, result_.calibrated.prediction); !harm.empty()) {
+    result_.trials[instead_trials_ + *instead_->best].reason += "; refused: " + harm;
     return;
   }
   if (!result_.kept.empty()) {
@@ -173,7 +197,8 @@ void UnlistedStage<Family>::add_beside() {
                           options_.watch, result_.next_round());
       const std::size_t first = result_.trials.size();
       result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
-      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, kUnlistedAdvantage)) {
+      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, kUnlistedAdvantage) ||
+          !harm_of(data_, beside.model.prediction, result_.calibrated.prediction).empty()) {
         return;
       }
       result_.rival.reset();

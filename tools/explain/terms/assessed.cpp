@@ -27,7 +27,7 @@ constexpr double kStillFalling = 0.95;
 template <class Family>
 Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted) {
   Assessed<Family> assessed{fitted, {}, {}};
-  fine.predict(fitted.base, fitted.free, fitted.u, threads, assessed.prediction);
+  fine.predict(fitted.base, fitted.free, fitted.u, threads, assessed.prediction, assessed.zeros);
   assessed.goodness = goodness(fine.data(), assessed.prediction);
   return assessed;
 }

@@ -14,6 +14,7 @@ struct Assessed {
   Fitted<Family> model;
   Prediction prediction;
   Goodness goodness;
+  Zeros zeros{};  ///< of the records under this model
 
   bool good() const { return !prediction.empty(); }
 };

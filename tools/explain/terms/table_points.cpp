@@ -162,7 +162,7 @@ void lay_points_by_reading(Table& table, const Dataset& data, const Fitted<Famil
       const std::vector<double>& measured = data.experiments[s.experiment].measured[channel];
       for (std::size_t row = s.first; row < s.last; ++row) {
         reading.push_back(predicted[row]);
-        left.push_back((measured[row] - predicted[row]) / data.noise[channel]);
+        left.push_back((measured[row] - predicted[row]) / data.experiments[s.experiment].noise[channel]);
       }
     }
   }

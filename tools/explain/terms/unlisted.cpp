@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tools/explain/terms/table_points.hpp"
 
 namespace hotfire::explain {
@@ -11,6 +14,20 @@ namespace {
 template <class E>
 constexpr bool is_unlisted_effect() {
   return requires { E::is_unlisted; };
+}
+
+/// Share of the energy that a table takes out which it may feed in elsewhere: its scatter.
+constexpr double kScatter = 0.05;
+
+/// True for a term of the grammar that is a curve over the rate of the motion it is against, without memory.
+bool is_curve_over_own_rate(const Candidate& candidate) {
+  if (candidate.choices.empty() || candidate.option != static_cast<int>(model::Memory::none)) {
+    return false;
+  }
+  const bool is_of_piston = candidate.site == model::site_name(model::Site::piston);
+  const bool is_of_engine = candidate.site == model::site_name(model::Site::engine_torque);
+  const auto rate = is_of_piston ? model::Argument::rate : model::Argument::angle_rate;
+  return (is_of_piston || is_of_engine) && candidate.choices[0] == static_cast<int>(rate) && candidate.choices[1] == 0;
 }
 
 }  // namespace
@@ -74,7 +91,29 @@ std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, c
   return result;
 }
 
+template <class Family>
+bool feeds_energy(const PlainParameters<Family>& parameters, const Candidate& candidate) {
+  const auto table = table_of<Family>(parameters, candidate);
+  if (!table || table->x.empty()) {
+    return false;
+  }
+  const bool over_rate = table->x_name == "rate" || is_curve_over_own_rate(candidate);
+  if (!over_rate && table->x_name.find("of_damping") == std::string::npos) {
+    return false;
+  }
+  const auto closest = std::ranges::min_element(table->x, {}, [](double x) { return std::abs(x); });
+  const double at_rest = over_rate ? table->y[static_cast<std::size_t>(closest - table->x.begin())] : 0.0;
+  double in = 0.0;
+  double out = 0.0;
+  for (std::size_t i = 0; i < table->x.size(); ++i) {
+    const double power = (table->y[i] - at_rest) * (over_rate ? table->x[i] : 1.0);
+    (power < 0.0 ? in : out) += std::abs(power);
+  }
+  return in > kScatter * out;
+}
+
 #define HOTFIRE_INSTANTIATE(Family)                                                                       \
+  template bool feeds_energy<Family>(const PlainParameters<Family>&, const Candidate&);                   \
   template bool is_unlisted<Family>(const Candidate&);                                                    \
   template std::optional<FittedTable> table_of<Family>(const PlainParameters<Family>&, const Candidate&); \
   template std::vector<Candidate> unlisted_candidates<Family>(const Dataset&);                            \

@@ -2,18 +2,67 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
+#include "tools/files/import/resample.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/units.hpp"
 #include "tools/files/text/whole_file.hpp"
 
 namespace hotfire {
 
 namespace {
 
-void write_columns(const std::vector<ImportColumn>& columns, const std::vector<std::vector<double>>& values, double period,
-                   const std::filesystem::path& output) {
+/// Whether a channel is what a plant is told: it holds from a row to the next.
+bool is_told(const std::string& channel) {
+  const std::string own = channel.substr(0, channel.find('.'));
+  return own == "command" || own == "current";
+}
+
+/// Values in their units: times factor, plus offset.
+void scale(const std::vector<ImportColumn>& columns, std::vector<std::vector<double>>& values) {
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].factor != 1.0 || columns[c].offset != 0.0) {
+      std::ranges::for_each(values[c], [&](double& value) { value = value * columns[c].factor + columns[c].offset; });
+    }
+  }
+}
+
+/// Puts the columns on the even grid that the map asks for. What is left has no time column.
+std::string put_on_grid(const std::filesystem::path& source, ImportMap& map, std::vector<std::vector<double>>& values,
+                        double& start) {
+  std::vector<double> times;
+  if (map.period > 0.0) {
+    for (std::size_t row = 0; row < values.front().size(); ++row) {
+      times.push_back(static_cast<double>(row) * map.period);
+    }
+  } else {
+    const UnitConverter seconds(map.columns.front().unit, "s");
+    times = std::move(values.front());
+    std::ranges::for_each(times, [&](double& time) { time = seconds(time); });
+    values.erase(values.begin());
+    map.columns.erase(map.columns.begin());
+  }
+  std::vector<bool> held;
+  for (const ImportColumn& column : map.columns) {
+    held.push_back(is_told(column.channel));
+  }
+  try {
+    Resampled even = resampled(times, values, held, map.resampling_period);
+    values = std::move(even.values);
+    map.period = even.period;
+    start = even.start;
+    return even.note;
+  } catch (const std::invalid_argument& error) {
+    throw FileError(fmt::format("{}: {}", source.string(), error.what()));
+  }
+}
+
+void write_columns(const std::vector<ImportColumn>& columns, const std::vector<std::vector<double>>& values, double start,
+                   double period, const std::filesystem::path& output) {
   WholeFile file(output);
   std::string text = period > 0.0 ? "time[s]" : "";
   for (const ImportColumn& column : columns) {
@@ -27,10 +76,10 @@ void write_columns(const std::vector<ImportColumn>& columns, const std::vector<s
       first = false;
     };
     if (period > 0.0) {
-      append(static_cast<double>(row) * period);
+      append(start + static_cast<double>(row) * period);
     }
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      append(values[c][row] * columns[c].factor);
+      append(values[c][row]);
     }
     text += '\n';
     file.write_block(text);
@@ -59,19 +108,33 @@ ImportSource import_source(const std::filesystem::path& source, const std::files
 }
 
 Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
-                     const std::filesystem::path& dbc, const std::vector<DropOut>& drop_outs) {
+                     const std::filesystem::path& dbc, const std::vector<DropOut>& drop_outs,
+                     std::vector<std::string>* notes) {
   if (import_source(source, dbc) == ImportSource::candump_log) {
     if (!drop_outs.empty()) {
       throw UsageError(
           "--exclude: a log is read frame by frame and has no cells to lack; leave it out, and cut the log where frames are "
           "lost");
     }
-    const ImportedColumns log = read_candump_columns(source, load_dbc(dbc), map);
-    write_columns(log.columns, log.values, 0.0, output);
+    ImportedColumns log = read_candump_columns(source, load_dbc(dbc), map);
+    scale(log.columns, log.values);
+    write_columns(log.columns, log.values, 0.0, 0.0, output);
   } else {
-    const bool is_matlab = source.extension() == ".mat";
-    write_columns(map.columns, is_matlab ? read_matlab_columns(source, map) : read_csv_columns(source, map), map.period,
-                  output);
+    ImportMap grid = map;
+    std::vector<std::vector<double>> values =
+        source.extension() == ".mat" ? read_matlab_columns(source, map) : read_csv_columns(source, map);
+    scale(map.columns, values);
+    double start = 0.0;
+    if (map.resampling_period > 0.0) {
+      if (!drop_outs.empty()) {
+        throw UsageError("--exclude: what lacks values is not resampled; leave out --exclude or [resample]");
+      }
+      const std::string note = put_on_grid(source, grid, values, start);
+      if (notes != nullptr) {
+        notes->push_back(note);
+      }
+    }
+    write_columns(grid.columns, values, start, grid.period, output);
   }
   try {
     return load_record(output, drop_outs);

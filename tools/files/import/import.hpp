@@ -23,6 +23,7 @@ struct ImportColumn {
                          ///< signal of a DBC file, "beta", "FEEDBACK.beta"
   std::string unit;      ///< of column times factor; empty: that of the DBC file
   double factor = 1.0;   ///< -1 turns a sign
+  double offset = 0.0;   ///< added to column times factor [unit]
   std::size_t line = 0;  ///< of the map
 };
 
@@ -30,9 +31,11 @@ struct ImportColumn {
 struct ImportMap {
   std::filesystem::path path;
   std::vector<ImportColumn> columns;  ///< of a table time first, unless `period` stands for it
-  double period = 0.0;                ///< [s]; 0: there is a time column
+  double period = 0.0;                ///< of the source [s]; 0: there is a time column
+  double resampling_period = 0.0;     ///< of the record [s]; 0: that of the source, which has to be even
   char delimiter = ',';
   std::size_t skip_lines = 0;  ///< before the header of a CSV file
+  std::string events;          ///< last column of the header, of which a row may have none or several; empty: there is none
   std::string rows;            ///< message of a DBC file whose frames make the rows; empty: the only one there is
 };
 
@@ -40,7 +43,8 @@ struct ImportMap {
 ImportMap load_import_map(const std::filesystem::path& path, ImportSource source = ImportSource::table);
 
 /// The columns of the map, in its order, from a CSV file with a header; an empty cell is NaN. Throws FileError with file,
-/// line and column: no such column (with those that there are), ragged row, text that is not a number.
+/// line and column: no such column (with those that there are), ragged row, text that is not a number. Cells from the column
+/// `events` on are words that say what happened, in as many cells as there is to say.
 std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& path, const ImportMap& map);
 
 /// The same from a MATLAB file (version 4 to 7.2; 7.3 where the library has HDF5). Throws FileError: not such a file, no
@@ -70,8 +74,9 @@ ImportedColumns read_candump_columns(const std::filesystem::path& path, const Db
 /// Reads `source` (with a DBC file a candump log, else .mat, else CSV) through the map and writes a record, which is then
 /// read as `load_record` reads any other: nothing is repaired. Throws FileError, and leaves no file behind, where that
 /// refuses it. Within `drop_outs` [s] cells of a CSV file may be empty, values NaN and rows lack: they stay so in the
-/// record.
+/// record. `notes` takes in what was done to the values beside units, one sentence each.
 Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
-                     const std::filesystem::path& dbc = {}, const std::vector<DropOut>& drop_outs = {});
+                     const std::filesystem::path& dbc = {}, const std::vector<DropOut>& drop_outs = {},
+                     std::vector<std::string>* notes = nullptr);
 
 }  // namespace hotfire

@@ -56,6 +56,10 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
   }
   const std::string header(line);
   const std::vector<std::string_view> names = cells_of(header, map.delimiter);
+  if (!map.events.empty() && names.back() != map.events) {
+    lines.refuse(
+        fmt::format("[csv] events = \"{}\" has to be the last column; there are: {}", map.events, fmt::join(names, " | ")));
+  }
   std::vector<std::size_t> places;
   for (const ImportColumn& column : map.columns) {
     const auto found = std::find(names.begin(), names.end(), column.column);
@@ -77,8 +81,13 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
       lines.refuse(fmt::format("more than {} rows; cut the file into parts", kMostRows));
     }
     const std::vector<std::string_view> cells = cells_of(line, map.delimiter);
-    if (cells.size() != names.size()) {
-      lines.refuse(fmt::format("{} columns; the header has {}", cells.size(), names.size()));
+    const bool has_values = map.events.empty() ? cells.size() == names.size() : cells.size() + 1 >= names.size();
+    if (!has_values) {
+      const bool may_be_events = map.events.empty() && cells.size() + 1 >= names.size();
+      lines.refuse(fmt::format(
+          "{} columns; the header has {}{}", cells.size(), names.size(),
+          may_be_events ? fmt::format("; where only some rows say what happened, write [csv] events = \"{}\"", names.back())
+                        : ""));
     }
     for (std::size_t c = 0; c < places.size(); ++c) {
       values[c].push_back(number_of(lines, cells[places[c]], map.columns[c].column));

@@ -2,7 +2,7 @@
 // The chain of evidence: what was tried in which order, what each candidate reached, why it was kept or dropped; and who says so.
 
 const timesNoise = (channels, stage) => Object.entries(channels)
-  .filter(([, channel]) => channel.noise > 0 && Number.isFinite(channel[stage]?.rms))
+  .filter(([, channel]) => channel.noise > 0 && channel.noise_source !== "floor" && Number.isFinite(channel[stage]?.rms))
   .map(([name, channel]) => `${words(name)} ${number(channel[stage].rms / channel.noise)}`).join(", ");
 
 const countOf = (number, singular, plural = `${singular}s`) => `${number} ${number === 1 ? singular : plural}`;

@@ -41,12 +41,12 @@ function errorRows(channels) {
     const display = displayUnit(channel.unit ?? "", typicalSize([channel.noise, ...stages.flatMap((stage) =>
       [channel[stage.key].rms, channel[stage.key].max])]));
     return stages.map((stage, index) => ({ ...stage, ...channel[stage.key], name, display, first: index === 0, noise: channel.noise,
-      ratio: channel.noise > 0 && channel[stage.key].rms > 0 ? channel[stage.key].rms / channel.noise : NaN }));
+      ratio: channel.noise > 0 && channel.noise_source !== "floor" && channel[stage.key].rms > 0 ? channel[stage.key].rms / channel.noise : NaN }));
   });
 }
 
 function noiseNote(channels) {
-  const estimated = Object.keys(channels).filter((name) => channels[name].noise_source === "estimated").map(words);
+  const estimated = Object.keys(channels).filter((name) => channels[name].noise_source !== "declared").map(words);
   const declared = Object.values(channels).some((channel) => channel.noise_source === "declared");
   if (!estimated.length) return declared ? "The noise (rms) is the declared one." : "";
   return `The noise (rms) is estimated from the records${declared ? ` for ${estimated.join(", ")}, otherwise declared` : ""}.`;
@@ -74,10 +74,26 @@ function errorTable(title, channels) {
     `about its mean. Calibrated: declared parameters moved within their tolerances. ${noiseNote(channels)}`, "note"));
 }
 
+/** The zero and the noise that each record's channels have; null where no record has a zero. */
+function zeroTable(records) {
+  const rows = (records ?? []).flatMap((record) => Object.entries(record.channels ?? {})
+    .filter(([, channel]) => Number.isFinite(channel.zero)).map(([name, channel]) => ({ record: record.path, name, ...channel })));
+  if (!rows.length) return null;
+  return section("Zeros of the records", table([
+    { title: "record", cell: (row) => row.record },
+    { title: "channel", cell: (row) => words(row.name) },
+    { title: "zero", number: true, cell: (row) => number(row.zero) },
+    { title: "noise", number: true, cell: (row) => number(row.noise) },
+  ], rows), paragraph("Measured minus modelled, in the channel's unit: of the record, not of the plant. A zero of the command " +
+    "shows in the same way.", "note"));
+}
+
 /** On held-out blocks of the records, then on every record that was kept back whole. */
 const errorTables = (report) => [
   errorTable("Error on data that no fit has seen", report.channels),
   paragraph("Of the model before its last fit, which takes the held-out blocks in as well: explained.toml is of that one.", "note"),
+  isFilled(report.baseline?.sentence) ? paragraph(report.baseline.sentence, report.baseline.better_than_explained ? "warning" : "note") : null,
+  zeroTable(report.records),
   ...(report.held_out_records ?? []).map((record) =>
     errorTable(`Error on ${record.path}, which neither fit nor choice has seen`, record.channels))];
 

@@ -28,6 +28,9 @@ constexpr std::array kHard{
     Condition{.name = "mis-scaled", .engine_error = 0.05},
     Condition{.name = "mis-scaled-command", .command_error = -0.1},
     Condition{.name = "drop-outs", .drop_outs = 3},
+    Condition{.name = "zeros", .zeros = 20.0},
+    Condition{.name = "null-bias", .null_bias = 0.02},
+    Condition{.name = "unequal-noise", .noise_ratio = 10.0},
 };
 
 /// Three profiles are given: the stream of the first three, and of those that follow.

@@ -15,6 +15,7 @@ namespace {
 constexpr std::uint64_t kNoisePart = 4;
 constexpr std::uint64_t kControllerPart = 5;
 constexpr std::uint64_t kDropOutPart = 6;
+constexpr std::uint64_t kZeroPart = 40;
 /// The channel that a controller reads and that most faults of a condition are in.
 constexpr std::size_t kEngine = 1;
 
@@ -65,6 +66,16 @@ void read_channel(const Condition& condition, const SensorGrade& grade, double f
   for (double& value : values) {
     value = quantised(value + grade.noise * factor * noise, grade);
     noise = stays * noise + std::sqrt(1.0 - stays * stays) * random.normal();
+  }
+}
+
+/// Each channel reads off by a zero of its own.
+void add_zeros(const Condition& condition, double factor, Record& record, std::size_t channels, Random& random) {
+  for (std::size_t c = 0; c < channels; ++c) {
+    const double zero = condition.zeros * factor * kSensorGrades[c].noise * random.normal();
+    for (double& value : readings(record, c)) {
+      value += zero;
+    }
   }
 }
 
@@ -139,21 +150,26 @@ Given recorded(const CaseOrder& order, const ReferenceAxis& axis, const std::vec
   Given given;
   Random noise(order.name, order.seed, kNoisePart);
   Random drop_outs(order.name, order.seed, kDropOutPart);
+  Random zeros(order.name, order.seed, kZeroPart);
   for (const Profile& profile : profiles) {
     const bool in_a_loop = condition.loop_gain != 0.0;
     Record record;
     if (in_a_loop) {
       record = recorded_in_a_loop(order, axis, profile, given.records.size(), channels);
     } else {
-      const ReferenceRows rows = rows_of(axis, profile, condition.period);
+      ReferenceAxis biased = axis;
+      biased.unlisted.null_offset += condition.null_bias;
+      const ReferenceRows rows = rows_of(biased, profile, condition.period);
       record = record_of(profile.name, condition.period, profile.commands, rows, channels);
       add_fault(condition, record);
     }
     for (std::size_t c = 0; c < channels; ++c) {
       if (!in_a_loop || c != kEngine) {
-        read_channel(condition, kSensorGrades[c], order.noise_factor, record.period, readings(record, c), noise);
+        const double louder = given.records.empty() ? condition.noise_ratio : 1.0;
+        read_channel(condition, kSensorGrades[c], louder * order.noise_factor, record.period, readings(record, c), noise);
       }
     }
+    add_zeros(condition, order.noise_factor, record, channels, zeros);
     drop_out(condition, record, drop_outs, given.exclusions);
     cut_start(condition, record);
     given.records.push_back(std::move(record));

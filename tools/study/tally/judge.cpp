@@ -128,6 +128,7 @@ void explain_case(const Model& declared, const std::vector<Record>& records, con
   const explain::Stopwatch stopwatch;
   try {
     explain::ExplainOptions options;
+    options.keep_drift = true;  // the kept record has the clock of the others
     options.threads = threads;
     options.most_effects = 4;
     for (const std::string& text : exclusions) {

@@ -1,0 +1,82 @@
+#include "tools/explain/inference/veto.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/explain/fit/goodness.hpp"
+#include "tools/explain/inference/residual_statistics.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+constexpr double kWorseRecord = 1.05;
+constexpr double kWorseBand = 2.0;
+/// What is left counts from this many times the noise of a record, or of a band, on.
+constexpr double kMoreThanNoise = 1.5;
+constexpr double kSignalOverNoise = 10.0;
+constexpr double kSignalShare = 0.01;
+
+/// Root mean square of what is left of a channel on the held-out rows of one record.
+double left_of(const Experiment& experiment, const std::vector<std::vector<double>>& prediction, std::size_t channel) {
+  double square = 0.0;
+  double rows = 0.0;
+  for (const Block& block : experiment.held_out) {
+    for (const double left : residual_of(experiment, prediction[channel], channel, block)) {
+      square += left * left;
+    }
+    rows += static_cast<double>(block.last - block.first);
+  }
+  return rows > 0.0 ? std::sqrt(square / rows) : 0.0;
+}
+
+/// The channel itself, by frequency.
+std::vector<Band> signal_by_frequency(const Dataset& data, const Prediction& like, std::size_t channel) {
+  Prediction nothing = like;
+  for (std::size_t e = 0; e < nothing.size(); ++e) {
+    std::ranges::fill(nothing[e][channel], 0.0);
+  }
+  return error_by_frequency(data, nothing, channel);
+}
+
+}  // namespace
+
+std::string harm_of(const Dataset& data, const Prediction& model, const Prediction& calibrated) {
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (!data.used[c]) {
+      continue;
+    }
+    for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+      const Experiment& experiment = data.experiments[e];
+      if (experiment.measured[c].empty() || experiment.held_out.empty()) {
+        continue;
+      }
+      const double before = left_of(experiment, calibrated[e], c);
+      const double after = left_of(experiment, model[e], c);
+      if (after > kWorseRecord * before && after > kMoreThanNoise * experiment.noise[c]) {
+        return fmt::format("{} is worse by {:.0f} % on held-out rows ({})", experiment.name, 100.0 * (after / before - 1.0),
+                           data.channels[c]);
+      }
+    }
+    const std::vector<Band> before = error_by_frequency(data, calibrated, c);
+    const std::vector<Band> after = error_by_frequency(data, model, c);
+    const std::vector<Band> signal = signal_by_frequency(data, model, c);
+    double whole = 0.0;
+    for (const Band& band : signal) {
+      whole += band.rms * band.rms;
+    }
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      const bool has_signal =
+          signal[i].rms > kSignalOverNoise * signal[i].noise && signal[i].rms > kSignalShare * std::sqrt(whole);
+      if (has_signal && after[i].rms > kWorseBand * before[i].rms && after[i].rms > kMoreThanNoise * after[i].noise) {
+        return fmt::format("{} is {:.1f} times as far off between {:.3g} and {:.3g} Hz", data.channels[c],
+                           after[i].rms / before[i].rms, after[i].from, after[i].to);
+      }
+    }
+  }
+  return "";
+}
+
+}  // namespace hotfire::explain

@@ -1,0 +1,278 @@
+#include "tools/files/import/guess.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "tools/files/text/csv_lines.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/units.hpp"
+
+namespace hotfire {
+
+namespace {
+
+/// Lines that are looked at: a guess need not read a gigabyte.
+constexpr std::size_t kLines = 5000;
+/// Rows below a header that have to look like its own.
+constexpr std::size_t kRowsBelow = 5;
+/// Relative deviation of an interval from the median up to which a column may be a time.
+constexpr double kEven = 0.9;
+
+using Row = std::vector<std::string>;
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\"");
+  return first == std::string_view::npos ? "" : std::string(text.substr(first, text.find_last_not_of(" \t\"") - first + 1));
+}
+
+Row cells_of(std::string_view line, char delimiter) {
+  Row cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(delimiter, begin), line.size());
+    cells.push_back(trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return cells;
+}
+
+std::optional<double> number_in(std::string_view cell) {
+  double value = 0.0;
+  cell.remove_prefix(cell.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc{} && end == cell.data() + cell.size() && !cell.empty() ? std::optional(value) : std::nullopt;
+}
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+bool has_word(const std::string& name, std::initializer_list<std::string_view> words) {
+  return std::ranges::any_of(words, [&](std::string_view word) { return name.find(word) != std::string::npos; });
+}
+
+/// A column by what its rows say.
+struct Column {
+  std::string name;
+  std::vector<double> values;  ///< empty: not of numbers
+
+  bool is_numeric() const { return !values.empty(); }
+  /// "mm" of "stroke [mm]" or "stroke (mm)"; empty if that is no unit.
+  std::string unit() const {
+    for (const char* brackets : {"[]", "()"}) {
+      const std::size_t open = name.find(brackets[0]);
+      const std::size_t close = name.find(brackets[1], open == std::string::npos ? 0 : open);
+      if (open == std::string::npos || close == std::string::npos) {
+        continue;
+      }
+      std::string unit = name.substr(open + 1, close - open - 1);
+      try {
+        require_known_unit(unit);
+        return unit;
+      } catch (const UnitError&) {
+        continue;
+      }
+    }
+    return "";
+  }
+};
+
+/// A log as one delimiter cuts it.
+struct Layout {
+  char delimiter = ',';
+  std::size_t header = 0;  ///< line
+  bool has_events = false;
+  std::vector<Column> columns;
+
+  std::size_t numeric() const {
+    return static_cast<std::size_t>(std::ranges::count_if(columns, [](const Column& c) { return c.is_numeric(); }));
+  }
+};
+
+/// The columns below line `at`, if it is a header by this delimiter.
+std::optional<Layout> layout_below(const std::vector<std::string>& lines, std::size_t at, char delimiter) {
+  const Row names = cells_of(lines[at], delimiter);
+  if (names.size() < 2 || lines.size() <= at + 1 ||
+      std::ranges::any_of(names, [](const std::string& name) { return name.empty() || number_in(name); })) {
+    return std::nullopt;
+  }
+  Layout layout{delimiter, at, false, {}};
+  std::vector<Row> rows;
+  for (std::size_t i = at + 1; i < lines.size(); ++i) {
+    if (trimmed(lines[i]).empty()) {
+      continue;
+    }
+    rows.push_back(cells_of(lines[i], delimiter));
+    if (rows.back().size() + 1 < names.size() || (rows.size() <= kRowsBelow && rows.back().size() > names.size() + 3)) {
+      return std::nullopt;
+    }
+    layout.has_events = layout.has_events || rows.back().size() != names.size();
+  }
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    Column column{names[c], {}};
+    for (const Row& row : rows) {
+      const auto value = c < row.size() ? number_in(row[c]) : std::nullopt;
+      if (!value) {
+        column.values.clear();
+        break;
+      }
+      column.values.push_back(*value);
+    }
+    layout.columns.push_back(std::move(column));
+  }
+  if (layout.has_events && layout.columns.back().is_numeric()) {
+    return std::nullopt;
+  }
+  return layout.numeric() > 0 ? std::optional(layout) : std::nullopt;
+}
+
+bool rises_evenly(const std::vector<double>& values) {
+  if (values.size() < 4) {
+    return false;
+  }
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    intervals.push_back(values[i] - values[i - 1]);
+  }
+  std::vector<double> sorted = intervals;
+  std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
+  const double median = sorted[sorted.size() / 2];
+  return median > 0.0 && std::ranges::all_of(intervals, [&](double interval) {
+           return interval > 0.0 && std::abs(interval - median) <= kEven * median;
+         });
+}
+
+/// What a channel is called in a record, by a column's name; empty if that says nothing.
+std::string channel_of(const std::string& column) {
+  const std::string name = lower(column);
+  if (has_word(name, {"cmd", "command", "setpoint", "reference", "demand"})) {
+    return "command";
+  }
+  if (has_word(name, {"current"})) {
+    return "current";
+  }
+  if (has_word(name, {"pressure"})) {
+    return "load_pressure";
+  }
+  if (has_word(name, {"torque"})) {
+    return "torque";
+  }
+  if (has_word(name, {"force", "load"})) {
+    return "force";
+  }
+  if (has_word(name, {"stroke", "piston", "displacement", "disp", "lvdt", "xp"})) {
+    return "piston";
+  }
+  if (has_word(name, {"angle", "beta", "gimbal", "engine"})) {
+    return "engine";
+  }
+  return has_word(name, {"position"}) ? "position" : "";
+}
+
+/// `period = "1 ms"` by a line that says an interval or a rate, such as "Sampling Interval:  0.001".
+std::string period_by(const std::vector<std::string>& before) {
+  for (const std::string& line : before) {
+    const std::string text = lower(line);
+    const std::size_t colon = text.find_first_of(":=");
+    const auto value = colon == std::string::npos ? std::nullopt : number_in(trimmed(text.substr(colon + 1)));
+    if (!value || !(*value > 0.0)) {
+      continue;
+    }
+    const bool is_rate = has_word(text, {"rate", "frequency"});
+    if (is_rate || has_word(text, {"interval", "period"})) {
+      return fmt::format("period = \"{:.9g} ms\"             # \"{}\"\n", 1e3 * (is_rate ? 1.0 / *value : *value),
+                         trimmed(line));
+    }
+  }
+  return "# period = \"1 ms\"             # nothing says how far rows are apart: write it\n";
+}
+
+std::string range_of(const Column& column) {
+  const auto [low, high] = std::ranges::minmax(column.values);
+  return fmt::format("{:.4g} to {:.4g}", low, high);
+}
+
+}  // namespace
+
+std::string guessed_map(const std::filesystem::path& source) {
+  CsvLines reader(source);
+  std::vector<std::string> lines;
+  for (std::string_view line; lines.size() < kLines && reader.next(line);) {
+    lines.emplace_back(line);
+  }
+  std::optional<Layout> best;
+  for (const char delimiter : {',', ';', '\t'}) {
+    constexpr std::size_t kLatestHeader = 100;
+    for (std::size_t at = 0; at + 1 < std::min(lines.size(), kLatestHeader); ++at) {
+      if (auto layout = layout_below(lines, at, delimiter)) {
+        if (!best || layout->numeric() > best->numeric()) {
+          best = std::move(layout);
+        }
+        break;
+      }
+    }
+  }
+  if (!best) {
+    throw FileError(fmt::format(
+        "{}: no line of names above rows of numbers, cut by \",\", \";\" or a tab; write a map by hand (docs/contract.md)",
+        source.string()));
+  }
+  std::string time;
+  std::string channels;
+  std::vector<std::string> taken;
+  for (const Column& column : best->columns) {
+    if (!column.is_numeric()) {
+      continue;
+    }
+    const std::string name = lower(column.name);
+    const bool counts = has_word(name, {"sample", "index", "number", "no.", "row"}) || name == "no" || name == "n";
+    if (rises_evenly(column.values) && (counts || time.empty())) {
+      if (!counts) {
+        const std::string unit = column.unit();
+        time = fmt::format("[time]\ncolumn = \"{}\"\nunit = \"{}\"{}\n", column.name, unit.empty() ? "s" : unit,
+                           unit.empty() ? "                      # a guess" : "");
+      }
+      continue;
+    }
+    const std::string channel = channel_of(column.name);
+    const bool is_new = !channel.empty() && std::ranges::find(taken, channel) == taken.end();
+    const std::string unit = column.unit();
+    const std::string mark = is_new && !unit.empty() ? "" : "# ";
+    channels += fmt::format("{}[channels.{}]\n{}column = \"{}\"              # {}\n{}unit = \"{}\"\n", mark,
+                            is_new ? channel : "NAME", mark, column.name, range_of(column), mark, unit.empty() ? "?" : unit);
+    if (is_new) {
+      taken.push_back(channel);
+    }
+  }
+  std::string text =
+      fmt::format("# A proposal for {}: check every unit, sign and scale, and the zero of every channel.\nschema = 1\n",
+                  source.filename().string());
+  if (time.empty()) {
+    text += period_by({lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(best->header)});
+  }
+  text += time;
+  if (best->delimiter != ',' || best->header > 0 || best->has_events) {
+    text += "[csv]\n";
+    if (best->delimiter != ',') {
+      text += fmt::format("delimiter = \"{}\"\n", best->delimiter == '\t' ? "\\t" : std::string(1, best->delimiter));
+    }
+    if (best->header > 0) {
+      text += fmt::format("skip_lines = {}\n", best->header);
+    }
+    if (best->has_events) {
+      text += fmt::format("events = \"{}\"\n", best->columns.back().name);
+    }
+  }
+  text += "# A channel is one of command, current, piston, engine, load_pressure, torque, force, position.\n";
+  return text + channels;
+}
+
+}  // namespace hotfire
