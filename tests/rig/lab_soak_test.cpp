@@ -124,10 +124,20 @@ TEST_GROUP(LabSoak) {
 
   void start_plant() {
     shell("rm -f /tmp/plant.hfr");
-    plant = start(
-        "hotfire-rt plant --image /tmp/plant.image --bus can0 --sync can --sync-patience-ms 200 --max-missed-syncs 1000000 "
-        "--period-us 10000 --warm-up 0 --record /tmp/plant.hfr >/tmp/plant.out 2>&1");
-    wait_until("the plant's recording", [] { return access("/tmp/plant.hfr", R_OK) == 0; });
+    const auto is_recording = [] { return access("/tmp/plant.hfr", R_OK) == 0; };
+    const auto is_gone = [&] { return waitpid(plant, nullptr, WNOHANG) == plant; };
+    do {
+      // A lab that gives the bus up takes it down, at any time: then the plant is refused and started again.
+      raise_bus();
+      plant = start(
+          "hotfire-rt plant --image /tmp/plant.image --bus can0 --sync can --sync-patience-ms 200 "
+          "--max-missed-syncs 1000000 --period-us 10000 --warm-up 0 --record /tmp/plant.hfr >/tmp/plant.out 2>&1");
+      bool gone = false;
+      wait_until("the plant's recording", [&] { return is_recording() || (gone = is_gone()); });
+      if (gone) {
+        plant = -1;
+      }
+    } while (plant < 0);
     wait_until("the plant's socket for SYNC",
                [] { return std::system("grep -q '^ *can0 *080 ' /proc/net/can/rcvlist_sff") == 0; });
   }
