@@ -44,17 +44,19 @@ struct PressTimes {
 
 /// A press is a button that goes on and, after `times`, off again: it acts when it is let go, as ISO 13849-1:2015, 5.2.2,
 /// asks of a manual reset. So neither a contact that sticks nor a wire that breaks is one. `may_begin`: a press may begin
-/// after this cycle if the button is off in it. `forbidden`: the press is refused, also if that is over when it ends, and
+/// after this cycle if the button is off in it, and its line too: a line that is on already belongs to a press that began
+/// before and has not settled. `forbidden`: the press is refused, also if that is over when it ends, and
 /// one that begins after this cycle: a line that could not be read was not seen off.
-constexpr Press press(Button& button, bool on, bool may_begin, bool forbidden, PressTimes times) noexcept {
-  if (on) {
+constexpr Press press(Button& button, Contact contact, bool may_begin, bool forbidden, PressTimes times) noexcept {
+  if (contact.on) {
     button.held += button.ready && button.held <= times.most ? 1 : 0;
     button.refused = button.ready && (button.refused || forbidden);
     return Press::none;
   }
   const bool whole = button.ready && button.held >= times.least && button.held <= times.most;
   const bool refused = button.refused || forbidden;
-  button = {may_begin, forbidden, 0};
+  const bool settling = contact.differing > 0;
+  button = {may_begin && (!settling || button.ready), forbidden || (settling && button.refused), 0};
   return !whole ? Press::none : refused ? Press::refused : Press::good;
 }
 

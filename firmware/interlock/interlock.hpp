@@ -130,10 +130,10 @@ constexpr InterlockDecision decide(const InterlockSettings& settings, InterlockM
   const bool driven = drives(memory.state);
   const bool forbidden = inputs.causes.any() || inputs.stop;
   const Press arm =
-      driven ? Press::none : press(memory.arm, memory.arm_contact.on, true, forbidden, {1, settings.longest_press});
+      driven ? Press::none : press(memory.arm, memory.arm_contact, true, forbidden, {1, settings.longest_press});
   const Press start = memory.state != RigState::armed
                           ? Press::none
-                          : press(memory.start, memory.start_contact.on, memory.cycles >= settings.least_armed, forbidden,
+                          : press(memory.start, memory.start_contact, memory.cycles >= settings.least_armed, forbidden,
                                   {settings.start_hold, settings.longest_press});
   const FaultSet causes = memory.state == RigState::safe ? inputs.causes & kFaultsOfASafeRig : inputs.causes;
   if (causes.any()) {

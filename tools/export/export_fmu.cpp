@@ -71,17 +71,18 @@ std::string main_source(std::string_view topology, int version, const std::strin
       "#define HOTFIRE_VERSION \"{}\"\n\n",
       HOTFIRE_VERSION);
   for (const char* file : {"firmware/text/text.cpp", "firmware/image/image_entries.cpp", "firmware/image/plant_image.cpp",
-                           "interface/plant/plant.cpp"}) {
+                           "tools/interface/plant/plant.cpp"}) {
     text += fmt::format("#include \"{}\"\n", file);
   }
-  text += fmt::format("#include \"interface/plant/{}.cpp\"\n", topology);
-  for (const char* file : {"interface/c/saved_state.cpp", "interface/c/plant_text.cpp", "interface/c/hotfire.cpp",
-                           "interface/fmu/slave.cpp", "interface/fmu/document.cpp"}) {
+  text += fmt::format("#include \"tools/interface/plant/{}.cpp\"\n", topology);
+  for (const char* file :
+       {"tools/interface/c/saved_state.cpp", "tools/interface/c/plant_text.cpp", "tools/interface/c/hotfire.cpp",
+        "tools/interface/fmu/slave.cpp", "tools/interface/fmu/document.cpp"}) {
     text += fmt::format("#include \"{}\"\n", file);
   }
-  text += fmt::format("#include \"interface/fmu/fmi{}.cpp\"\n", version);
+  text += fmt::format("#include \"tools/interface/fmu/fmi{}.cpp\"\n", version);
   if (version == 3) {
-    text += "#include \"interface/fmu/fmi3_unsupported.cpp\"\n";
+    text += "#include \"tools/interface/fmu/fmi3_unsupported.cpp\"\n";
   }
   text += "\nnamespace hotfire::plant {\n\n// The plant below has one topology; the others are not compiled.\n";
   constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kTopologies{
@@ -123,7 +124,7 @@ ExportedFmu export_fmu(const FmuOptions& options) {
     files["sources/buildDescription.xml"] = build_description(identity);
   }
   const std::filesystem::path sources = options.materials / "sources";
-  content_of(sources / "interface/fmu/slave.hpp");
+  content_of(sources / "tools/interface/fmu/slave.hpp");
   for (const auto& entry : std::filesystem::recursive_directory_iterator(sources)) {
     if (entry.is_regular_file()) {
       files["sources/" + std::filesystem::relative(entry.path(), sources).generic_string()] = content_of(entry.path());

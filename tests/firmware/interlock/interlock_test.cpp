@@ -139,6 +139,31 @@ TEST(Interlock, ArmingIsRefusedIfACauseWasPresentAtAnyTimeOfThePressAndNeedsAnot
   }
 }
 
+TEST(Interlock, PressWhoseLineWentOnBeforeTheFaultArmsNothingThoughItSettlesAfterIt) {
+  constexpr int kDebounce = 3;
+  settings.debounce = kDebounce;
+  const auto press_and_let_go = [&] {
+    inputs.arm = true;
+    step(2 * kDebounce);
+    inputs.arm = false;
+    return step(2 * kDebounce).state;
+  };
+  for (int before = 1; before <= kDebounce; ++before) {
+    begin();
+    step(2 * kDebounce);
+    CHECK(press_and_let_go() == RigState::armed);
+    inputs.arm = true;
+    step(before);
+    inputs.causes = Fault::overrun;
+    CHECK(step().state == RigState::faulted);
+    inputs.causes = {};
+    step(2 * kDebounce);
+    inputs.arm = false;
+    CHECK(step(2 * kDebounce).state == RigState::faulted);
+    CHECK(press_and_let_go() == RigState::armed);
+  }
+}
+
 TEST(Interlock, ButtonThatIsOnWhenTheProgramStartsArmsNothingWhenItIsLetGo) {
   inputs.arm = true;
   step(5);

@@ -78,6 +78,7 @@ inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~st
   bench.drive(kEmergencyStopReleased, false);
   bench.cycles(5);
   bench.drive(kEmergencyStopReleased, true);
+  bench.cycles(2);
   arm_and_start();
   bench.cycles(300);
   CHECK(bench.lab.completed());
