@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/files/text/csv_lines.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/units.hpp"
@@ -24,31 +24,9 @@ constexpr std::size_t kLines = 5000;
 /// Rows below a header that have to look like its own.
 constexpr std::size_t kRowsBelow = 5;
 /// Relative deviation of an interval from the median up to which a column may be a time.
-constexpr double kEven = 0.9;
+constexpr double kEvenTime = 0.9;
 
-using Row = std::vector<std::string>;
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\"");
-  return first == std::string_view::npos ? "" : std::string(text.substr(first, text.find_last_not_of(" \t\"") - first + 1));
-}
-
-Row cells_of(std::string_view line, char delimiter) {
-  Row cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(delimiter, begin), line.size());
-    cells.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return cells;
-}
-
-std::optional<double> number_in(std::string_view cell) {
-  double value = 0.0;
-  cell.remove_prefix(cell.starts_with('+') ? 1 : 0);
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc{} && end == cell.data() + cell.size() && !cell.empty() ? std::optional(value) : std::nullopt;
-}
+using Row = std::vector<std::string_view>;
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
@@ -99,27 +77,27 @@ struct Layout {
 
 /// The columns below line `at`, if it is a header by this delimiter.
 std::optional<Layout> layout_below(const std::vector<std::string>& lines, std::size_t at, char delimiter) {
-  const Row names = cells_of(lines[at], delimiter);
+  const Row names = csv_cells(lines[at], delimiter);
   if (names.size() < 2 || lines.size() <= at + 1 ||
-      std::ranges::any_of(names, [](const std::string& name) { return name.empty() || number_in(name); })) {
+      std::ranges::any_of(names, [](std::string_view name) { return name.empty() || csv_number(name); })) {
     return std::nullopt;
   }
   Layout layout{delimiter, at, false, {}};
   std::vector<Row> rows;
   for (std::size_t i = at + 1; i < lines.size(); ++i) {
-    if (trimmed(lines[i]).empty()) {
+    if (csv_trimmed(lines[i]).empty()) {
       continue;
     }
-    rows.push_back(cells_of(lines[i], delimiter));
+    rows.push_back(csv_cells(lines[i], delimiter));
     if (rows.back().size() + 1 < names.size() || (rows.size() <= kRowsBelow && rows.back().size() > names.size() + 3)) {
       return std::nullopt;
     }
     layout.has_events = layout.has_events || rows.back().size() != names.size();
   }
   for (std::size_t c = 0; c < names.size(); ++c) {
-    Column column{names[c], {}};
+    Column column{std::string(names[c]), {}};
     for (const Row& row : rows) {
-      const auto value = c < row.size() ? number_in(row[c]) : std::nullopt;
+      const auto value = c < row.size() ? csv_number(row[c]) : std::nullopt;
       if (!value) {
         column.values.clear();
         break;
@@ -146,7 +124,7 @@ bool rises_evenly(const std::vector<double>& values) {
   std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
   const double median = sorted[sorted.size() / 2];
   return median > 0.0 && std::ranges::all_of(intervals, [&](double interval) {
-           return interval > 0.0 && std::abs(interval - median) <= kEven * median;
+           return interval > 0.0 && std::abs(interval - median) <= kEvenTime * median;
          });
 }
 
@@ -182,14 +160,14 @@ std::string period_by(const std::vector<std::string>& before) {
   for (const std::string& line : before) {
     const std::string text = lower(line);
     const std::size_t colon = text.find_first_of(":=");
-    const auto value = colon == std::string::npos ? std::nullopt : number_in(trimmed(text.substr(colon + 1)));
+    const auto value = colon == std::string::npos ? std::nullopt : csv_number(csv_trimmed(text.substr(colon + 1)));
     if (!value || !(*value > 0.0)) {
       continue;
     }
     const bool is_rate = has_word(text, {"rate", "frequency"});
     if (is_rate || has_word(text, {"interval", "period"})) {
       return fmt::format("period = \"{:.9g} ms\"             # \"{}\"\n", 1e3 * (is_rate ? 1.0 / *value : *value),
-                         trimmed(line));
+                         csv_trimmed(line));
     }
   }
   return "# period = \"1 ms\"             # nothing says how far rows are apart: write it\n";

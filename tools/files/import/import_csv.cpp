@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
+#include <optional>
 
 #include "tools/files/import/import.hpp"
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/files/text/csv_lines.hpp"
 #include "tools/files/text/error.hpp"
 
@@ -12,36 +13,16 @@ namespace hotfire {
 
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\"";
-  const std::size_t first = text.find_first_not_of(kSpace);
-  return first == std::string_view::npos ? std::string_view{}
-                                         : text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
-  std::vector<std::string_view> cells;
-  for (bool more = true; more;) {
-    const std::size_t end = line.find(delimiter);
-    cells.push_back(trimmed(line.substr(0, end)));
-    more = end != std::string_view::npos;
-    line.remove_prefix(more ? end + 1 : line.size());
-  }
-  return cells;
-}
-
 double number_of(const CsvLines& lines, std::string_view cell, const std::string& column) {
   if (cell.empty()) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  double value = 0.0;
-  const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size()) {
+  const std::optional<double> value = csv_number(cell);
+  if (!value) {
     lines.refuse(fmt::format("column \"{}\": \"{}\" is not a number; allowed: a decimal number with a point", column,
                              cell.substr(0, 40)));
   }
-  return value;
+  return *value;
 }
 
 }  // namespace
@@ -55,7 +36,7 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
     }
   }
   const std::string header(line);
-  const std::vector<std::string_view> names = cells_of(header, map.delimiter);
+  const std::vector<std::string_view> names = csv_cells(header, map.delimiter);
   if (!map.events.empty() && names.back() != map.events) {
     lines.refuse(
         fmt::format("[csv] events = \"{}\" has to be the last column; there are: {}", map.events, fmt::join(names, " | ")));
@@ -74,13 +55,13 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
   }
   std::vector<std::vector<double>> values(map.columns.size());
   while (lines.next(line)) {
-    if (trimmed(line).empty()) {
+    if (csv_trimmed(line).empty()) {
       continue;
     }
     if (values.front().size() == kMostRows) {
       lines.refuse(fmt::format("more than {} rows; cut the file into parts", kMostRows));
     }
-    const std::vector<std::string_view> cells = cells_of(line, map.delimiter);
+    const std::vector<std::string_view> cells = csv_cells(line, map.delimiter);
     const bool has_values = map.events.empty() ? cells.size() == names.size() : cells.size() + 1 >= names.size();
     if (!has_values) {
       const bool may_be_events = map.events.empty() && cells.size() + 1 >= names.size();

@@ -19,7 +19,7 @@ using Series = std::vector<double>;
 constexpr double kSlowestSource = 0.1;  // 10 Hz
 constexpr double kLargestGap = 2.5;     // median intervals
 /// Relative rms of the intervals below which a grid is even: rounding of printed times.
-constexpr double kEven = 1e-3;
+constexpr double kEvenInterval = 1e-3;
 constexpr double kCutOff = 0.45;  // of the lower rate
 constexpr double kZeros = 32.0;
 constexpr double kBeta = 8.0;
@@ -161,7 +161,7 @@ Resampled resampled(const Series& times, const std::vector<Series>& columns, con
   require_good(times, columns);
   const double length = times.back() - times.front();
   const double interval = length / static_cast<double>(times.size() - 1);
-  if (interval > kSlowestSource * (1.0 + kEven)) {
+  if (interval > kSlowestSource * (1.0 + kEvenInterval)) {
     throw std::invalid_argument(fmt::format("sampled every {:.4g} s; allowed: up to 0.1 s (10 Hz)", interval));
   }
   double square = 0.0;
@@ -172,13 +172,13 @@ Resampled resampled(const Series& times, const std::vector<Series>& columns, con
     widest = std::max(widest, apart);
   }
   const double jitter = std::sqrt(square / static_cast<double>(times.size() - 1));
-  const bool is_even = jitter <= kEven * interval;
+  const bool is_even = jitter <= kEvenInterval * interval;
   const double last = std::floor(length / period * (1.0 + 1e-12));
   if (last + 1.0 > static_cast<double>(kMostRows)) {
     throw std::invalid_argument(fmt::format("{:.0f} rows of {:.4g} s; allowed: up to {}", last + 1.0, period, kMostRows));
   }
   const auto rows = static_cast<std::size_t>(last) + 1;
-  const bool same_rate = std::abs(period - interval) <= kEven * interval;
+  const bool same_rate = std::abs(period - interval) <= kEvenInterval * interval;
   Resampled result{times.front(), period, {}, {}};
   for (std::size_t c = 0; c < columns.size(); ++c) {
     if (held[c]) {
@@ -186,7 +186,7 @@ Resampled resampled(const Series& times, const std::vector<Series>& columns, con
       continue;
     }
     const Series even = is_even ? columns[c] : evened(times, columns[c], interval);
-    result.values.push_back(same_rate && std::abs(period - interval) * last < kEven * interval
+    result.values.push_back(same_rate && std::abs(period - interval) * last < kEvenInterval * interval
                                 ? Series(even.begin(), even.begin() + static_cast<std::ptrdiff_t>(rows))
                                 : reconstructed(even, interval, period, rows));
   }

@@ -27,10 +27,10 @@ struct Kind {
   double upper = 0.0;
 };
 
-constexpr double kAny = std::numeric_limits<double>::max();
+constexpr double kLargest = std::numeric_limits<double>::max();
 constexpr std::array<Kind, 8> kKinds{{{"stuck", true, std::nullopt},
-                                      {"biased", true, "", -kAny, kAny},
-                                      {"noisy", true, "", 0.0, kAny},
+                                      {"biased", true, "", -kLargest, kLargest},
+                                      {"noisy", true, "", 0.0, kLargest},
                                       {"dropped", true, std::nullopt},
                                       {"delayed", true, "s", 0.0, 1.0},
                                       {"leak", false, "m^3/s/Pa", 0.0, 1e-6},
@@ -58,9 +58,9 @@ class FaultTable {
     }
     refuse_unknown_keys(source_, table_, prefix_, known);
     line("kind", std::string(kind.name));
-    const double from = read("from", "s", 0.0, kAny);
+    const double from = read("from", "s", 0.0, kLargest);
     line("from", exact(from));
-    line("to", table_.contains("to") ? exact(read("to", "s", from, kAny)) : "inf");
+    line("to", table_.contains("to") ? exact(read("to", "s", from, kLargest)) : "inf");
     if (!is_bus) {
       line("actuator", std::to_string(read_actuator()));
     }
