@@ -158,6 +158,33 @@ TEST(ImportMatlab, struct_with_any_byte_damaged_is_read_or_refused_and_the_progr
   CHECK(reads > 200 / kStep);
 }
 
+TEST(ImportMatlab, element_that_goes_beyond_its_file_or_its_matrix_is_refused_with_its_byte) {
+  const std::filesystem::path path = scratch.path("struct.mat");
+  write_matlab(path, {}, {"X", "beta", {1.0, 2.0, 3.0}});
+  const auto map = load_import_map(
+      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X.beta\"\n"));
+  std::ifstream file(path, std::ios::binary);
+  const std::string whole(std::istreambuf_iterator<char>(file), {});
+  const auto refused = [&](std::size_t at, char value) {
+    std::string damaged = whole;
+    damaged[at] = value;
+    const std::filesystem::path one = scratch.write("damaged.mat", damaged);
+    return refusal([&] { read_matlab_columns(one, map); });
+  };
+  constexpr std::size_t kVariable = 128;  // its tag: type, then size
+  expect_message(refused(kVariable, 13), {"damaged.mat: byte 128: an element of type 13; a variable has 14 or 15"});
+  expect_message(refused(kVariable + 6, 1), {"byte 128: an element of 65", "bytes, and", "are left"});
+  // The flags, the first element of the variable.
+  expect_message(refused(kVariable + 8, 19), {"byte 136: an element of type 19; allowed: 1 to 18"});
+  expect_message(refused(kVariable + 13, 1), {"byte 136: an element of 264 bytes, and"});
+  expect_message(refused(kVariable + 10, 5), {"byte 136: a small element of 5 bytes; allowed: 4"});
+  const std::string other_order = std::string(124, ' ') + "\x01" + '\0' + "MI" + std::string("\0\0\0\x0D\0\0\0\x00", 8);
+  const std::filesystem::path big_endian = scratch.write("big_endian.mat", other_order);
+  expect_message(refusal([&] { read_matlab_columns(big_endian, map); }), {"byte 128: an element of type 13"});
+  const std::filesystem::path cut = scratch.write("cut.mat", whole + "12345");
+  expect_message(refusal([&] { read_matlab_columns(cut, map); }), {"5 bytes are left; the tag of an element has 8"});
+}
+
 TEST(ImportMatlab, what_is_no_file_is_refused) {
   const auto map = load_import_map(
       scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));

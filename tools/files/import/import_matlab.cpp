@@ -11,6 +11,7 @@
 
 #include "tools/files/import/apart.hpp"
 #include "tools/files/import/import.hpp"
+#include "tools/files/import/matlab_layout.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
@@ -204,6 +205,7 @@ std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path
   if (!std::filesystem::is_regular_file(path)) {
     throw FileError(fmt::format("{}: is no file; allowed: a MATLAB file", path.string()));
   }
+  require_matlab_layout(path);
   const std::size_t most_bytes = map.columns.size() * sizeof(double) * (kMostRows + 1);
   std::vector<std::vector<double>> values;
   try {
