@@ -29,9 +29,9 @@ std::uint32_t swapped(std::uint32_t word) {
 }
 
 /// Follows the tags of one file.
-class Layout {
+class MatlabElements {
  public:
-  explicit Layout(const std::filesystem::path& path)
+  explicit MatlabElements(const std::filesystem::path& path)
       : path_(path), file_(path, std::ios::binary), end_(std::filesystem::file_size(path)) {}
 
   void check() {
@@ -119,6 +119,6 @@ class Layout {
 
 }  // namespace
 
-void require_matlab_layout(const std::filesystem::path& path) { Layout(path).check(); }
+void require_matlab_layout(const std::filesystem::path& path) { MatlabElements(path).check(); }
 
 }  // namespace hotfire
