@@ -3,7 +3,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "model/effect.hpp"
+#include "model/declaration/effect.hpp"
 
 namespace hotfire::model {
 

@@ -7,9 +7,9 @@
 
 #include "firmware/plant/declared_faults.hpp"
 #include "model/direct.hpp"
+#include "model/sensors/vehicle_sensors.hpp"
 #include "model/simplex.hpp"
 #include "model/vehicle.hpp"
-#include "model/vehicle_sensors.hpp"
 
 namespace hotfire::firmware {
 

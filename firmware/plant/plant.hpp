@@ -11,9 +11,9 @@
 #include "hal/plant_bus.hpp"
 #include "hal/recording/fnv1a.hpp"
 #include "model/direct.hpp"
+#include "model/numerics/step_size.hpp"
+#include "model/sensors/string_potentiometer.hpp"
 #include "model/simplex.hpp"
-#include "model/step_size.hpp"
-#include "model/string_potentiometer.hpp"
 
 namespace hotfire::firmware {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/string_potentiometer.hpp"
+#include "model/sensors/string_potentiometer.hpp"
 #include "tools/files/text/toml_source.hpp"
 
 namespace hotfire {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/simulate/run.hpp"
 

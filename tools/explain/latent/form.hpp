@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "model/effects/term.hpp"
+#include "model/effects/unlisted/term.hpp"
 #include "tools/explain/latent/latent_input.hpp"
 
 namespace hotfire::explain {
 
-/// A term of the grammar (model/effects/term.hpp) up to its linear coefficients: where it acts, and what it is a law of.
+/// A term of the grammar (model/effects/unlisted/term.hpp) up to its linear coefficients: where it acts, and what it is a
+/// law of.
 struct Form {
   model::Site site = model::Site::command;
   int channel = -1;  ///< of a sensor's reading

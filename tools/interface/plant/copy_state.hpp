@@ -7,9 +7,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "model/delay_line.hpp"
-#include "model/memory.hpp"
-#include "model/scalar.hpp"
+#include "model/numerics/delay_line.hpp"
+#include "model/numerics/memory.hpp"
+#include "model/numerics/scalar.hpp"
 
 namespace hotfire::plant {
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "model/direct.hpp"
+#include "model/sensors/vehicle_sensors.hpp"
 #include "model/simplex.hpp"
 #include "model/vehicle.hpp"
-#include "model/vehicle_sensors.hpp"
 #include "tools/interface/plant/variable.hpp"
 
 namespace hotfire::plant {
@@ -26,7 +26,7 @@ using AnyParameters =
 
 /// How a plant is run.
 struct Setup {
-  double period = 1e-3;  ///< between two readings [s]; split into equal steps of the model (model/step_size.hpp)
+  double period = 1e-3;  ///< between two readings [s]; split into equal steps of the model (model/numerics/step_size.hpp)
   unsigned seed = 1;     ///< of the sensors' noise
   bool strings = false;  ///< the model declares string potentiometers: they are outputs
 };
