@@ -7,7 +7,7 @@
 
 namespace hotfire::model {
 
-/// Where a parameter stands in a configuration: `section.name`, or `effects.section.name` for an effect's.
+/// The place of a parameter in a configuration: `section.name`, or `effects.section.name` for an effect's.
 struct Key {
   std::string_view section;
   bool is_effect;

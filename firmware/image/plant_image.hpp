@@ -63,7 +63,7 @@ struct PlantImage {
 /// attach points, a gimbal or an effect whose values contradict each other, with their prefix.
 PlantImage read_plant_image(const std::string& path);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` represents the file in messages.
 PlantImage parse_plant_image(const std::string& text, const std::string& name);
 
 }  // namespace hotfire::firmware

@@ -13,8 +13,8 @@
 
 namespace hotfire::model {
 
-/// What an axis meets over one step beyond its own equations when it is one of several (`Vehicle`). Given by whoever knows
-/// the other axes and the structure; means over the step.
+/// What an axis meets over one step beyond its own equations when it is one of several (`Vehicle`). Given by the caller who
+/// knows the other axes and the structure; means over the step.
 template <class S>
 struct Coupling {
   S motion;            ///< motion of the attach point, and stroke of the geometry beyond R beta [m]
@@ -24,7 +24,7 @@ struct Coupling {
   S other_rate{0.0};   ///< its rate [rad/s]
 };
 
-/// An axis alone: its attach point stands on its own spring and its arm is the declared one.
+/// An axis alone: its attach point is on its own spring and its arm is the declared one.
 struct Uncoupled {};
 
 /// One axis: the hydraulic servoactuator with mechanical feedback driving an engine on a gimbal, physics.md section 1
@@ -155,9 +155,9 @@ class Axis : public AxisStates {
   /// How much a unit of mean torque against the engine slows it over a step [rad/s/(N m)].
   const S& engine_compliance() const noexcept { return engine_compliance_; }
 
-  /// The steady state under a constant command [rad]: set-up only. The piston stands where the valve's flow makes up for the
+  /// The steady state under a constant command [rad]: set-up only. The piston is where the valve's flow makes up for the
   /// leakage, the engine where its torques balance; friction starts unloaded. Where a dead band leaves the piston free, it
-  /// stands at the command.
+  /// is at the command.
   template <class Around>
   State settled(const S& command, const Around& around) const {
     State state;

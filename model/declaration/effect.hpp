@@ -11,7 +11,7 @@
 
 namespace hotfire::model {
 
-/// An effect is what a declared model may lack: one file, one name, one site, a few parameters.
+/// An effect is what may be missing in a declared model: one file, one name, one site, a few parameters.
 ///
 /// - `Params<S>`: neutral by default, one scalar a field, and `option` (an index into `options`) if the effect has laws or
 ///   channels to choose from.

@@ -67,7 +67,7 @@ struct Hydraulics {
 ///
 /// The piston yields to the pressure within the step: `free_flow` is the net flow without this effect, and `relief` how much
 /// of it a unit of added flow takes away, in [0, 1), so that the law can solve net = free_flow - relief * added in closed
-/// form instead of being stepped explicitly, which the oil's resonance would not stand.
+/// form instead of being stepped explicitly, which would be unstable at the oil's resonance.
 template <class S>
 struct Compression {
   using Scalar = S;

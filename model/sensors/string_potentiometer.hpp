@@ -61,7 +61,7 @@ class StringPotentiometers {
   }
 
   /// Change of each length from zero angles [m], with the anchors moved by `moved` [m]: the structure's own motion, which a
-  /// string cannot tell from the engine's. To first order in `moved`, which is small against any string.
+  /// string cannot distinguish from the engine's. To first order in `moved`, which is small against any string.
   std::array<S, kStrings> lengths(const S& pitch, const S& yaw, const Vector3<S>& moved) const noexcept {
     const Pose<S> first = first_.at(pitch, yaw);
     const Pose<S> second = second_.at(pitch, yaw);
@@ -76,7 +76,7 @@ class StringPotentiometers {
         return "the two ends of a string coincide";
       }
     }
-    // What a length changes by under pitch and yaw: two strings must tell the two apart.
+    // What a length changes by under pitch and yaw: two strings must distinguish the two.
     constexpr double kLeast = 1e-6;  // of the determinant, over what perpendicular arms of these sizes would give
     const StringPotentiometers strings(anchors);
     const Pose<S> first = strings.first_.at(S(0.0), S(0.0));
@@ -90,7 +90,7 @@ class StringPotentiometers {
       both += value_of(arm[0] * arm[1]);
     }
     if (!(pitch * yaw - both * both > kLeast * pitch * yaw) || !(pitch > kLeast) || !(yaw > kLeast)) {
-      return "the strings cannot tell pitch from yaw";
+      return "the strings cannot distinguish pitch from yaw";
     }
     return {};
   }

@@ -45,7 +45,7 @@ struct InstrumentedVehicle {
 };
 
 /// What the sensors of a vehicle read of its states, one after the other. A string sees its engine's angles, the bearing
-/// give way, and the structure carry its anchor away; none of them can it tell from the others. No allocation after
+/// give way, and the structure carry its anchor away; it cannot distinguish them. No allocation after
 /// construction.
 template <class V>
 class VehicleReadings {

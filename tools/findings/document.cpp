@@ -45,7 +45,7 @@ What has to be given up, and why:
 
 )";
 
-/// A published number and the figure that stands for it.
+/// A published number and the figure that is compared with it.
 struct Published {
   std::string_view what;
   std::string_view published;

@@ -5,7 +5,7 @@
 namespace hotfire::model {
 
 /// A mis-scaled command channel: the axis was commanded (1 + error) times what the record's unit says. No fault of the plant
-/// but of a calibration: mend the record rather than run the plant with it.
+/// but of a calibration: correct the record rather than run the plant with it.
 struct CommandScale {
   static constexpr std::string_view name = "command_scale";
   static constexpr Site site = Site::command;

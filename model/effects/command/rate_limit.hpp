@@ -6,7 +6,7 @@
 namespace hotfire::model {
 
 /// Limited rate of the command: the output follows the command at no more than `rate`.
-/// The output is the mean over the step. The neutral value is the upper bound, which stands for no limit.
+/// The output is the mean over the step. The neutral value is the upper bound, which means no limit.
 struct RateLimit {
   static constexpr std::string_view name = "rate_limit";
   static constexpr Site site = Site::command;

@@ -131,7 +131,7 @@ struct UnlistedSignal {
 
 /// What the spool opens: a table over the spool position added to it, a gain that drifts, 1 + gain(t), or a spool that can
 /// only go so fast (the limit of `rate_limit`, elsewhere). A term added over time is the valve command's: the spool follows
-/// it too fast to tell.
+/// it too fast to be seen.
 struct UnlistedOpening {
   static constexpr std::string_view name = "unlisted_valve";
   static constexpr Site site = Site::valve;

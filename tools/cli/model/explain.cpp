@@ -176,7 +176,7 @@ std::vector<Record> loaded(const std::vector<std::string>& paths, const CandumpO
   return records;
 }
 
-/// The next experiment is looked for on one hydraulic axis alone.
+/// The next experiment is searched for on one hydraulic axis alone.
 void require_one_axis(const AnyModel& model) {
   const auto* one = std::get_if<ModelFile>(&model);
   if (one == nullptr || !std::holds_alternative<SimplexParameters>(one->parameters)) {
@@ -186,7 +186,7 @@ void require_one_axis(const AnyModel& model) {
   }
 }
 
-/// What a report was made of, so that a reviewer can tell that it was this: taken before the search, as the files were read.
+/// What a report was made of, so that a reviewer can verify it: taken before the search, as the files were read.
 std::vector<std::string> digests_of(const std::vector<std::string>& paths) {
   std::vector<std::string> digests(paths.size());
   std::transform(paths.begin(), paths.end(), digests.begin(), sha256_of);

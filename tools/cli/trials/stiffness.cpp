@@ -45,7 +45,7 @@ trials::SweepGoal goal_of(const StiffnessOptions& options, const trials::LoadSpr
   return goal;
 }
 
-/// Throws FileError for a record that no stiffness can be read from, and says what would mend it.
+/// Throws FileError for a record that no stiffness can be read from, and says the remedy.
 std::vector<trials::SineStiffness> stiffnesses_of(const Record& record, const std::string& name,
                                                   const trials::SweepGoal& goal, const trials::LoadSpring& spring) {
   trials::required_channel(record, "piston", goal.axis);

@@ -12,7 +12,7 @@
 
 namespace hotfire {
 
-/// What every test on a model, or the analysis of a recorded one, can be told.
+/// The options of every test on a model, and of the analysis of a recorded one.
 struct TrialOptions {
   std::string model;
   std::string record;

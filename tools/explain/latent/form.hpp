@@ -22,7 +22,7 @@ struct Form {
   std::vector<double> points{};  ///< of the curve, or the widths of the stops; none: a gain
 
   bool is_stops() const { return memory.kind == model::Memory::stops; }
-  /// The argument itself stands beside its memory, as the last regressor.
+  /// The argument itself is beside its memory, as the last regressor.
   bool has_direct() const { return memory.kind != model::Memory::none; }
   /// Without points, and of stops with theirs, the curve is no function over its points.
   bool has_curve() const { return !points.empty() && !is_stops(); }

@@ -16,7 +16,7 @@ namespace hotfire {
 
 namespace {
 
-/// Whether a channel is what a plant is told: it holds from a row to the next.
+/// Whether a channel is an input of the plant: it holds from a row to the next.
 bool is_told(const std::string& channel) {
   const std::string own = channel.substr(0, channel.find('.'));
   return own == "command" || own == "current";

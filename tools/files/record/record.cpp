@@ -44,7 +44,7 @@ bool is_blank(char letter) { return letter == ' ' || letter == '\t'; }
                   column.name, shown));
 }
 
-/// Reads the cell that `cursor` stands at and moves to its end. `cell` becomes its text. NaN if that is no finite number.
+/// Reads the cell at `cursor` and moves to its end. `cell` becomes its text. NaN if that is no finite number.
 double read_cell(const Column& column, const char*& cursor, const char* end, std::string_view& cell) {
   while (cursor != end && is_blank(*cursor)) {
     ++cursor;

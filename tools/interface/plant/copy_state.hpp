@@ -15,7 +15,7 @@ namespace hotfire::plant {
 
 namespace detail {
 
-/// Stands for a member of any type when the members of an aggregate are counted.
+/// Represents a member of any type when the members of an aggregate are counted.
 struct AnyMember {
   template <class T>
   operator T() const;  // NOLINT(google-explicit-constructor): the conversion is what counts the members

@@ -63,7 +63,7 @@ class Plant {
   std::span<const double> parameter_values() const noexcept { return parameter_values_; }
 
   /// Takes new values of all parameters, in the order of `parameters`, each within its bounds. Returns what relation between
-  /// them is broken, and changes nothing then; empty if none is. Computes the model's constants anew: set-up work, without
+  /// them is broken, and changes nothing then; empty if none is. Computes the model's constants again: set-up work, without
   /// allocation, in a bounded time.
   virtual std::string_view set_parameters(std::span<const double> values) noexcept = 0;
 
@@ -89,7 +89,7 @@ class Plant {
   std::size_t state_size() const noexcept;
   void save(std::span<std::byte> bytes) const noexcept;
   void load(std::span<const std::byte> bytes) noexcept;
-  /// Tells models apart whose states are not exchangeable.
+  /// Identifies models whose states are exchangeable.
   std::uint64_t identity() const noexcept { return identity_; }
 
  protected:
