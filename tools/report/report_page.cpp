@@ -70,7 +70,7 @@ void check(const nlohmann::json& report) {
 void fill(std::string& page, std::string_view& rest, std::string_view place, std::string_view filling) {
   const std::size_t at = rest.find(place);
   if (at == std::string_view::npos) {
-    throw std::logic_error("report page: its template lacks a place to fill");
+    throw std::logic_error("report page: a place to fill is missing in its template");
   }
   page += rest.substr(0, at);
   page += filling;

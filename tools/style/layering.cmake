@@ -102,7 +102,7 @@ function(check_folder_size folder)
 endfunction()
 
 function(check_words file)
-  # Only what stands before a comment and outside of quotes.
+  # Only what is before a comment and outside of quotes.
   set(code "^([^\"/]|/[^\"/]|\"[^\"]*\")*")
   foreach(word IN LISTS model_words)
     file(STRINGS ${ROOT}/${file} lines REGEX "(^|[^A-Za-z0-9_])${word}([^A-Za-z0-9_]|$)")

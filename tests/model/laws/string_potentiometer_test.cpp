@@ -85,7 +85,7 @@ TEST(StringPotentiometers, MustTellPitchFromYaw) {
   auto alike = Strings::representative();
   alike[2] = alike[0];
   alike[3] = alike[1];
-  STRCMP_CONTAINS("cannot tell", std::string(Strings::broken_relation(alike)).c_str());
+  STRCMP_CONTAINS("cannot distinguish", std::string(Strings::broken_relation(alike)).c_str());
 }
 
 }  // namespace hotfire::test

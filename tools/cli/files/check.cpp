@@ -116,7 +116,7 @@ Json describe(const std::filesystem::path& path) {
     return describe_record(path);
   }
   throw FileError(
-      fmt::format("{}: what it is cannot be told from \"{}\"; allowed: .toml (a model, a profile or a CAN schedule), .csv "
+      fmt::format("{}: the extension \"{}\" is unknown; allowed: .toml (a model, a profile or a CAN schedule), .csv "
                   "(a record), .log "
                   "(a candump log), a recording of 'hotfire plant --record'",
                   path.string(), path.extension().string()));
@@ -199,7 +199,7 @@ void add_check(CLI::App& program) {
   CLI::App* command = program.add_subcommand("check",
                                              "Check model files, profiles and CAN schedules (.toml), records (.csv, candump "
                                              ".log) and recordings: what each is, or what is "
-                                             "wrong, where, and the mend");
+                                             "wrong, where, and the remedy");
   command->add_option("FILE", options->files, "model files, profiles, CAN schedules and records")->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");
   command->footer(

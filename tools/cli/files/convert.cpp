@@ -22,9 +22,8 @@ struct ConvertOptions {
 void convert(const ConvertOptions& options) {
   const std::filesystem::path output(options.output);
   if (output.extension() != ".csv" && output.extension() != ".log") {
-    throw UsageError(
-        fmt::format("{}: what to write cannot be told from \"{}\"; allowed: .csv (a record), .log (a candump log)",
-                    options.output, output.extension().string()));
+    throw UsageError(fmt::format("{}: the extension \"{}\" is unknown; allowed: .csv (a record), .log (a candump log)",
+                                 options.output, output.extension().string()));
   }
   const Record record = load_record_or_log(options.input, options.candump);
   if (output.extension() == ".log") {

@@ -33,7 +33,7 @@ void add_import(CLI::App& program) {
   command->add_flag("--guess", options->guess, "print a map for a text log to start from, and write nothing");
   command
       ->add_option("--exclude", options->excluded,
-                   "FROM-TO [s]: a drop-out, where values and rows may lack; then name it to explain")
+                   "FROM-TO [s]: a drop-out, where values and rows may be missing; then name it to explain")
       ->allow_extra_args(false);
   command->footer(
       "Example: hotfire import daq.txt --guess > map.toml\nExample: hotfire import run17.mat --map map.toml --output "

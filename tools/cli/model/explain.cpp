@@ -263,7 +263,8 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
 
 void add_explain(CLI::App& program, const std::string& typed) {
   const auto arguments = std::make_shared<ExplainArguments>();
-  CLI::App* command = program.add_subcommand("explain", "Find what a declared model lacks against measured records");
+  CLI::App* command =
+      program.add_subcommand("explain", "Identify the effects that a declared model is missing, from measured records");
   command->add_option("--model", arguments->model, "declared model (.toml)")->required();
   command->add_option("--out", arguments->out, "folder for explained.toml, report.json and report.html")->required();
   command->add_option("records", arguments->records, "measured records (.csv, or candump .log)")->required();
@@ -273,11 +274,11 @@ void add_explain(CLI::App& program, const std::string& typed) {
       ->capture_default_str();
   command
       ->add_option("--seconds", arguments->seconds,
-                   "time for the search [s]: then the best so far is reported, with what was not looked at")
+                   "time for the search [s]: then the best so far is reported, with what was not examined")
       ->check(CLI::Range(1.0, 1e6));
   command
       ->add_option("--exclude", arguments->excluded,
-                   "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out; values and rows may lack there")
+                   "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out; values and rows may be missing there")
       ->allow_extra_args(false);
   command
       ->add_option("--hold-out", arguments->held_out, "a further record that no fit and no choice sees: judged at the end")

@@ -48,7 +48,7 @@ void examine(doctor::Patient patient, bool as_json) {
       list.push_back({{"check", finding.check},
                       {"level", finding.level == Level::bad ? "bad" : name_of(finding.level)},
                       {"what", finding.what},
-                      {"mend", finding.mend}});
+                      {"remedy", finding.mend}});
     }
     const Json result{{"verdict", good ? "good" : "bad"}, {"findings", list}};
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
@@ -56,7 +56,7 @@ void examine(doctor::Patient patient, bool as_json) {
     for (const Finding& finding : findings) {
       std::cout << fmt::format("{:<6}  {:<16} {}\n", name_of(finding.level), finding.check, finding.what);
       if (!finding.mend.empty()) {
-        std::cout << fmt::format("{:<25}mend: {}\n", "", finding.mend);
+        std::cout << fmt::format("{:<25}remedy: {}\n", "", finding.mend);
       }
     }
     std::cout << fmt::format("\nverdict: {} ({} bad, {} to consider)\n", good ? "good" : "BAD", count(Level::bad),
@@ -77,11 +77,11 @@ void add_doctor(CLI::App& program) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("doctor", "Is this machine fit for a real-time run? Each finding with what mends it");
+      program.add_subcommand("doctor", "Is this machine fit for a real-time run? Each finding comes with its remedy");
   command->add_option("--cpu", options->patient.cpu, "the CPU that the loop will have")->check(CLI::Range(0, 1023));
   command->add_option("--can", options->patient.can, "CAN interface that must be there; default: look at all");
   command->add_option("--line", options->patient.lines, "GPIO line that must be there, by name");
-  command->add_option("--root", options->root, "folder that stands for /: of an image, or of a test")
+  command->add_option("--root", options->root, "folder to use in place of /: of an image, or of a test")
       ->check(CLI::ExistingDirectory);
   command->add_flag("--json", options->json, "print the findings as JSON");
   command->footer(

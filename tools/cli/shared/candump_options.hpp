@@ -13,7 +13,7 @@ inline void add_candump_options(CLI::App& command, CandumpOptions& options) {
       ->check(CLI::Range(1U, kMostActuators))
       ->capture_default_str();
   command.add_option("--command-per-current", options.command_per_current,
-                     "of a candump log: the command that a servovalve current stands for (rad/A)");
+                     "of a candump log: the command that a servovalve current represents (rad/A)");
 }
 
 }  // namespace hotfire

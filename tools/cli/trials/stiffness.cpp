@@ -136,7 +136,7 @@ void add_stiffness(CLI::App& program) {
       "         hotfire stiffness --model lab.toml --record sines.csv --axis pitch\n"
       "The notch is the load resonance, which has the total stiffness in it; the model's load stiffness taken out leaves "
       "the\n"
-      "actuator's. Beside it stands what the model's force curve expects of that amplitude.");
+      "actuator's. The next column is the value of the model's force curve at that amplitude.");
   command->callback([options] { run_stiffness(*options); });
 }
 

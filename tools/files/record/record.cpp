@@ -188,7 +188,7 @@ void require_channel(const Record& record, const std::string& channel, const std
   }
   const bool has_current = channel == "command" && record.find("current") != nullptr;
   throw FileError(fmt::format("{}:1: no column {}: {}; the record has {}{}", record.path.string(), channel, reason, has,
-                              has_current ? "; --command-per-current says what command a current stands for" : ""));
+                              has_current ? "; --command-per-current gives the command that a current represents" : ""));
 }
 
 }  // namespace hotfire

@@ -1,4 +1,4 @@
-"""Hotfire in Python: the model of a thrust-vector-control axis, and what a declared model lacks.
+"""Hotfire in Python: the model of a thrust-vector-control axis, and what is missing in a declared model.
 
     import hotfire
 
