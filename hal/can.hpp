@@ -15,7 +15,7 @@ inline constexpr std::size_t kMaxCanSenders = 32;
 /// Frames that one `receive` takes in.
 inline constexpr std::size_t kMaxCanArrivals = 256;
 
-/// What tells one frame of a bus from another: 11 bits, or 29 if extended.
+/// What identifies a frame of a bus: 11 bits, or 29 if extended.
 struct CanId {
   std::uint32_t value = 0;
   bool extended = false;

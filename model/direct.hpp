@@ -6,11 +6,11 @@
 #include <cmath>
 #include <string_view>
 
-#include "model/clock.hpp"
+#include "model/actuator/parts.hpp"
 #include "model/effects.hpp"
-#include "model/exact_hold.hpp"
-#include "model/parts.hpp"
-#include "model/step_size.hpp"
+#include "model/numerics/clock.hpp"
+#include "model/numerics/exact_hold.hpp"
+#include "model/numerics/step_size.hpp"
 
 namespace hotfire::model {
 

@@ -3,11 +3,11 @@
 #include <string_view>
 #include <tuple>
 
-#include "model/effect.hpp"
+#include "model/declaration/effect.hpp"
 
 namespace hotfire::model {
 
-/// Where a parameter stands in a configuration: `section.name`, or `effects.section.name` for an effect's.
+/// The place of a parameter in a configuration: `section.name`, or `effects.section.name` for an effect's.
 struct Key {
   std::string_view section;
   bool is_effect;

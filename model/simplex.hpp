@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "model/axis.hpp"
+#include "model/actuator/axis.hpp"
 #include "model/effects.hpp"
 
 namespace hotfire::model {

@@ -5,10 +5,10 @@
 #include <string_view>
 #include <utility>
 
-#include "model/axis.hpp"
+#include "model/actuator/axis.hpp"
 #include "model/effects.hpp"
-#include "model/gimbal.hpp"
-#include "model/structure.hpp"
+#include "model/engine/gimbal.hpp"
+#include "model/structure/structure.hpp"
 
 namespace hotfire::model {
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "model/key_text.hpp"
-#include "model/vehicle_sensors.hpp"
+#include "model/sensors/vehicle_sensors.hpp"
 
 namespace hotfire::model {
 

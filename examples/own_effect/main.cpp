@@ -3,7 +3,7 @@
 // An effect is a type with a name, a site, parameters, a state and a step (docs/architecture.md). A plant takes its list of
 // effects as a template parameter, so that a list with one more is another plant.
 
-#include <hotfire/effects/gimbal_friction.hpp>
+#include <hotfire/effects/gimbal/gimbal_friction.hpp>
 #include <hotfire/keys.hpp>
 #include <hotfire/simplex.hpp>
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # %% [markdown]
-# One axis from a declared model to the effect that it lacks. Run it as a script, or cell by cell in an editor that knows
+# One axis from a declared model to its missing effect. Run it as a script, or cell by cell in an editor that knows
 # `# %%`: python3 one_axis.py [FOLDER]; pictures and the report go to FOLDER.
 
 # %%
@@ -56,7 +56,7 @@ for value, own in zip(inertias, family):
     error = np.std(own["engine"].values - measured["engine"].values)
     print(f"inertia {value:g} kg.m^2: off by {np.degrees(error):.2g} deg rms")
 
-# %% What the model lacks
+# %% What is missing in the model
 found = hotfire.explain(declared, measured, most_effects=1, progress=lambda what: print(" ", what, file=sys.stderr))
 print(found)
 for effect in found.effects:

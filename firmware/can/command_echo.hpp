@@ -11,7 +11,7 @@
 namespace hotfire::firmware::can {
 
 /// How old the commands are that the nodes of a rig say they have. A node echoes the counter of its newest command in every
-/// reading; a counter that stands still, or that of no command, is no answer.
+/// reading; a counter that does not change, or that of no command, is no answer.
 class CommandEcho {
  public:
   /// Of so many reading messages, each of a node of its own.

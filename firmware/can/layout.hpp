@@ -80,7 +80,7 @@ struct MoreReadings {
   bool load_pressure = false;
 };
 
-/// Where one of the two redundant readings of an actuator stands: the message, and its value there.
+/// The place of one of the two redundant readings of an actuator: its message, and its value there.
 struct PistonPlace {
   std::size_t message;
   std::size_t value;

@@ -54,7 +54,7 @@ class PlantBus {
   }
 
   /// How long one frame of a second controller keeps the valves without current: as long as between two STATUS frames, so
-  /// that one of them tells.
+  /// that one of them reports.
   static constexpr std::int64_t kSecondSenderHoldNs = 1'000'000 * std::int64_t{status::kMessage.cycle_ms};
 
   bool try_receive_command(hal::Command& command) noexcept {

@@ -7,9 +7,9 @@
 
 #include "firmware/plant/declared_faults.hpp"
 #include "model/direct.hpp"
+#include "model/sensors/vehicle_sensors.hpp"
 #include "model/simplex.hpp"
 #include "model/vehicle.hpp"
-#include "model/vehicle_sensors.hpp"
 
 namespace hotfire::firmware {
 
@@ -63,7 +63,7 @@ struct PlantImage {
 /// attach points, a gimbal or an effect whose values contradict each other, with their prefix.
 PlantImage read_plant_image(const std::string& path);
 
-/// The same from text; `name` stands for the file in messages.
+/// The same from text; `name` represents the file in messages.
 PlantImage parse_plant_image(const std::string& text, const std::string& name);
 
 }  // namespace hotfire::firmware

@@ -9,8 +9,8 @@
 
 namespace hotfire::firmware {
 
-/// What can go wrong on a rig. The numbers are for good: they are in logs, recordings and people's heads, so a fault that is
-/// no longer raised keeps its number. Each has a section in docs/faults.md.
+/// What can go wrong on a rig. The numbers are permanent: they are in logs, recordings and people's heads, so a fault that
+/// is no longer raised keeps its number. Each has a section in docs/faults.md.
 enum class Fault : std::uint8_t {
   stale_command = 1,
   stale_sensor = 2,

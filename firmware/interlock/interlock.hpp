@@ -40,7 +40,7 @@ struct InterlockInputs {
   bool start = false;          ///< as `arm`
   bool start_changed = false;  ///< as `arm_changed`
   bool stop = false;           ///< acts while it is on; also when the profile has ended
-  bool at_rest = false;        ///< every actuator stands still
+  bool at_rest = false;        ///< every actuator is at rest
 };
 
 /// Everything that an interlock remembers from one cycle to the next. The default is what a program starts with.
@@ -57,7 +57,7 @@ struct InterlockMemory {
   friend constexpr bool operator==(const InterlockMemory&, const InterlockMemory&) noexcept = default;
 };
 
-/// What the next cycle remembers, and what of this cycle only this cycle is told.
+/// What the next cycle remembers, and what holds for this cycle only.
 struct InterlockDecision {
   InterlockMemory memory;
   bool refused_press = false;  ///< the arm button was pressed while something forbade arming

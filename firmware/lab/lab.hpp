@@ -21,12 +21,12 @@ struct LabSettings {
   Profile profile{{}};
   std::size_t actuators = 1;
   FaultLimits limits;
-  double piston_per_command = 1.0;   ///< where a piston stands for a command [m/rad]
+  double piston_per_command = 1.0;   ///< position of a piston per command [m/rad]
   double current_per_command = 0.0;  ///< of an amplifier that closes the position loop itself [A/rad]; 0: it does not
   double current_per_error = 0.0;    ///< of the position loop closed here [A/m]; 0: it is not
   double current_limit = 0.0;        ///< what the amplifiers are given at most [A]
-  double approach_rate = 0.0;        ///< from where the pistons stand to where the profile begins [rad/s]
-  double rest_speed = 0.0;           ///< a slower piston stands still [m/s]
+  double approach_rate = 0.0;        ///< from the pistons' positions to where the profile begins [rad/s]
+  double rest_speed = 0.0;           ///< a slower piston is at rest [m/s]
   InterlockSettings interlock;       ///< how long an actuator may take to come to rest among them
   std::uint64_t most_overruns = 0;   ///< in a row that are no fault
 };

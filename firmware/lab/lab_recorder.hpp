@@ -101,7 +101,7 @@ inline LabInputs recorded_inputs(const hal::RecordedCycle& cycle) noexcept {
   return inputs;
 }
 
-/// Records a lab: what it saw and what it did, so that a replay can decide every cycle anew. `Rig` is a `LabRig`.
+/// Records a lab: what it saw and what it did, so that a replay can decide every cycle again. `Rig` is a `LabRig`.
 template <class Rig>
 class LabRecorder {
  public:

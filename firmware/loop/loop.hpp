@@ -76,7 +76,7 @@ struct NoRecorder {
 /// The real-time loop of a plant: at every cycle of its pace read the newest command, step the plant, write its reading,
 /// account for it. Nothing in it allocates, locks, throws or logs, and its only system calls are those of the pace and the
 /// bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and `actuators()`. A bus that has
-/// `note_overrun()` is told of every overrun after the cycle.
+/// `note_overrun()` is called after every cycle that overran.
 ///
 /// It counts up a heartbeat every turn, also while it waits for a first cycle, which whoever watches over the process may
 /// look at from another thread.

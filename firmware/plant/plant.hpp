@@ -11,9 +11,9 @@
 #include "hal/plant_bus.hpp"
 #include "hal/recording/fnv1a.hpp"
 #include "model/direct.hpp"
+#include "model/numerics/step_size.hpp"
+#include "model/sensors/string_potentiometer.hpp"
 #include "model/simplex.hpp"
-#include "model/step_size.hpp"
-#include "model/string_potentiometer.hpp"
 
 namespace hotfire::firmware {
 
@@ -60,7 +60,7 @@ class Plant {
   /// What the sensors read, actuator after actuator, in the order of `Model::channels`.
   std::span<const double> measured() const noexcept { return readings_.values(); }
 
-  /// Gives every engine its four string potentiometers, at their representative places on a structure that stands still.
+  /// Gives every engine its four string potentiometers, at their representative places on a structure at rest.
   /// Actuators 1 and 2 are the pitch and the yaw of the first engine, and so on; an angle without an actuator is zero. For a
   /// model that has an engine; before the first step.
   void string_up() {

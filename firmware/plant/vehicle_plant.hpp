@@ -12,9 +12,9 @@
 #include "firmware/plant/white_noise.hpp"
 #include "hal/plant_bus.hpp"
 #include "hal/recording/fnv1a.hpp"
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
+#include "model/sensors/vehicle_sensors.hpp"
 #include "model/vehicle.hpp"
-#include "model/vehicle_sensors.hpp"
 
 namespace hotfire::firmware {
 

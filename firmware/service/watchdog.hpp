@@ -11,8 +11,9 @@
 
 namespace hotfire::firmware {
 
-/// Tells the service manager what the loop's own heartbeat says: READY=1 when it first beats, WATCHDOG=1 only while it goes
-/// on beating, STOPPING=1 at the end. A loop that hangs is silent, and the manager ends it, however well this thread does.
+/// Reports to the service manager what the loop's own heartbeat says: READY=1 when it first beats, WATCHDOG=1 only while it
+/// goes on beating, STOPPING=1 at the end. A loop that hangs is silent, and the manager ends it, however well this thread
+/// does.
 class Watchdog {
  public:
   /// How often to look where the manager has no watchdog.

@@ -12,7 +12,7 @@
 namespace hotfire::firmware {
 
 void complain(const hal::Failure& failure) {
-  std::fprintf(stderr, "hotfire-rt: %s\n  mend: %s\n", failure.what.c_str(), failure.mend.c_str());
+  std::fprintf(stderr, "hotfire-rt: %s\n  remedy: %s\n", failure.what.c_str(), failure.mend.c_str());
 }
 
 CanSession::CanSession(const Options& options, const can::NodeIds& ids)
@@ -39,7 +39,7 @@ std::optional<hal::Failure> CanSession::refuse_key() {
     return std::nullopt;
   }
   if (!can::is_fd(options_.frame_layout())) {
-    return hal::Failure{"--key: the frames of the classic layouts have no room for a code", "--layout fd, or fd-split"};
+    return hal::Failure{"--key: the frames of the classic layouts have no space for a code", "--layout fd, or fd-split"};
   }
   const ReadKey read = read_key(options_.key);
   if (!read.refused) {

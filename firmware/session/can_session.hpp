@@ -17,7 +17,7 @@ class CanSession {
   CanSession(const Options& options, const can::NodeIds& ids);
 
   /// Opens it. Refuses an interface that is not there, no CAN, not FD or down, no permission, and a schedule that takes too
-  /// much of it. Prints the refusal with its mend to standard error and returns the exit status; kGood if there is none.
+  /// much of it. Prints the refusal with its remedy to standard error and returns the exit status; kGood if there is none.
   /// Nothing has been sent then.
   int open();
 
@@ -47,7 +47,7 @@ class CanSession {
   std::optional<can::Authentication> authentication_;
 };
 
-/// Prints what is refused, and how a person mends it, to standard error.
+/// Prints what is refused, and the remedy, to standard error.
 void complain(const hal::Failure& failure);
 
 }  // namespace hotfire::firmware

@@ -94,7 +94,7 @@ constexpr OptionLine kLines[] = {
      "frames on a CAN bus: classic (two actuators at most), fd, classic-split or fd-split (both readings of a\n"
      "piston by frames of their own); default classic if there is room in it",
      read_layout},
-    {"--command-per-current", "X", "command that a servovalve current on a CAN bus stands for [rad/A]; default 10",
+    {"--command-per-current", "X", "command that a servovalve current on a CAN bus represents [rad/A]; default 10",
      [](const std::string& value, Options& o) { return read_number(value, 1e-6, 1e6, o.command_per_current); }},
     {"--command-age-ms", "X", "a command on a CAN bus that is older counts as none: no current; default 100",
      [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }},

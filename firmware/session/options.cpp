@@ -160,7 +160,7 @@ std::string conflict_in(const Options& options) {
            std::to_string(can::most_actuators(layout)) + " actuators: leave it out, or take fd-split for classic-split";
   }
   if (!options.key.empty() && !(options.on_can() && (options.mode == Mode::lab || can::is_fd(layout)))) {
-    return "--key needs frames with room for a code: --bus can0 --layout fd, or fd-split";
+    return "--key needs frames with space for a code: --bus can0 --layout fd, or fd-split";
   }
   if (!options.recording.empty() && options.image.empty()) {
     return "--record needs a model, which becomes part of the recording: --model FILE, or --image FILE";

@@ -15,7 +15,7 @@ namespace hotfire::firmware {
 /// model, offline.
 enum class Mode : std::uint8_t { plant, timing, controller, lab, replay };
 
-/// What gives a plant its cycles: the machine's clock, syncs on the clock that stand in for those of a rig, or SYNC frames.
+/// What gives a plant its cycles: the machine's clock, syncs on the clock that replace those of a rig, or SYNC frames.
 enum class PaceKind : std::uint8_t { clock, sim, can };
 inline constexpr std::array<std::string_view, 3> kPaceKinds{"clock", "sim", "can"};
 

@@ -26,7 +26,7 @@ Verdict judge(const Session& session) {
   }
   if (session.bus && session.bus->state >= hal::CanState::bus_off) {
     const char* const state = hal::kCanStates[static_cast<std::size_t>(session.bus->state)];
-    return {false, session.bus->interface + " is " + state + ": mend the bus and start anew", kHardware};
+    return {false, session.bus->interface + " is " + state + ": correct the fault of the bus and start again", kHardware};
   }
   Verdict verdict;
   const auto add = [&](bool met, const std::string& reason) {

@@ -40,7 +40,7 @@ gpiod_chip* open_chip(const std::string& wanted) {
   return nullptr;
 }
 
-/// Lines requested together, and where each stands in the settings.
+/// Lines requested together, and the place of each in the settings.
 struct Bulk {
   gpiod_line_bulk lines = GPIOD_LINE_BULK_INITIALIZER;
   std::array<std::size_t, kMaxGpioLines> places{};

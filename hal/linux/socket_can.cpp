@@ -118,7 +118,7 @@ std::optional<Failure> SocketCan::bind_to_interface() noexcept {
     return Failure{name + " is no CAN interface", "see 'ip -details link show type can', and type vcan"};
   }
   if (ioctl(socket_, SIOCGIFMTU, &request) != 0) {
-    return failed_call(name + " does not tell its MTU", errno, "see 'ip -details link show " + name + "'");
+    return failed_call(name + "does not report its MTU", errno, "see 'ip -details link show " + name + "'");
   }
   if (settings_.fd && request.ifr_mtu < static_cast<int>(CANFD_MTU)) {
     return Failure{name + " is not set up for CAN FD (MTU " + std::to_string(request.ifr_mtu) + ")",

@@ -10,7 +10,7 @@ namespace hotfire::hal {
 /// 64-bit FNV-1a. Takes the eight bytes of a number from the lowest up, whatever the machine's byte order.
 ///
 /// Two uses: over the state and the readings of a plant, cycle after cycle, two runs with the same hash gave the same bits;
-/// over a block of a recording it tells a torn or damaged one. [Fowler, Noll, Vo 1991; IETF draft-eastlake-fnv]
+/// over a block of a recording it detects a torn or damaged one. [Fowler, Noll, Vo 1991; IETF draft-eastlake-fnv]
 class Fnv1a {
  public:
   void add(std::span<const double> values) noexcept {

@@ -58,7 +58,7 @@ constexpr std::size_t cycle_bytes(std::size_t actuators, std::size_t readings) n
   return sizeof(CycleHead) + sizeof(double) * (actuators + readings);
 }
 
-/// What stands before every block.
+/// What precedes every block.
 struct BlockHead {
   enum Kind : std::uint32_t { kCycles = 0, kEnd = 1 };
   static constexpr std::uint64_t kMagic = 0x314b434f4c424648;  // the bytes "HFBLOCK1"
@@ -108,7 +108,7 @@ struct RecordingHeader {
 /// Identifies a model: FNV-1a over its plant image.
 std::uint64_t model_hash(std::string_view model);
 
-/// The header as it stands at the beginning of a file.
+/// The header at the beginning of a file.
 std::string header_text(const RecordingHeader& header);
 
 /// The first line of every recording; the number is the version of the format.

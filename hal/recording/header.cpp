@@ -105,7 +105,8 @@ bool take(RecordingHeader& header, std::string_view key, std::string_view value,
 std::string what_is_wrong(const RecordingHeader& header, const std::string& hash) {
   if (header.period_ns <= 0 || header.actuators == 0 || header.actuators > kMaxActuators || header.channels.empty() ||
       header.channels.size() > kMostRecordedChannels || header.input.name.empty()) {
-    return "its header lacks period_ns, actuators, input or channel, or has more of them than a plant can have";
+    return "period_ns, actuators, input or channel is missing in its header, or there are more of them than a plant can "
+           "have";
   }
   if (header.start.size() != header.channels.size() * header.actuators) {
     return "its header has not one line `start` for every reading";

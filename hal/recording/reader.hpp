@@ -20,7 +20,7 @@ struct RecordedCycle {
 };
 
 /// Reads a recording from its beginning to its last whole block, a block at a time. A file whose writer was killed, or that
-/// is still being written, reads like any other: what it lacks is the end, and `end()` says so.
+/// is still being written, reads like any other: only the end is missing, and `end()` says so.
 class RecordingReader {
  public:
   /// How a recording ends. `cut_off`: its writer did not close it. `damaged`: a block in its midst is not what was written,

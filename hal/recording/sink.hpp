@@ -10,7 +10,7 @@ namespace hotfire::hal {
 /// Why a recording goes no further.
 struct SinkRefusal {
   std::string why;
-  /// The disk did not do what it was told, and part of what it was given may be lost. Else a limit that was asked for.
+  /// The disk did not do what was asked, and part of what it was given may be lost. Else a limit that was asked for.
   bool is_error = true;
 };
 

@@ -7,7 +7,7 @@
 
 namespace hotfire::hal::sim {
 
-/// A time that moves only when told to (`Clock`): timing logic is tested with it, without a machine's own timing. Sleeping
+/// A time that moves only on request (`Clock`): timing logic is tested with it, without a machine's own timing. Sleeping
 /// jumps to the time asked for, plus a lateness that a test may inject once.
 class ManualClock {
  public:

@@ -6,8 +6,8 @@
 #include <iostream>
 
 #include "tests/benchmark/page.hpp"
-#include "tests/model/axis_comparison.hpp"
-#include "tests/model/vehicle_comparison.hpp"
+#include "tests/model/cvode/axis_comparison.hpp"
+#include "tests/model/cvode/vehicle_comparison.hpp"
 
 namespace hotfire::test {
 namespace {

@@ -105,9 +105,9 @@ TEST(DoctorCan, VirtualBusIsSaidToFitAnySchedule) {
 
 TEST(DoctorCan, MachineWithoutIpIsToldToInstallIt) {
   say("");
-  expect_mend(found("can0"), Level::advice, "told nothing", "apt install iproute2");
+  expect_mend(found("can0"), Level::advice, "reported nothing", "apt install iproute2");
   say("Object \"link\" is unknown");
-  expect_mend(found("can0"), Level::advice, "told nothing", "iproute2");
+  expect_mend(found("can0"), Level::advice, "reported nothing", "iproute2");
 }
 
 }  // namespace hotfire::doctor

@@ -53,7 +53,7 @@ TEST(DoctorGpio, LineInUseOrMissingIsBad) {
 TEST(DoctorGpio, MachineWithoutGpioinfoIsToldToInstallIt) {
   patient.lines = {"estop"};
   files.said.clear();
-  expect_mend(found("lines"), Level::advice, "told nothing", "apt install gpiod");
+  expect_mend(found("lines"), Level::advice, "reported nothing", "apt install gpiod");
 }
 
 }  // namespace hotfire::doctor

@@ -82,8 +82,8 @@ void write_all(const fs::path& source, const fs::path& folder) {
       "(1.000000) can0 100#E8030000\n(1.001000) can0 18FEF1FE#0001010000004000\n(1.002000) can0 18FEF1FE#0002010000004000\n"
       "(1.003000) can0 18FEF1FE#0003010000004000\n(1.0035) can0 123##112\n(1.0036) can0 123#R\n");
   write(folder / "toml/model", "0" + model_text(ModelFile{}));
-  write(folder / "toml/vehicle", "1" + content_of(source / "docs/taos.toml"));
-  write(folder / "toml/profile", "2" + content_of(source / "docs/lab_profile.toml"));
+  write(folder / "toml/vehicle", "1" + content_of(source / "docs/samples/taos.toml"));
+  write(folder / "toml/profile", "2" + content_of(source / "docs/samples/lab_profile.toml"));
   write(folder / "toml/faults",
         "3schema = 1\n[[fault]]\nkind = \"leak\"\nactuator = 3\nfrom = 0.1\nto = 0.3\nvalue = 1e-9\n");
   write(folder / "toml/map",

@@ -161,7 +161,7 @@ TEST(Recording, HeaderThatLacksSomethingOrIsForeignIsRefusedWithTheReason) {
   refused("time[s],command[rad]\n", "no recording");
   refused(with("recording 2", "recording 1"), "another version");
   refused(start.substr(0, start.size() - 3), "cut off");
-  refused(without("period_ns 250000\n"), "lacks period_ns");
+  refused(without("period_ns 250000\n"), "period_ns, actuators, input or channel is missing");
   refused(with("actuators 2", "actuators 9"), "more of them than a plant can have");
   refused(with("actuators 2", "actuators two"), "\"actuators two\"");
   refused(with("start 0x1.999999999999ap-4\n", ""), "one line `start`");

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/simulate/excitation.hpp"
 #include "tools/simulate/simulate.hpp"

@@ -53,7 +53,7 @@ class Fmu {
   Fmu(const Fmu&) = delete;
   Fmu& operator=(const Fmu&) = delete;
 
-  /// Compiles the FMU's own sources as docs/fmu.md says, and uses that binary from now on.
+  /// Compiles the FMU's own sources as docs/interfaces/fmu.md says, and uses that binary from now on.
   void compile() {
     const std::string command = "cd " + (folder_ / "sources").string() +
                                 " && c++ -std=c++20 -O1 -ffp-contract=off -fPIC -shared -I. fmu.cpp -o ../own.so";

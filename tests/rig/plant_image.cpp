@@ -7,7 +7,7 @@
 
 #include "firmware/plant/reference_plant.hpp"
 #include "model/vehicle_keys.hpp"
-#include "tests/model/vehicles.hpp"
+#include "tests/model/support/vehicles.hpp"
 #include "tools/simulate/plant_image_text.hpp"
 
 namespace {

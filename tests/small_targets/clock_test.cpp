@@ -1,4 +1,4 @@
-#include "model/clock.hpp"
+#include "model/numerics/clock.hpp"
 
 #include <CppUTest/TestHarness.h>
 

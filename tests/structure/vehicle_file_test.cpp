@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/keys.hpp"
-#include "tests/model/plants.hpp"
+#include "tests/model/support/plants.hpp"
 #include "tests/structure/vehicle_texts.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -217,7 +217,7 @@ TEST(VehicleFile, ReadsItsModesFromTheTableBesideIt) {
 }
 
 TEST(VehicleFile, IsShippedAsAnExampleThatRuns) {
-  const VehicleFile shipped = load_vehicle(HOTFIRE_SOURCE_DIR "/docs/taos.toml");
+  const VehicleFile shipped = load_vehicle(HOTFIRE_SOURCE_DIR "/docs/samples/taos.toml");
   const Record run = simulate(shipped, commands({"command.pitch"}, 0.01));
   // Held by friction and ducts at its start, and by nothing else.
   DOUBLES_EQUAL(0.01, run.find("engine.pitch")->values.back(), 2e-3);

@@ -3,7 +3,7 @@
 #include <numbers>
 #include <type_traits>
 
-#include "model/effects/soft_stiffness.hpp"
+#include "model/effects/load/soft_stiffness.hpp"
 #include "model/keys.hpp"
 #include "tools/analysis/free_decay.hpp"
 #include "tools/files/text/error.hpp"

@@ -6,7 +6,7 @@
 
 namespace hotfire::analysis {
 
-/// Lengths of an engine's four strings [m] while it stands at known angles [rad].
+/// Lengths of an engine's four strings [m] while it is held at known angles [rad].
 struct SettledAngles {
   std::array<double, 4> lengths{};
   double pitch = 0.0;

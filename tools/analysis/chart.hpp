@@ -13,7 +13,7 @@ struct Curve {
   bool dots = false;  ///< points as dots, without a line
 };
 
-/// One panel of a chart. Panels stand below each other over the same abscissa.
+/// One panel of a chart. Panels are below each other over the same abscissa.
 struct Panel {
   std::string ordinate;  ///< "gain [dB]"
   std::vector<Curve> curves;

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/cli/commands.hpp"
+#include "tools/cli/shared/commands.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 
@@ -73,8 +73,9 @@ std::string typed_line(int argc, char** argv) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program{"Hotfire explains what a test record has and a declared model lacks, and runs the explained model.",
-                   "hotfire"};
+  CLI::App program{
+      "Hotfire identifies the effects that a declared model is missing, from test records, and runs the explained model.",
+      "hotfire"};
   program.set_version_flag("--version", HOTFIRE_VERSION);
   program.require_subcommand(1);
   program.footer(

@@ -104,11 +104,11 @@ class Interface {
     const std::string state = text(at(link_, {"linkinfo", "info_data", "state"}));
     if (state == "BUS-OFF") {
       add(Level::bad, "state", "bus-off",
-          "mend wiring, termination or bit rate, then: ip link set " + name_ + " type can restart");
+          "correct wiring, termination or bit rate, then: ip link set " + name_ + " type can restart");
     } else if (state == "ERROR-PASSIVE" || state == "ERROR-WARNING") {
       add(Level::advice, "state", state + ": many frames go wrong", "look at wiring, termination (60 ohm) and bit rate");
     } else {
-      add(Level::good, "state", state.empty() ? "not told by the driver" : state);
+      add(Level::good, "state", state.empty() ? "not reported by the driver" : state);
     }
   }
 
@@ -136,7 +136,7 @@ class Interface {
       add(Level::advice, "queue", fmt::format("{} frames long: what waits in it is old when it is sent", length),
           fmt::format("ip link set {} txqueuelen 10", name_));
     } else {
-      add(Level::good, "queue", fmt::format("{}, {} frames", discipline.empty() ? "not told" : discipline, length));
+      add(Level::good, "queue", fmt::format("{}, {} frames", discipline.empty() ? "not reported" : discipline, length));
     }
   }
 
@@ -178,7 +178,7 @@ std::vector<Finding> look_at_can(const Patient& patient) {
     }
     const Json links = Json::parse(patient.run("ip -details -statistics -json link show dev " + name), nullptr, false);
     if (!links.is_array() || links.empty()) {
-      findings.push_back({name, Level::advice, "`ip` told nothing of it", "apt install iproute2"});
+      findings.push_back({name, Level::advice, "`ip` reported nothing about it", "apt install iproute2"});
       continue;
     }
     const std::vector<Finding> own = Interface(name, links.front()).findings();

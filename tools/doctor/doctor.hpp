@@ -17,7 +17,7 @@ struct Finding {
   std::string check;  ///< "governor"
   Level level = Level::good;
   std::string what;  ///< what was found, with the value
-  std::string mend;  ///< the command or line that mends it; empty if good
+  std::string mend;  ///< the command or line that is the remedy; empty if good
 };
 
 /// What is to be looked at, and through which eyes.

@@ -62,7 +62,7 @@ std::vector<Finding> look_at_gpio(const Patient& patient) {
   if (!patient.lines.empty() && !chips.empty()) {
     const std::string info = patient.run("gpioinfo");
     if (info.empty()) {
-      findings.push_back({"lines", Level::advice, "`gpioinfo` told nothing", "apt install gpiod"});
+      findings.push_back({"lines", Level::advice, "`gpioinfo` reported nothing", "apt install gpiod"});
       return findings;
     }
     for (const std::string& name : patient.lines) {

@@ -17,7 +17,7 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Says which test would tell two effects apart, and leaves its command in the explanation.
+/// Says which test would separate two effects, and leaves its command in the explanation.
 template <class Family>
 void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const Fitted<Family>& explained,
                          const ExplainOptions& options, Explanation& explanation) {
@@ -45,8 +45,8 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
 }
 
 /// Refuses records in which a mass moves against its force. A servo is held to its declared model before the search
-/// (`refuse_impossible_channels`); a mass may rightly be anywhere without what its model lacks, so it is the end of a search
-/// that tells: nothing follows the mass, and with the force turned something does.
+/// (`refuse_impossible_channels`); a mass may rightly be anywhere without its missing effects, so it is the end of a search
+/// that decides: nothing follows the mass, and with the force turned something does.
 void refuse_turned_sign(const Dataset& data, const ModelFile& model, const SearchOptions& options,
                         const SearchResult<DirectFamily>& found) {
   constexpr double kFollowsMass = 50.0;  // percent of the motion

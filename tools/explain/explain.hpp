@@ -19,7 +19,7 @@ struct Explanation {
   nlohmann::json report;  ///< report.json, docs/report.md
   ReportSeries series;    ///< what the page draws
   ModelFile model;        ///< the explained model without faults of the records: what the rig runs next
-  /// The test that would tell a kept effect from its rival best, if they explain these records equally well.
+  /// The test that would best separate a kept effect from its rival, if they explain these records equally well.
   std::optional<NextExperiment> next_experiment;
 };
 

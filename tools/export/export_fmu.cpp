@@ -38,7 +38,7 @@ std::string identifier_of(const std::string& name) {
                                                                                                  : identifier;
 }
 
-/// A token that tells models apart: the same model has the same.
+/// A token that identifies a model: the same model has the same.
 std::string token_of(const std::string& plant_text, int version) {
   std::string digits;
   for (const char* half : {"first", "second"}) {

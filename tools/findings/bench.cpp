@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "model/effects/gimbal_compliance.hpp"
-#include "model/effects/gimbal_friction.hpp"
-#include "model/effects/soft_stiffness.hpp"
-#include "model/effects/valve_deadband.hpp"
+#include "model/effects/gimbal/gimbal_compliance.hpp"
+#include "model/effects/gimbal/gimbal_friction.hpp"
+#include "model/effects/load/soft_stiffness.hpp"
+#include "model/effects/valve/valve_deadband.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/findings/parameters.hpp"
 

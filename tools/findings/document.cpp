@@ -17,7 +17,7 @@ laboratory, and `core-stage`, one engine with two axes, at hot fire and, with `-
 to the published frequencies*; NASA's own values are not public. Each number there says where it comes from.
 
 Every finding can fail: `hotfire findings --mutants` runs it without the physics that it is about, and some figure must then
-be outside (`ctest -R findings_mutants`). What that is stands under each finding.
+be outside (`ctest -R findings_mutants`). Each finding names that physics.
 
 What is tuned, each number to one published figure and no figure twice:
 
@@ -37,7 +37,7 @@ What has to be given up, and why:
 - **The predicted pendulum of 7.5 to 8 Hz is not an independent figure.** The paper has it from finite elements without
   friction. Here it is the blow of F3 on a linear actuator, which the sticking bearing stiffens: without friction it is that
   of the sweep, 6.5 Hz.
-- **The empty vehicle and the unloaded gimbal are not told apart.** The papers name both as soft at ambient. Here the
+- **The empty vehicle and the unloaded gimbal are not separated.** The papers name both as soft at ambient. Here the
   attach points carry all of it; a bearing that is soft along the thrust would couple pitch and yaw into two notches each.
 - **F9 does not hold for the shipped friction.** The notch survives on a rigid gimbal with mu 0.08; it takes 0.18 to lose it.
 - **F12 and F15 hold roughly once the structure is more than a spring.** With 30 % of the load flexibility in modes the notch
@@ -45,7 +45,7 @@ What has to be given up, and why:
 
 )";
 
-/// A published number and the figure that stands for it.
+/// A published number and the figure that is compared with it.
 struct Published {
   std::string_view what;
   std::string_view published;

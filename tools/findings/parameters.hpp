@@ -57,7 +57,7 @@ struct GreenRun {
 };
 GreenRun green_run(const VehicleFile& model, const Record& record, const std::string& axis);
 
-/// A notch that a row stands or falls with [Hz].
+/// A notch that decides a row [Hz].
 double notch_of(const trials::ChannelSweep& sweep);
 
 /// Phase of a response at the point nearest to a frequency less that of another, within half a turn [deg].

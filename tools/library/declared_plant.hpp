@@ -17,7 +17,7 @@ struct DeclaredPlant {
 /// Reads a model file of any topology. Strings are where `hotfire simulate --seed` places them. Throws FileError.
 DeclaredPlant declared_plant(const std::filesystem::path& path, double period, unsigned seed);
 
-/// The same of the text of a model file; `path` stands for the file in messages, and a mode table is looked for beside it.
+/// The same of the text of a model file; `path` represents the file in messages, and a mode table is read from beside it.
 DeclaredPlant declared_plant(const std::string& text, const std::filesystem::path& path, double period, unsigned seed);
 
 /// The plant text of a declared plant (interface/plant/setup_text.hpp).

@@ -32,7 +32,7 @@ std::string as_text(std::string_view text) {
   return escaped;
 }
 
-/// JSON that can stand inside a script element: outside of a string JSON has no `<`, and inside one the escape means the
+/// JSON that can be inside a script element: outside of a string JSON has no `<`, and inside one the escape means the
 /// same, so nothing in it can close the element or open a comment. Bytes that are not UTF-8 become U+FFFD.
 std::string as_script_data(const nlohmann::json& data) {
   const std::string plain = data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -70,7 +70,7 @@ void check(const nlohmann::json& report) {
 void fill(std::string& page, std::string_view& rest, std::string_view place, std::string_view filling) {
   const std::size_t at = rest.find(place);
   if (at == std::string_view::npos) {
-    throw std::logic_error("report page: its template lacks a place to fill");
+    throw std::logic_error("report page: a place to fill is missing in its template");
   }
   page += rest.substr(0, at);
   page += filling;

@@ -87,7 +87,8 @@ class Excitation {
     return mean;
   }
 
-  /// Told half-way between rows, where a polynomial is furthest off, at no more than a thousand or two places of the record.
+  /// Estimated half-way between rows, where a polynomial is furthest off, at no more than a thousand or two places of the
+  /// record.
   static int nodes_needed(std::span<const double> values) {
     constexpr std::size_t kPlaces = 1000;
     int nodes = kFewestNodes;
@@ -116,7 +117,7 @@ class Excitation {
 
   std::span<const double> values_;
   Between between_;
-  int nodes_ = 0;  ///< neighbouring rows that a value between two of them is told from; none where it is held
+  int nodes_ = 0;  ///< neighbouring rows from which a value between two of them is interpolated; none where it is held
   std::vector<Weights> weights_;
 };
 

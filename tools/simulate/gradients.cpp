@@ -8,7 +8,7 @@
 #include <span>
 
 #include "model/keys.hpp"
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 #include "tools/simulate/open_loop.hpp"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "hal/arithmetic/denormals.hpp"
-#include "model/axis.hpp"
-#include "model/scalar.hpp"
+#include "model/actuator/axis.hpp"
+#include "model/numerics/scalar.hpp"
 #include "tools/simulate/excitation.hpp"
 
 namespace hotfire {

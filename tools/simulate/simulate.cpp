@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/open_loop.hpp"
 #include "tools/simulate/run.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/excitation.hpp"
 #include "tools/simulate/run.hpp"

@@ -32,7 +32,7 @@ Record simulate(const VehicleFile& model, const Record& inputs, const VehicleRun
 /// The moment arm of an axis, the one of its attach points at zero angles [m]. Throws UsageError for an axis it has not.
 double moment_arm_of(const VehicleFile& model, const std::string& axis);
 
-/// Where an axis stands among those of the model. Throws UsageError for an axis it has not.
+/// The index of an axis among those of the model. Throws UsageError for an axis it has not.
 std::size_t axis_index(const VehicleFile& model, const std::string& axis);
 
 }  // namespace hotfire

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "model/sensors/vehicle_sensors.hpp"
 #include "model/vehicle.hpp"
-#include "model/vehicle_sensors.hpp"
 #include "tools/interface/plant/normal.hpp"
 #include "tools/structure/vehicle_sensors.hpp"
 

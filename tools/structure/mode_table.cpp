@@ -66,7 +66,7 @@ int engine_of(std::string_view name) {
   return 0;
 }
 
-/// Where the columns of a table stand.
+/// The places of the columns of a table.
 struct Columns {
   int engines = 0;
   std::size_t mode = 0;

@@ -79,7 +79,7 @@ class Band {
     return largest_of(errors(alone));
   }
 
-  /// What the response of each attach point lacks without the dynamics of the modes that are `cut`.
+  /// What is missing in the response of each attach point without the dynamics of the modes that are `cut`.
   std::vector<double> errors(const std::vector<bool>& cut) const {
     std::vector<double> errors;
     errors.reserve(static_cast<std::size_t>(attach_points()));

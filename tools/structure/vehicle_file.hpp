@@ -36,7 +36,7 @@ struct VehicleFile {
 /// True for a TOML file whose topology is that of several axes, "taos" or "masv". Throws FileError if it cannot be read.
 bool is_vehicle(const std::filesystem::path& path);
 
-/// The same of the text of a model file; `path` stands for the file in messages.
+/// The same of the text of a model file; `path` represents the file in messages.
 bool is_vehicle(std::string text, const std::filesystem::path& path);
 
 /// Reads and checks a model file of several axes (contract.md). The parts and effects of `[servovalve]`, `[actuator]`,
@@ -55,7 +55,7 @@ bool is_vehicle(std::string text, const std::filesystem::path& path);
 /// another number of engines or with more modes than the plant has room for.
 VehicleFile load_vehicle(const std::filesystem::path& path);
 
-/// The same of the text of a model file; `path` stands for the file in messages, and a mode table is looked for beside it.
+/// The same of the text of a model file; `path` represents the file in messages, and a mode table is read from beside it.
 VehicleFile parse_vehicle(std::string text, const std::filesystem::path& path);
 
 /// The vehicle with another thrust of every engine [N]: what makes ambient and hot fire one file. Throws UsageError for one

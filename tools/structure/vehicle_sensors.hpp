@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/string_potentiometer.hpp"
+#include "model/sensors/string_potentiometer.hpp"
 #include "tools/files/text/toml_source.hpp"
 
 namespace hotfire {
@@ -25,12 +25,12 @@ struct VehicleSensors {
   Eigen::MatrixXd string_residual;
 };
 
-/// The table within `[sensors]` that holds the pistons' readout; what else stands there is noise of records, by axis.
+/// The table within `[sensors]` that holds the pistons' readout; what else is there is noise of records, by axis.
 inline constexpr std::string_view kPistonSensor = "piston";
 
 /// Reads `[sensors.piston]` and `[strings]` with `[strings.string1]` ... and, where an engine differs from the others,
 /// `[strings.string1.engine2]`. Throws FileError naming file, line, key, value and what is allowed: a value outside its
-/// bounds, an unknown string or engine, a string whose ends coincide, strings that cannot tell pitch from yaw.
+/// bounds, an unknown string or engine, a string whose ends coincide, strings that cannot distinguish pitch from yaw.
 /// The other keys of `[sensors]` are not looked at: load_vehicle refuses those that nobody knows.
 VehicleSensors read_vehicle_sensors(const TomlSource& source, int engines);
 

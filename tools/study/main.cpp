@@ -252,7 +252,7 @@ int run(int argc, char** argv) {
   add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
   add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
   add_study(program, "null", "Records in which nothing is missing", 40, null);
-  add_study(program, "two-axes", "Engines with two axes that lack something on one of them, or nothing", 1, two_axes);
+  add_study(program, "two-axes", "Engines with two axes, one with a missing effect or none", 1, two_axes);
   add_study(program, "hard", "Hard data: slow and fast rows, one record or ten, closed loop, faults of a channel, ...", 1,
             hard);
   add_study(program, "similarity", "Every listed effect as it is, and on a rig of 1/100 the size and ten times the speed", 1,

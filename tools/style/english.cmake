@@ -31,7 +31,7 @@ set(replaced_in_pages
   "looked for|searched for, checked")
 
 set(pages README.md CONTRIBUTING.md CHANGELOG.md examples/README.md)
-file(GLOB found RELATIVE ${ROOT} ${ROOT}/docs/*.md)
+file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/docs/*.md)
 list(APPEND pages ${found})
 # Pages that a program writes.
 list(REMOVE_ITEM pages docs/findings.md docs/performance.md)

@@ -1,4 +1,4 @@
-# Checks the arrows between the rooms, and that a file can be read in one sitting. The build runs it; by hand:
+# Checks the arrows between the rooms, and that a file and a folder can be read in one sitting. The build runs it; by hand:
 #   cmake -D ROOT=$PWD -P tools/style/layering.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -13,7 +13,7 @@ set(allowed_interface tools/interface model hal/arithmetic firmware/image)
 set(allowed_tests tests tools firmware model hal)
 
 include(${CMAKE_CURRENT_LIST_DIR}/rooms.cmake)
-# Files beside each other in one inner room.
+# Files beside each other in one folder, of any kind.
 set(most_files 20)
 
 # model/ has no operating system, clock, heap, lock or log: nothing beyond this list, and none of these words.
@@ -93,7 +93,7 @@ function(check_inner_arrows house file)
   endforeach()
 endfunction()
 
-function(check_room_size folder)
+function(check_folder_size folder)
   file(GLOB found LIST_DIRECTORIES false ${ROOT}/${folder}/*)
   list(LENGTH found count)
   if(count GREATER most_files)
@@ -102,7 +102,7 @@ function(check_room_size folder)
 endfunction()
 
 function(check_words file)
-  # Only what stands before a comment and outside of quotes.
+  # Only what is before a comment and outside of quotes.
   set(code "^([^\"/]|/[^\"/]|\"[^\"]*\")*")
   foreach(word IN LISTS model_words)
     file(STRINGS ${ROOT}/${file} lines REGEX "(^|[^A-Za-z0-9_])${word}([^A-Za-z0-9_]|$)")
@@ -145,9 +145,14 @@ foreach(house IN LISTS houses)
   foreach(file IN LISTS files)
     check_inner_arrows(${house} ${file})
   endforeach()
-  check_room_size(${house})
-  foreach(inner IN LISTS rooms_of_${house})
-    check_room_size(${house}/${inner})
+endforeach()
+
+foreach(room IN LISTS rooms ITEMS docs examples)
+  file(GLOB_RECURSE found LIST_DIRECTORIES true RELATIVE ${ROOT} ${ROOT}/${room}/*)
+  foreach(folder IN LISTS room found)
+    if(IS_DIRECTORY ${ROOT}/${folder})
+      check_folder_size(${folder})
+    endif()
   endforeach()
 endforeach()
 

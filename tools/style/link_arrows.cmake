@@ -46,7 +46,7 @@ function(check_link_arrows)
           if(TARGET ${library})
             room_of(${library} other)
             if(other AND NOT "${other}:${library}" MATCHES "${link_${room}}")
-              message(FATAL_ERROR "${target} of ${room}/ links ${library} of ${other}/, against the arrows of the house "
+              message(FATAL_ERROR "${target} of ${room}/ links ${library} of ${other}/, against the arrows between the folders "
                 "(see docs/architecture.md)")
             endif()
           endif()

@@ -2,7 +2,7 @@
 # may include. A file beside the rooms may include all of them; no room includes a file beside the rooms. Checked by
 # layering.cmake; drawn into docs/architecture.md by draw_rooms.cmake.
 
-set(houses tools/explain tools/files tools/study firmware tools/interface)
+set(houses model model/effects firmware tools/explain tools/files tools/study tools/interface tools/cli tests/model)
 
 # room(HOUSE NAME "what it is for" ROOM_BELOW...): rooms are declared from the lowest up.
 macro(room house name purpose)
@@ -10,6 +10,24 @@ macro(room house name purpose)
   set(below_${house}/${name} ${ARGN})
   set(purpose_of_${house}/${name} "${purpose}")
 endmacro()
+
+room(model numerics "scalars, exact steps of linear systems, delay lines, memories, roots; nothing about actuators")
+room(model declaration "how an effect declares itself: fields, sites, the list of effects" numerics)
+room(model friction "friction laws: Coulomb, Stribeck, Dahl, LuGre, in one direction and in two" declaration numerics)
+room(model structure "structural modes and the flexibility of a vehicle" numerics)
+room(model actuator "one hydraulic axis: its parameters, its states, its step" declaration numerics)
+room(model engine "the engine on its gimbal: attach points, moment arms, the bearing" friction declaration numerics)
+room(model effects "the effects, one file each" actuator friction structure declaration numerics)
+room(model sensors "string potentiometers and what else reads a vehicle" effects engine declaration numerics)
+
+room(model/effects command "effects on the command of the axis: scale, rate limit, delay")
+room(model/effects valve "effects in the servovalve: bias, hysteresis, dead band, asymmetry")
+room(model/effects actuator "effects in the cylinder: leakage, friction of the piston")
+room(model/effects load "effects between piston and engine: play, soft stiffness, moment arm, a structural mode")
+room(model/effects gimbal "torques on the engine: friction of the bearing, ducts, offset, the other axis")
+room(model/effects mass "forces on a mass of a `direct` model")
+room(model/effects sensor "effects in a sensor: scale, nonlinearity, lag, delay")
+room(model/effects unlisted "terms of unknown law: the grammar, tables, short laws" command)
 
 room(tools/explain data "records as the finder uses them: rows to fit, to hold out, to exclude; noise; start states")
 room(tools/explain fit "simulation error, exact gradients and the least-squares fit" data)
@@ -48,3 +66,16 @@ room(firmware report "what a run prints" session can text)
 room(tools/interface plant "a plant of any topology behind tables of variables: steps, state, derivatives")
 room(tools/interface c "the C interface and the reader of plant texts" plant)
 room(tools/interface fmu "the functions of FMI 2.0 and 3.0 for co-simulation" c plant)
+
+room(tools/cli shared "the list of commands, and options that several commands have")
+room(tools/cli files "commands that check or convert files: check, convert, import, export, header" shared)
+room(tools/cli model "commands that run or fit a model: simulate, explain, reduce" shared)
+room(tools/cli trials "commands for test profiles: sweep, step, stiffness, strings, disturbances, findings" shared)
+room(tools/cli rig "commands that start or prepare a real-time run: plant, lab, controller, replay, timing, doctor" shared)
+
+room(tests/model support "plants and vehicles for tests, and every effect with typical parameters")
+room(tests/model laws "one law at a time: memories, delay lines, friction, modes, string potentiometers" support)
+room(tests/model effects "laws that every effect obeys, run over the list of effects" support)
+room(tests/model plants "laws of whole plants: one axis, a driven mass, a vehicle" support)
+room(tests/model cvode "the model against the same equations integrated by CVODE" support)
+room(tests/model cost "instructions of a step, counted" cvode support)

@@ -1,4 +1,4 @@
-# Breaks each rule of safety_case.cmake once, in a scratch copy of what it reads, and expects to be told.
+# Breaks each rule of safety_case.cmake once, in a scratch copy of what it reads, and expects a fault.
 cmake_minimum_required(VERSION 3.25)
 
 function(copy_tree)

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/interface/plant/normal.hpp"
 #include "tools/simulate/run.hpp"

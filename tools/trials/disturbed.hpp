@@ -21,7 +21,7 @@ Record hammer(const ModelFile& model, const Hammer& blow);
 /// all axes. Throws UsageError for an axis the model has not.
 Record hammer(const VehicleFile& model, const std::string& axis, const Hammer& blow);
 
-/// How far a channel is from its first row: the swing about where the engine stood before a blow. Throws FileError for a
+/// How far a channel is from its first row: the swing about the engine's position before a blow. Throws FileError for a
 /// record without it.
 std::vector<double> swing(const Record& record, const std::string& channel);
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <type_traits>
 
-#include "model/effects/soft_stiffness.hpp"
+#include "model/effects/load/soft_stiffness.hpp"
 #include "model/keys.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"

@@ -53,7 +53,7 @@ std::vector<analysis::SettledAngles> settled_poses(const Record& record, const s
   const Channel* pitch = record.find("command.pitch" + engine);
   const Channel* yaw = record.find("command.yaw" + engine);
   if (pitch == nullptr && yaw == nullptr) {
-    require_channel(record, "command.pitch" + engine, "poses are told by the commands");
+    require_channel(record, "command.pitch" + engine, "the commands give the poses");
   }
   const auto at = [](const Channel* command, std::size_t row) { return command != nullptr ? command->values[row] : 0.0; };
   const auto moves = [&](std::size_t row) {

@@ -14,7 +14,7 @@ namespace hotfire::trials {
 struct SweepGoal {
   std::string axis = {};    ///< "pitch" for the channels command.pitch ...; empty for a record of one axis
   double moment_arm = 1.0;  ///< R [m]: the piston's gain is that of x_a / (R beta_c)
-  double lowest = 3.0;      ///< where notch and resonance are looked for [Hz]
+  double lowest = 3.0;      ///< where notch and resonance are searched for [Hz]
   double highest = 20.0;    ///< [Hz]
   double segment = 8.0;     ///< of Welch's method [s]
 };

@@ -109,7 +109,8 @@ TEST(CanMap, message_without_a_data_id_or_with_one_that_its_check_does_not_tell_
   expect_message(refused(with_ids(1, 65536)), {"rig.dbc:4: B: data id 65536"});
   expect_message(refused(with_ids(7, 7)), {"rig.dbc:4: B: data id 7", "from 7, that of A"});
   // 0x4301 and 0x5041 differ by a multiple of the check's polynomial.
-  expect_message(refused(with_ids(0x4301, 0x5041)), {"rig.dbc:4: B: data id 20545", "8 bits does not tell from 17153"});
+  expect_message(refused(with_ids(0x4301, 0x5041)),
+                 {"rig.dbc:4: B: data id 20545", "8 bits does not distinguish from 17153"});
   UNSIGNED_LONGS_EQUAL(2, read_can_map(with_ids(0x4301, 0x5071), "rig.dbc").messages.size());
 }
 

@@ -1,4 +1,4 @@
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 
 #include <CppUTest/TestHarness.h>
 

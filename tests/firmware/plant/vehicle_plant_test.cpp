@@ -9,7 +9,7 @@
 #include "hal/arithmetic/denormals.hpp"
 #include "hal/sim/manual_clock.hpp"
 #include "hal/sim/plant_bus.hpp"
-#include "tests/model/vehicles.hpp"
+#include "tests/model/support/vehicles.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::firmware {

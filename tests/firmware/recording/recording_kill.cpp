@@ -98,7 +98,7 @@ int run(const std::string& program, int times, unsigned seed) {
     }
   }
   std::filesystem::remove_all(folder);
-  std::printf("%d of %d killed plants left a recording that opens, replays and lacks at most its last second\n",
+  std::printf("%d of %d killed plants left a recording that opens, replays and is missing at most its last second\n",
               times - failed, times);
   return failed == 0 ? 0 : 1;
 }

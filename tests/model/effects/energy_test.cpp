@@ -6,7 +6,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "tests/model/effects/every_effect.hpp"
+#include "tests/model/support/every_effect.hpp"
 
 namespace hotfire::test {
 namespace {

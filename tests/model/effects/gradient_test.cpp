@@ -4,7 +4,7 @@
 #include <string>
 
 #include "model/keys.hpp"
-#include "tests/model/plants.hpp"
+#include "tests/model/support/plants.hpp"
 
 namespace hotfire::test {
 namespace {

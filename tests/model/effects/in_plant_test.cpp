@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tests/model/plants.hpp"
+#include "tests/model/support/plants.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::test {

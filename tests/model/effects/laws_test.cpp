@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "tests/model/effects/every_effect.hpp"
+#include "tests/model/support/every_effect.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::test {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace hotfire::study {

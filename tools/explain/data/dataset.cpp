@@ -27,7 +27,7 @@ void share_out(Experiment& experiment) {
   }
 }
 
-/// What a record may lack its user excludes: a value that still lacks is beside it.
+/// The user excludes rows whose values may be missing: a value that is missing elsewhere is an error.
 void require_values(const Channel& channel, const Experiment& experiment) {
   for (const Block& kept : without({{0, channel.values.size()}}, experiment.excluded)) {
     for (std::size_t row = kept.first; row < kept.last; ++row) {

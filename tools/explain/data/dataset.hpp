@@ -20,8 +20,8 @@ struct Experiment {
   double period = 0.0;
   std::vector<double> input;
   std::vector<double> torque;                 ///< measured, on the engine of a hydraulic axis alone [N m]; empty: none
-  std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record lacks the channel
-  std::vector<double> noise;                  ///< rms of the sensor noise by channel; 1 where the record lacks it
+  std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record does not have the channel
+  std::vector<double> noise;                  ///< rms of the sensor noise by channel; 1 where the record does not have it
   std::vector<double> zero_deviation;         ///< of the prior of each channel's zero (zeros.hpp); 0: the zero is known
   std::vector<Block> fitted;                  ///< rows that a fit sees
   std::vector<Block> held_out;                ///< rows that no fit sees
@@ -38,7 +38,7 @@ struct Experiment {
   std::vector<Block> scored() const;
 };
 
-/// Where the noise of a channel is known from: declared, estimated from the records, or a floor below which neither tells
+/// Where the noise of a channel is known from: declared, estimated from the records, or a floor below which neither applies
 /// anything (`noise_floor`).
 enum class NoiseSource { declared, estimated, floor };
 
@@ -60,8 +60,8 @@ struct Dataset {
 
 /// Puts records into the model's channels, estimates the noise of each record where it is not declared, and holds blocks out
 /// (`hold_out`). Over excluded rows channels are `bridged`; exclusions of other records have no meaning here.
-/// Throws FileError if a record lacks the input or has none of the model's channels, UsageError if an exclusion leaves
-/// nothing of a record.
+/// Throws FileError if a record does not have the input or has none of the model's channels, UsageError if an exclusion
+/// leaves nothing of a record.
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
 

@@ -36,7 +36,7 @@ std::vector<double> bridged(std::vector<double> values, const std::vector<Block>
 /// The values that are in no excluded stretch.
 std::vector<double> kept_rows(const std::vector<double>& values, const std::vector<Block>& excluded);
 
-/// Whether a channel lacks a value.
+/// Whether a value of a channel is missing.
 bool is_missing_somewhere(const Channel& channel);
 
 /// A command as the plant had it: where it is missing it holds. Throws FileError for one that is missing from the start.

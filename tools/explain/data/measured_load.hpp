@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "model/sites.hpp"
+#include "model/declaration/sites.hpp"
 #include "tools/explain/data/dataset.hpp"
 
 namespace hotfire::explain {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/axis.hpp"
-#include "model/geometry.hpp"
+#include "model/actuator/axis.hpp"
+#include "model/engine/geometry.hpp"
 
 namespace hotfire::explain {
 

@@ -14,7 +14,7 @@ std::vector<double> strongest_frequencies(const Dataset& data,
                                           const std::vector<std::vector<std::vector<double>>>& prediction,
                                           std::size_t channel, std::size_t count);
 
-/// Each of the frequencies, moved within a bin of that spectrum to where a sinusoid tells most of what is left of the
+/// Each of the frequencies, moved within a bin of that spectrum to where a sinusoid explains most of what is left of the
 /// channel on the rows that a fit sees, its phase free in every record (periodogram over whole records, Schuster 1898): a
 /// fit from a frequency that gains or loses half a cycle over a record would not find it.
 std::vector<double> sharpened_frequencies(const Dataset& data,

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/simulate/run.hpp"
 
 namespace hotfire::explain {

@@ -7,7 +7,7 @@
 
 namespace hotfire::explain {
 
-/// Where a force-driven mass is at the first row of a record, told from its first rows, with standard errors.
+/// Where a force-driven mass is at the first row of a record, estimated from its first rows, with standard errors.
 struct StartState {
   double position = 0.0;
   double velocity = 0.0;
@@ -19,9 +19,9 @@ struct StartState {
 };
 
 /// Least squares of the first twenty rows on the declared mass: initial position, initial velocity and a constant force that
-/// stands for what the declared model lacks over so short a time (friction, an offset). The declared mass without effects is
-/// linear, so its response to each is exact. `noise` is the rms of the position's sensor noise; where the fit is worse than
-/// that, the standard errors grow with it.
+/// represents what is missing in the declared model over so short a time (friction, an offset). The declared mass without
+/// effects is linear, so its response to each is exact. `noise` is the rms of the position's sensor noise; where the fit is
+/// worse than that, the standard errors grow with it.
 StartState start_state(const DirectParameters& parameters, std::span<const double> force, std::span<const double> position,
                        double period, double noise);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/simulate/run.hpp"
 
@@ -11,7 +11,7 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Longer has to tell this much more to be worth it.
+/// A longer profile has to separate them by this much more to be worth it.
 constexpr double kWorthTheTime = 1.05;
 
 /// Rms difference over noise of the largest used channel; zero if one of them can't be simulated.

@@ -17,7 +17,7 @@ struct Rival {
   Fitted<Family> model;  ///< with `other` in the place of `kept`
 };
 
-/// The test that tells two models of the same rig apart.
+/// The test that separates two models of the same rig.
 struct NextExperiment {
   std::string words;        ///< TestProfile::words
   double separation = 0.0;  ///< rms of the difference of what they predict over the sensor noise, largest channel

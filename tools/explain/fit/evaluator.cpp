@@ -11,7 +11,7 @@
 #include <memory>
 #include <numeric>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/fit/parallel.hpp"
 

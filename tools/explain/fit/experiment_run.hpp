@@ -11,7 +11,7 @@
 
 namespace hotfire::explain {
 
-/// Where an experiment starts, as far as it is not told by its first command.
+/// Where an experiment starts, as far as its first command does not say.
 template <class S>
 struct Start {
   std::array<S, 3> values{S(0.0), S(0.0), S(0.0)};  ///< position, velocity, clock: FreeParameter::state

@@ -90,7 +90,7 @@ class SimulationError : public ceres::CostFunction {
     return true;
   }
 
-  /// Drops derivatives that were not taken where the fit stands. False if they were.
+  /// Drops derivatives that were not taken at the fit's current point. False if they were.
   bool renew() {
     if (!tangent_.is_borrowed_at(simulated_at(fitted_.u))) {
       return false;

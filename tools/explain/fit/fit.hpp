@@ -10,11 +10,11 @@
 namespace hotfire::explain {
 
 /// How far the residuals of each channel are inflated against sensor noise: one sample of channel c counts as 1/temper[c]
-/// samples of noise. A model that lacks an effect leaves residuals that are large and coloured; without this they would
+/// samples of noise. A model with a missing effect leaves residuals that are large and coloured; without this they would
 /// press declared parameters through their tolerances. 1 where the model reaches the noise.
 ///
-/// What a model lacks is beside the noise of a record, not times it: with t = (temper - 1) times the channel's mean noise
-/// variance over all records, a sample of a record of noise v counts as v^2 / (v^2 + t) samples of its noise.
+/// What is missing in a model is beside the noise of a record, not times it: with t = (temper - 1) times the channel's mean
+/// noise variance over all records, a sample of a record of noise v counts as v^2 / (v^2 + t) samples of its noise.
 using Temper = std::vector<double>;
 
 /// A parameterised model at a point, and how it fits.

@@ -42,14 +42,13 @@ double information_criterion(const std::vector<ChannelFit>& part, const std::vec
 std::vector<double> residual_of(const Experiment& experiment, const std::vector<double>& predicted, std::size_t channel,
                                 Block block);
 
-/// Measured minus predicted on the rows of one record that are compared; empty where the record lacks the channel.
+/// Measured minus predicted on the rows of one record that are compared; empty where the record does not have the channel.
 std::vector<double> scored_residual(const Experiment& experiment, const std::vector<std::vector<double>>& predicted,
                                     std::size_t channel);
 
-/// What of the residual on all rows is not sensor noise: its rms over the noise, where the noise is told from the residual's
-/// own third differences, record by record, or as large as was declared (or the floor) if that is more: third differences do
-/// not see slow noise. Zero where
-/// the model reaches the noise, even if less was declared.
+/// What of the residual on all rows is not sensor noise: its rms over the noise, where the noise is estimated from the
+/// residual's own third differences, record by record, or as large as was declared (or the floor) if that is more: third
+/// differences do not see slow noise. Zero where the model reaches the noise, even if less was declared.
 double excess_over_noise(const Dataset& data, const Prediction& prediction, std::size_t channel);
 
 /// The largest of it over all channels.

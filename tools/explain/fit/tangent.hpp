@@ -9,9 +9,9 @@
 
 namespace hotfire::explain {
 
-/// Residuals along the way of a fit, with derivatives that are taken anew only where they no longer hold: a simulation with
+/// Residuals along the way of a fit, with derivatives that are taken again only where they no longer hold: a simulation with
 /// derivatives costs as much as a dozen without. Exact ones hold as long as the residuals have moved as they said; wide ones
-/// over the width of their differences, within which they tell nothing finer.
+/// over the width of their differences, within which they resolve nothing finer.
 template <class Family>
 class Tangent {
  public:
@@ -30,7 +30,7 @@ class Tangent {
   bool is_borrowed_at(std::span<const double> u) const {
     return !std::equal(u.begin(), u.end(), taken_at_.begin(), taken_at_.end());
   }
-  /// Takes them anew at the next call.
+  /// Takes them again at the next call.
   void forget() { taken_at_.clear(); }
 
   /// What the last call found: over noise, on the rows a fit sees.

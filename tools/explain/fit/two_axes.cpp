@@ -6,7 +6,7 @@
 #include <atomic>
 #include <span>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/explain/data/smoothing.hpp"
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/files/text/error.hpp"

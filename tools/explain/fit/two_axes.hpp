@@ -22,7 +22,7 @@ struct AxisOfTwo {
 using TwoAxes = std::array<AxisOfTwo, 2>;
 
 /// Splits a model and its records into the axes. Throws FileError for what the finder does not take (explain.hpp), for a
-/// record without any command, and for one that lacks the channels of an axis that another record has.
+/// record without any command, and for one without the channels of an axis that another record has.
 TwoAxes axes_of(const VehicleFile& vehicle, const std::vector<Record>& records, const std::vector<Exclusion>& exclusions);
 
 /// What the model of both axes together says of every record, by axis.
@@ -36,7 +36,7 @@ struct CoupledRun {
 std::optional<CoupledRun> run_coupled(const TaosParameters& parameters, const TwoAxes& axes, unsigned threads);
 
 /// Puts each axis beside the motion of the other: as simulated, and corrected by what the other's measured angle says below
-/// about 12 Hz, so that it is right whatever the other axis lacks.
+/// about 12 Hz, so that it is right whatever is missing in the other axis.
 void put_beside(const CoupledRun& run, TwoAxes& axes);
 
 }  // namespace hotfire::explain

@@ -27,7 +27,7 @@ struct Signals {
   Series output;
 };
 
-/// A hydraulic axis has a zero of its own, which a constant takes up; a mass starts where it stands.
+/// A hydraulic axis has a zero of its own, which a constant takes up; a mass starts where it is.
 bool has_zero(const Experiment& experiment, std::size_t channel) { return experiment.zero_deviation[channel] > 0.0; }
 
 /// Mean of a series over the rows that a fit sees.
@@ -109,7 +109,7 @@ bool is_stable(const Series& a) {
   return companion.eigenvalues().cwiseAbs().maxCoeff() <= 1.0 + kRounding;
 }
 
-/// One least-squares pass on signals that were put through 1 / `poles`. Nothing if they do not tell the coefficients.
+/// One least-squares pass on signals that were put through 1 / `poles`. Nothing if they do not determine the coefficients.
 std::optional<LinearModel> least_squares(const std::vector<Signals>& all, std::size_t order, std::size_t delay,
                                          const Series& poles) {
   const auto size = static_cast<Eigen::Index>(2 * order);

@@ -33,7 +33,7 @@ struct BlackBox {
 BlackBox black_box(const Dataset& data);
 
 /// What it predicts of records of the same rig, from the steady state under their first input, or for a force-driven mass
-/// from where it stands; with the zeros that `add_zeros` gives them. `data` is thinned to its period.
+/// from where it is; with the zeros that `add_zeros` gives them. `data` is thinned to its period.
 Prediction simulated(const BlackBox& box, const Dataset& data);
 
 /// The records as a black box sees them.

@@ -13,15 +13,15 @@ namespace hotfire::explain {
 
 namespace {
 
-/// A quantity is told where its factors are not if its deviation is below this share of each factor's.
+/// A quantity is identified where its factors are not if its deviation is below this share of each factor's.
 constexpr double kBetterThanFactors = 0.5;
-/// A declared parameter is told by the data if it is known to less than this share of its tolerance.
+/// A declared parameter is identified by the data if it is known to less than this share of its tolerance.
 constexpr double kTold = 0.9;
-/// Correlation from which two parameters are not told apart: either is known to a third of its deviation if the other is
+/// Correlation from which two parameters are not separated: either is known to a third of its deviation if the other is
 /// given.
 constexpr double kAlike = 0.95;
 
-/// A quantity of the plant of which the data may tell more than of its factors.
+/// A quantity of the plant that the data may identify better than its factors.
 template <class Family>
 struct Combination {
   std::string name;
@@ -134,7 +134,7 @@ class Identifiability {
     return covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
   }
 
-  /// The parameters that are not told from one of the others in the group, directly or by way of each other.
+  /// The parameters that are not separated from one of the others in the group, directly or by way of each other.
   std::vector<std::size_t> group_about(std::size_t first, std::set<std::size_t>& left) const {
     std::vector<std::size_t> group{first};
     left.erase(first);

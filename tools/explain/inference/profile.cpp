@@ -18,7 +18,7 @@ namespace {
 constexpr double kRise = 3.841459;
 /// The error is taken for a parabola where it rises by this factor more or less.
 constexpr double kLikeAParabola = 1.3;
-/// An end is found where the error rises to within this of what it should; the interval is then told to 2 %.
+/// An end is found where the error rises to within this of what it should; the interval is then known to 2 %.
 constexpr double kFound = 0.15;
 constexpr int kMostTrials = 8;
 /// Steps in which the other parameters are fitted again, until one lowers the error by less than `kFitted`.

@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "model/effects/term.hpp"
+#include "model/effects/unlisted/term.hpp"
 #include "tools/explain/latent/latent_input.hpp"
 
 namespace hotfire::explain {
 
-/// A term of the grammar (model/effects/term.hpp) up to its linear coefficients: where it acts, and what it is a law of.
+/// A term of the grammar (model/effects/unlisted/term.hpp) up to its linear coefficients: where it acts, and what it is a
+/// law of.
 struct Form {
   model::Site site = model::Site::command;
   int channel = -1;  ///< of a sensor's reading
@@ -21,7 +22,7 @@ struct Form {
   std::vector<double> points{};  ///< of the curve, or the widths of the stops; none: a gain
 
   bool is_stops() const { return memory.kind == model::Memory::stops; }
-  /// The argument itself stands beside its memory, as the last regressor.
+  /// The argument itself is beside its memory, as the last regressor.
   bool has_direct() const { return memory.kind != model::Memory::none; }
   /// Without points, and of stops with theirs, the curve is no function over its points.
   bool has_curve() const { return !points.empty() && !is_stops(); }

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <memory>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/fit/parallel.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "model/sites.hpp"
+#include "model/declaration/sites.hpp"
 #include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/fit/parallel.hpp"
 

@@ -7,7 +7,7 @@
 
 namespace hotfire::explain {
 
-/// A place where an unknown signal may act, and what it explains there. Its sites cannot be told apart by any signal: a law
+/// A place where an unknown signal may act, and what it explains there. No signal separates its sites: a law
 /// decides between them.
 struct Place {
   std::vector<std::string> sites;  ///< "load_spring", "structure"
@@ -30,8 +30,8 @@ struct Located {
   std::vector<std::string> likely_sites() const;
 };
 
-/// Tries an unknown signal at every place beside a fitted model. It knows no law: which place explains most is told by the
-/// likelihood of the records alone. Records of more than 200,000 rows together are thinned to as many: the filter keeps
+/// Tries an unknown signal at every place beside a fitted model. It knows no law: which place explains most is decided by
+/// the likelihood of the records alone. Records of more than 200,000 rows together are thinned to as many: the filter keeps
 /// about a kilobyte a row.
 Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads);
 

@@ -42,7 +42,7 @@ ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, 
 }
 
 /// The explained model as a rig runs it: what is a fault of the records and not of the plant is left out. What drifted over
-/// the time of a record stands at its mean, since another run has another clock; unless `keep_drift`.
+/// the time of a record is set to its mean, since another run has another clock; unless `keep_drift`.
 template <class Family>
 PlainParameters<Family> plant_of(const SearchResult<Family>& found, bool keep_drift) {
   const Fitted<Family>& fitted = found.explained.model;

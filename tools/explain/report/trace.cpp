@@ -103,7 +103,7 @@ std::vector<LeftOver> left_over(const Experiment& experiment, const DirectParame
            {{"velocity", "position/time", velocity}, {"position", "position", x}}}};
 }
 
-/// Share of the variance of y that the mean of y over equal-count bins of x tells.
+/// Share of the variance of y that the mean of y over equal-count bins of x explains.
 double correlation_ratio(const Series& x, const Series& y) {
   constexpr std::size_t kBins = 40;
   std::vector<std::size_t> order(x.size());

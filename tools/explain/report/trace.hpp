@@ -15,14 +15,14 @@ struct Quantity {
   std::vector<double> values;
 };
 
-/// The term that the equations lack, told from the measured channels alone: what the model's equation at one place leaves
-/// over when measured motion is put in.
+/// The term that is missing in the equations, computed from the measured channels alone: what the model's equation at one
+/// place leaves over when measured motion is put in.
 struct Trace {
   std::string equation;  ///< "engine", "flow", "mass"
   Quantity missing;
   double signal_to_noise = 0.0;  ///< rms over the rms that sensor noise alone would give
-  Quantity depends_on;           ///< of the quantities looked at, the one that tells most of it
-  double share = 0.0;            ///< share of the missing term's variance that it tells (correlation ratio)
+  Quantity depends_on;           ///< of the quantities examined, the one that explains most of it
+  double share = 0.0;            ///< share of the missing term's variance that it explains (correlation ratio)
 };
 
 /// Reconstructs the missing term of every equation whose quantities are measured, loudest against noise first. Motion is

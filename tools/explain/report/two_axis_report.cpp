@@ -34,7 +34,7 @@ void add_rows(const json& own, const std::string& axis, json& all) {
   }
 }
 
-/// Texts that every axis has are told once, others with their axis.
+/// Texts that every axis has are given once, others with their axis.
 json joined_texts(const std::vector<AxisReport>& reports, const char* key) {
   json texts = json::array();
   for (const AxisReport& own : reports) {

@@ -16,7 +16,7 @@ struct AxisReport {
 
 /// One report.json of both: channels and declared parameters with their axis ("piston.pitch", "engine.pitch.inertia"), every
 /// effect and every line of the search with an "axis", the verdict of the axis that is the worse explained, and what is said
-/// of one axis only told with its name.
+/// of one axis only given with its name.
 nlohmann::json joined_report(const std::vector<AxisReport>& reports);
 
 /// The "channels" of both under their names with the axis; all else as the first has it.

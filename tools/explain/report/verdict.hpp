@@ -17,7 +17,7 @@ bool is_of_record_time(const Candidate& candidate);
 template <class Family>
 std::string verdict_of(const Dataset& data, const SearchResult<Family>& found);
 
-/// What was found, in one sentence or two. Errors stand in times of the noise where that is known of every channel.
+/// What was found, in one sentence or two. Errors are in times of the noise where that is known of every channel.
 template <class Family>
 std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found, bool noise_is_known = true);
 

@@ -18,7 +18,7 @@ constexpr double kFollows = 0.9;
 constexpr double kRunsAgainst = -0.5;
 /// A smaller error of scale is found as `sensor_scale`; friction that holds an engine back does not reach this.
 constexpr double kLargestRatio = 5.0;
-/// How near a ratio has to be to that of two units to be told as such.
+/// How near a ratio has to be to that of two units to be reported as such.
 constexpr double kUnitMatch = 0.15;
 /// Times the noise that the larger of measured and predicted motion has to be, and the smaller: below that a correlation
 /// says nothing.
@@ -74,7 +74,7 @@ std::string unit_hint(double ratio) {
   return {};
 }
 
-/// How one channel of a record moves against its prediction; neither is set where both are too small to tell.
+/// How one channel of a record moves against its prediction; neither is set where both are too small to compare.
 struct Comparison {
   std::size_t channel = 0;
   double correlation = 0.0;

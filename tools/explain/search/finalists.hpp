@@ -27,7 +27,7 @@ inline constexpr double kLargerThanNoise = 1.0;
 /// A further effect has to leave less than this share of the mean square beyond noise, once that is below the noise's.
 inline constexpr double kClearsUp = 2.0 / 3.0;
 /// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise
-/// itself is told to one or two percent, which is as much.
+/// itself is known to one or two percent, which is as much.
 inline constexpr double kNothingLeft = 0.2;
 
 /// Sets how a model does against another, on given effective samples.

@@ -25,8 +25,8 @@ constexpr double kHighestRipple = 3.0;
 /// Rough steps serve where they change the residuals of every channel by less than this share of them. They are shifted by
 /// that change, and what is left of it is the square of a share.
 constexpr double kLostToSteps = 0.5;
-/// Places on the way that screening moves what was free before, the whole way first. It stands unless it leaves more than so
-/// many times what another leaves: what little a linear move misses is for the fit.
+/// Places on the way that screening moves what was free before, the whole way first. It is kept unless it leaves more than
+/// so many times what another leaves: what little a linear move misses is for the fit.
 constexpr std::array kSharesOfMove{1.0, 0.5, 0.25, 0.0};
 constexpr double kMovedTooFar = 2.0;
 

@@ -50,12 +50,13 @@ class Refiner {
 
   /// An effect by each of its laws that have more parameters, from the typical values of those beside what the model was
   /// calibrated to with the simpler law. Screening ranks the laws beside a calibration without the effect, from which the
-  /// one that is right may look no better than one that it contains. Those that are better; none if the model lacks nothing.
+  /// one that is right may look no better than one that it contains. Those that are better; none if nothing is missing in
+  /// the model.
   std::vector<OfLaw<Family>> of_richer_laws(int round, const Assessed<Family>& winner, const Candidate& candidate) const;
 
-  /// Where the data leave a parameter of the winner's law open, or do not tell it from an end of its range, a law without
-  /// that parameter, started from the winner's values, takes its place if the BIC is no worse. Sets `candidate` to the law
-  /// that stays.
+  /// Where the data leave a parameter of the winner's law open, or do not separate it from an end of its range, a law
+  /// without that parameter, started from the winner's values, takes its place if the BIC is no worse. Sets `candidate` to
+  /// the law that stays.
   Assessed<Family> by_simplest_law(Assessed<Family> winner, Candidate& candidate) const;
 
   /// Without an effect, the others fitted again from where they are; over the ripples too, if that ends near the noise.

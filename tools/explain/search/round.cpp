@@ -181,7 +181,7 @@ void Round<Family>::rank() {
 }
 
 /// The best finalist, by the simplest of its laws and under fine steps where it may be the last, with which all others are
-/// compared once more. One that is not supported as it was ranked rarely is under fine steps: a short fit tells.
+/// compared once more. One that is not supported as it was ranked rarely is under fine steps: a short fit is enough.
 template <class Family>
 Assessed<Family> Round<Family>::winner() {
   Assessed<Family> winner = finalists_[*best_];
@@ -220,7 +220,7 @@ RoundResult<Family> Round<Family>::undecided() {
   return result;
 }
 
-/// The closest of the other finalists, fitted as well as the winner was, if the data do not tell the two apart.
+/// The closest of the other finalists, fitted as well as the winner was, if the data do not separate the two.
 template <class Family>
 std::optional<Rival<Family>> Round<Family>::rival_of(const Kept& kept) const {
   for (const Trial& other : kept.alternatives) {

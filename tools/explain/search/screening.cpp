@@ -24,7 +24,7 @@ constexpr std::size_t kFrequencies = 3;
 /// Names that go on to the full fit, starts of an effect with several parameters, and the lengths of the fits.
 constexpr std::size_t kSemifinalists = 6;
 /// Behind the first names, one goes on only with this share of the leader's gain, and a law only with this share of its
-/// name's best: what is missing beside the leader is looked for again when that is in the model.
+/// name's best: what is missing beside the leader is searched for again when that is in the model.
 constexpr std::size_t kFirstNames = 3;
 constexpr double kHopeful = 0.1;
 /// A law with more parameters of its own is not scanned: it starts from where the laws that it contains end.

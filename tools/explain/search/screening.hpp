@@ -24,7 +24,7 @@ struct Screened {
   bool scanned = true;  ///< false: still waits for a law that it contains, to start from there
 };
 
-/// How a search tells what it is doing, and is told to stop.
+/// How a search reports what it is doing, and how it is stopped.
 struct Watch {
   std::function<void(const std::string&)> progress = [](const std::string&) {};
   std::function<bool()> interrupted = [] { return false; };
@@ -73,7 +73,7 @@ class Screening {
   Screened<Family> start(const Candidate& candidate, const std::vector<std::vector<double>>& sharpened) const;
   void start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
                            const Watch& watch) const;
-  /// Fits on from where a candidate stands, as a stage does.
+  /// Continues the fit of a candidate, as a stage does.
   void improve(Screened<Family>& screened, Stage stage) const;
   Eigen::VectorXd residuals_at_frozen(const Fitted<Family>& fitted) const;
   double eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const;

@@ -20,7 +20,7 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Rows no closer than this tell candidates apart [s]: the fastest that an axis does in its sensors is tens of hertz.
+/// Rows no closer than this separate candidates [s]: the fastest that an axis does in its sensors is tens of hertz.
 constexpr double kRankingPeriod = 2e-3;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
 /// were thinned by.
@@ -168,7 +168,7 @@ class Search {
   }
 
   /// What was found under fine steps, and over ripples: a model may reach the noise in a ripple of its error beside the one
-  /// where nothing is left. The records in hand hardly tell, but a motion beyond them would.
+  /// where nothing is left. The records in hand hardly show it, but a motion beyond them would.
   void settle() {
     options_.watch.progress("fitting what was found with fine steps and over ripples");
     if (!is_settled_) {
@@ -219,7 +219,7 @@ class Search {
   }
 
   /// Whether what explained the records as well as an effect that was kept before still does with the later ones: it may be
-  /// told from it now, either way.
+  /// separated from it now, either way.
   void compare_with_earlier_rival(const Rival<Family>& rival) {
     const auto kept =
         std::ranges::find_if(result_.kept, [&](const Kept& k) { return k.trial.candidate.effect == rival.kept.effect; });

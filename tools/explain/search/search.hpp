@@ -22,7 +22,7 @@ struct SearchResult {
   std::optional<Rival<Family>> rival;  ///< of an effect that is kept, the last if that has one
   Located located;                     ///< where what the explained model is still missing acts; no places where nothing is
   Intervals profiles;                  ///< of the explained model's parameters whose error is no parabola
-  bool searched = true;                ///< effects were looked for
+  bool searched = true;                ///< effects were searched for
   bool interrupted = false;
 
   /// Number of the next round, under which its trials are filed.

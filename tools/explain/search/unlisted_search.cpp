@@ -31,7 +31,7 @@ void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<
 
 /// Terms of the grammar that are fitted jointly, of those that were proposed: one of every site, or two of one.
 constexpr std::size_t kTermFinalists = 2;
-/// A term at another site is not told from the best where it leaves less than this many times as much, or no more than
+/// A term at another site is not separated from the best where it leaves less than this many times as much, or no more than
 /// noise.
 constexpr double kTiedSites = 1.5;
 /// Where a term of the grammar leaves less than this share of the held-out error, tables at the same sites are not tried.
@@ -130,7 +130,7 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
   }
 }
 
-/// Marks the terms at other sites that the records do not tell from the best.
+/// Marks the terms at other sites that the records do not separate from the best.
 template <class Family>
 void mark_tied_sites(UnlistedSearch<Family>& result) {
   const double most = std::max(kLargerThanNoise, kTiedSites * result.left[*result.best]);

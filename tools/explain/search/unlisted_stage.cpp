@@ -24,7 +24,7 @@ constexpr double kAdvantageOverSameCurve = 0.5;
 /// Held-out data agree that a model leaves clearly less where their error is below this share: from 1 to 0.7 of the noise
 /// beyond it is 0.87 of the whole.
 constexpr double kHeldOutAgrees = 0.9;
-/// A model that leaves less than this many times the noise is near enough to it for its names to stand.
+/// A model that leaves less than this many times the noise is near enough to it for its names to be kept.
 constexpr double kNearNoise = 3.0;
 /// A name beside a term of unknown law has to carry its weight: without it the held-out error grows by this factor.
 constexpr double kWeightOfName = 1.3;
@@ -137,7 +137,7 @@ void UnlistedStage<Family>::refuse_misplaced_names() {
   }
 }
 
-/// Looks for a term of unknown law instead of the listed effects: once, since it is looked for beside the calibrated model.
+/// Searches for a term of unknown law instead of the listed effects: once, since it is beside the calibrated model.
 template <class Family>
 void UnlistedStage<Family>::look_instead() {
   if (!instead_) {

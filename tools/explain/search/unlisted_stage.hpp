@@ -17,8 +17,8 @@ class UnlistedStage {
                 const SearchOptions& options, SearchResult<Family>& result)
       : data_(data), refiner_(refiner), coarse_(coarse), scales_(scales), options_(options), result_(result) {}
 
-  /// Ends a search early: where the names so far explain little and one term of unknown law lacks nothing, it takes their
-  /// place.
+  /// Ends a search early: where the names so far explain little and one term of unknown law leaves only noise, it takes
+  /// their place.
   void replace_names_that_explain_little();
 
   /// The end of a search: names that the located place refutes are taken out; a term of unknown law takes the place of the
@@ -54,7 +54,7 @@ class UnlistedStage {
   const SearchOptions& options_;
   SearchResult<Family>& result_;
   std::optional<Located> located_;                 ///< about the calibrated model, once it was asked for
-  std::optional<UnlistedSearch<Family>> instead_;  ///< beside the calibrated model, once it was looked for
+  std::optional<UnlistedSearch<Family>> instead_;  ///< beside the calibrated model, once it was searched for
   std::size_t instead_trials_ = 0;                 ///< where its trials are among all
 };
 

@@ -14,10 +14,10 @@ constexpr double kImmaterialExcess = 0.5;
 /// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
 /// is left then is of the noise's own size, and there is nothing in it to be named.
 constexpr double kImmaterialWhereChaotic = 1.5;
-/// A declared parameter that is further from its declaration than this many tolerances stands in for something: odds of one
-/// in a million if the tolerance is right, one in eighty if it was told half as large as it is.
+/// A declared parameter that is further from its declaration than this many tolerances compensates for something: odds of
+/// one in a million if the tolerance is right, one in eighty if it was declared half as large as it is.
 constexpr double kFarthestFromDeclared = 5.0;
-/// Change of the logarithm of a temper below which it stands.
+/// Change of the logarithm of a temper below which it has converged.
 constexpr double kTemperStands = 0.2;
 /// A fit that ran out of iterations goes on where its last pass left less than this share of the error.
 constexpr double kStillFalling = 0.95;

@@ -37,7 +37,7 @@ inline constexpr Effort kAllRows{16, 1, 1e-5};                    ///< a small m
 template <class Family>
 Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted);
 
-/// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper stands, assessed
+/// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper converges, assessed
 /// under fine steps on every row. Not good() if the start or the end can't be simulated.
 template <class Family>
 Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
@@ -56,11 +56,11 @@ struct Moved {
 template <class Family>
 Moved farthest_from_declared(const Fitted<Family>& model);
 
-/// True if no declared parameter had to go so far from its declaration that it stands in for something.
+/// True if no declared parameter had to go so far from its declaration that it compensates for something.
 template <class Family>
 bool is_within_tolerances(const Fitted<Family>& model);
 
-/// True if a model reaches the noise within its tolerances: there is nothing to be looked for.
+/// True if a model reaches the noise within its tolerances: there is nothing to search for.
 template <class Family>
 bool lacks_nothing(const Dataset& data, const Assessed<Family>& assessed);
 
@@ -79,7 +79,7 @@ void drop_parameters(Fitted<Family>& model, F&& unwanted) {
 template <class Family>
 Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate);
 
-/// A model with its declared parameters as declared, the effects where they are: a calibration that had to stand in for a
+/// A model with its declared parameters as declared, the effects where they are: a calibration that had to compensate for a
 /// missing effect is further from the truth than the declaration.
 template <class Family>
 Fitted<Family> with_declared_values(Fitted<Family> model);

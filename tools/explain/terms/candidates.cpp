@@ -12,7 +12,7 @@ constexpr double kLeastOfDeclared = 1e-6;
 
 /// Largest factor by which a start lies above or below a field's typical value.
 constexpr double kStartSpan = 4.0;
-/// ... and of the two further starts that stand for a small effect.
+/// ... and of the two further starts for a small effect.
 constexpr double kWhisper = 16.0;
 
 /// Standard deviation of the logarithm of an effect's parameter about its typical value before any data: a factor of ten.

@@ -28,7 +28,7 @@ std::vector<Candidate> all_candidates(const Dataset& data);
 template <class Family>
 std::vector<Candidate> laws_of(const Dataset& data, const Candidate& candidate);
 
-/// False for an effect that carries another one (`Effect` in model/effect.hpp) which is not active.
+/// False for an effect that carries another one (`Effect` in model/declaration/effect.hpp) which is not active.
 template <class Family>
 bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate);
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/explain/terms/curve_points.hpp"
 #include "tools/simulate/run.hpp"
 

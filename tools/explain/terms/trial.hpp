@@ -11,7 +11,7 @@ namespace hotfire::explain {
 inline constexpr double kStrongEvidence = 10.0;
 /// And only if it lowers the held-out error by this share of it.
 inline constexpr double kLeastHeldOutDrop = 0.01;
-/// Two candidates whose BIC differs by less than this are not told apart by the data.
+/// Two candidates whose BIC differs by less than this are not separated by the data.
 inline constexpr double kTied = 10.0;
 
 /// What becomes of a candidate whose round was interrupted.
@@ -36,7 +36,7 @@ struct Kept {
   std::vector<Trial> alternatives;
 };
 
-/// The site of what was kept, and those of terms at other sites that the records do not tell from it.
+/// The site of what was kept, and those of terms at other sites that the records do not separate from it.
 std::vector<std::string> sites_of(const Kept& kept);
 
 /// "gimbal_friction (lugre)".

@@ -27,7 +27,7 @@ template <class Family>
 std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, const Candidate& candidate);
 
 /// True if a table over the rate of the motion that it is against pushes with that motion, or a level of damping is below
-/// nothing, by more than a table's own scatter: friction and damping take energy out. Where a table over the rate stands at
+/// nothing, by more than a table's own scatter: friction and damping take energy out. Where a table over the rate is at
 /// rate zero is a constant force.
 template <class Family>
 bool feeds_energy(const PlainParameters<Family>& parameters, const Candidate& candidate);

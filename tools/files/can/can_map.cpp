@@ -138,8 +138,9 @@ class MapMaker {
     for (const CanMessage& other : std::span(map.messages).first(map.messages.size() - 1)) {
       const CanCrc& crc = can_crc(message.crc_bits());
       if (other.crc_bits() == crc.bits && crc.of_frame(kNoBytes, message.data_id) == crc.of_frame(kNoBytes, other.data_id)) {
-        refuse(declared.line, fmt::format("{}: data id {}, which a check of {} bits does not tell from {}, that of {}",
-                                          declared.name, message.data_id, crc.bits, other.data_id, other.name));
+        refuse(declared.line,
+               fmt::format("{}: data id {}, which a check of {} bits does not distinguish from {}, that of {}",
+                           declared.name, message.data_id, crc.bits, other.data_id, other.name));
       }
     }
   }

@@ -66,7 +66,7 @@ struct CanMap {
 /// Makes the map of a DBC file (dbc.hpp). Throws FileError with file and line for what this project does not use (extended
 /// ids, multiplexing, big-endian or floating-point signals, signals over 32 bits) and for what is wrong: a signal over
 /// another one, a length no frame has, a message whose first two signals are not crc8 or crc16 and counter in their places,
-/// or one without a data id (attribute E2EDataId), two whose data ids the check cannot tell apart.
+/// or one without a data id (attribute E2EDataId), two whose data ids the check cannot distinguish.
 CanMap read_can_map(std::string_view text, const std::filesystem::path& path);
 
 /// The map that this build's firmware is made from.

@@ -17,7 +17,7 @@ struct CandumpOptions {
 /// map.
 ///
 /// A row is a reading of the actuator's potentiometer: `piston` [m], the mean of both readings; `current` [A] and with
-/// `command_per_current` also `command` [rad]: what the plant was told for the time until its next reading, which is the
+/// `command_per_current` also `command` [rad]: what the plant was commanded until its next reading, which is the
 /// newest command before that; `string1` to `string4` [m] of its engine, the newest before, if the log has them. Rows begin
 /// with the first reading that has all of it. The time grid is that of the readings: their counter makes it gapless, their
 /// stamps give its period (to the microsecond) and start; a stamp may be half a period off.
@@ -34,7 +34,7 @@ Record load_candump(const std::filesystem::path& path, const CandumpOptions& opt
 void write_candump(const Record& record, const std::filesystem::path& path, const CandumpOptions& options = {},
                    const CanMap& map = own_can_map());
 
-/// A record by its file's name: .log is a candump log, all else is read as CSV, which may lack values in `drop_outs`.
+/// A record by its file's name: .log is a candump log, all else is read as CSV, whose values may be missing in `drop_outs`.
 Record load_record_or_log(const std::filesystem::path& path, const CandumpOptions& options = {},
                           const std::vector<DropOut>& drop_outs = {});
 

@@ -50,9 +50,9 @@ std::vector<double> currents(const Record& record, const CandumpOptions& options
     return current->values;
   }
   if (options.command_per_current == 0.0) {
-    require_channel(record, "current", "a CAN log carries currents; give what command a current stands for (rad/A)");
+    require_channel(record, "current", "a CAN log carries currents; give the command that a current represents (rad/A)");
   }
-  require_channel(record, "command", "a CAN log carries what the plant is told");
+  require_channel(record, "command", "a CAN log carries the commands of the plant");
   std::vector<double> values = record.find("command")->values;
   for (double& value : values) {
     value /= options.command_per_current;

@@ -11,7 +11,7 @@
 
 namespace hotfire {
 
-/// What the bits of a signal stand for.
+/// What the bits of a signal mean.
 enum class DbcNumber { unsigned_integer, signed_integer, single_precision, double_precision };
 
 /// A number in a CAN frame: `physical = offset + factor raw`.

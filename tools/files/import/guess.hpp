@@ -8,7 +8,7 @@ namespace hotfire {
 /// A map that may read `source`, a text log with a header, as TOML with comments for its user to check: delimiter, lines
 /// before the header, a column of events, time (a column that rises evenly, or the sampling interval or rate that the lines
 /// before the header say), and the channels that names and units in brackets give away. Columns whose names say nothing
-/// stand as comments with their range. Throws FileError for a file in which no header is above rows of numbers.
+/// are comments with their range. Throws FileError for a file in which no header is above rows of numbers.
 std::string guessed_map(const std::filesystem::path& source);
 
 }  // namespace hotfire

@@ -16,7 +16,7 @@ namespace hotfire {
 
 namespace {
 
-/// Whether a channel is what a plant is told: it holds from a row to the next.
+/// Whether a channel is an input of the plant: it holds from a row to the next.
 bool is_told(const std::string& channel) {
   const std::string own = channel.substr(0, channel.find('.'));
   return own == "command" || own == "current";
@@ -113,7 +113,7 @@ Record import_record(const std::filesystem::path& source, const ImportMap& map, 
   if (import_source(source, dbc) == ImportSource::candump_log) {
     if (!drop_outs.empty()) {
       throw UsageError(
-          "--exclude: a log is read frame by frame and has no cells to lack; leave it out, and cut the log where frames are "
+          "--exclude: a log is read frame by frame and has no empty cells; leave it out, and cut the log where frames are "
           "lost");
     }
     ImportedColumns log = read_candump_columns(source, load_dbc(dbc), map);
@@ -127,7 +127,7 @@ Record import_record(const std::filesystem::path& source, const ImportMap& map, 
     double start = 0.0;
     if (map.resampling_period > 0.0) {
       if (!drop_outs.empty()) {
-        throw UsageError("--exclude: what lacks values is not resampled; leave out --exclude or [resample]");
+        throw UsageError("--exclude: a column with missing values is not resampled; leave out --exclude or [resample]");
       }
       const std::string note = put_on_grid(source, grid, values, start);
       if (notes != nullptr) {

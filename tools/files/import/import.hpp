@@ -30,7 +30,7 @@ struct ImportColumn {
 /// How somebody else's file is read (contract.md, Import maps).
 struct ImportMap {
   std::filesystem::path path;
-  std::vector<ImportColumn> columns;  ///< of a table time first, unless `period` stands for it
+  std::vector<ImportColumn> columns;  ///< of a table time first, unless `period` replaces it
   double period = 0.0;                ///< of the source [s]; 0: there is a time column
   double resampling_period = 0.0;     ///< of the record [s]; 0: that of the source, which has to be even
   char delimiter = ',';
@@ -62,8 +62,8 @@ struct ImportedColumns {
 /// The same from a candump log, whose frames are what the DBC file says.
 ///
 /// A row is a frame of the map's message `rows`. It has of each measured channel the newest value up to that frame; of
-/// `command`, `current` and `force`, which hold until the next row, the newest before the next row: what the plant was told
-/// for that time. Rows begin with the first that has all of it. Times are `stamped_grid` of those frames.
+/// `command`, `current` and `force`, which hold until the next row, the newest before the next row: what the plant was
+/// commanded for that time. Rows begin with the first that has all of it. Times are `stamped_grid` of those frames.
 ///
 /// Throws FileError with map and line for a signal that the DBC file does not have (with the nearest names) or has more than
 /// once, a unit that contradicts it, signals of several messages without `rows`; with log and line for what is no line of a
@@ -73,7 +73,7 @@ ImportedColumns read_candump_columns(const std::filesystem::path& path, const Db
 
 /// Reads `source` (with a DBC file a candump log, else .mat, else CSV) through the map and writes a record, which is then
 /// read as `load_record` reads any other: nothing is repaired. Throws FileError, and leaves no file behind, where that
-/// refuses it. Within `drop_outs` [s] cells of a CSV file may be empty, values NaN and rows lack: they stay so in the
+/// refuses it. Within `drop_outs` [s] cells of a CSV file may be empty, values NaN and rows missing: they stay so in the
 /// record. `notes` takes in what was done to the values beside units, one sentence each.
 Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
                      const std::filesystem::path& dbc = {}, const std::vector<DropOut>& drop_outs = {},

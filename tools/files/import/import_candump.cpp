@@ -17,7 +17,7 @@ namespace hotfire {
 
 namespace {
 
-/// What a plant is told: a record holds it from a row to the next.
+/// An input of the plant: a record holds it from a row to the next.
 constexpr std::array<std::string_view, 3> kHeldChannels{"command", "current", "force"};
 constexpr std::size_t kNamesShown = 5;
 

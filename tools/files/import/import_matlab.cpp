@@ -84,7 +84,7 @@ class MatlabReader {
       const std::string_view digits = text.substr(colon + 1);
       const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), place.column);
       if (error != std::errc{} || end != digits.data() + digits.size() || place.column == 0) {
-        refuse(column, "behind the colon stands the column of a matrix, from 1 on");
+        refuse(column, "the number after the colon is the column of a matrix, from 1 on");
       }
       text = text.substr(0, colon);
     }

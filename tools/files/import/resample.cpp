@@ -149,7 +149,7 @@ void require_good(const Series& times, const std::vector<Series>& columns) {
     const auto bad = std::ranges::find_if(column, [](double value) { return !std::isfinite(value); });
     if (bad != column.end()) {
       throw std::invalid_argument(
-          fmt::format("row {}: a cell without a number; what lacks values is not resampled: cut the log there",
+          fmt::format("row {}: a cell without a number; a column with missing values is not resampled: cut the log there",
                       bad - column.begin() + 1));
     }
   }

@@ -18,8 +18,8 @@ struct Resampled {
 /// Puts columns that were read at `times` [s] on an even grid of `period` [s], from the first time on.
 ///
 /// A channel that is `held` between its rows, such as a command, becomes its mean over each new period: what the plant was
-/// told over that time. Any other is first put on the even grid of its mean interval by a natural cubic spline through its
-/// samples, if that interval varies by more than a thousandth; then it is reconstructed below 0.45 of the lower of both
+/// commanded over that time. Any other is first put on the even grid of its mean interval by a natural cubic spline through
+/// its samples, if that interval varies by more than a thousandth; then it is reconstructed below 0.45 of the lower of both
 /// sampling rates by a sinc of 32 zeros to either side under a Kaiser window of beta = 8 (pass band to 0.41, 80 dB from 0.49
 /// on) [Kaiser 1974; Oppenheim and Schafer 1999, sec. 7.4], with the weights at the ends scaled to a sum of one.
 ///

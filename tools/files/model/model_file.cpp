@@ -15,7 +15,7 @@ namespace hotfire {
 
 namespace {
 
-/// True if no value can stand for a parameter that is left out: it is in the record's own units and zero is not allowed.
+/// True if no value can replace a parameter that is left out: it is in the record's own units and zero is not allowed.
 bool has_no_reference(const NumberKey& number, bool own_units) { return own_units && number.lower > 0.0; }
 
 void read_parts(const TomlSource& source, const ModelLayout& layout, ModelFile& model) {

@@ -32,7 +32,7 @@ struct ModelFile {
 /// action (its neutral value); the choice of a law or channel must be given.
 ModelFile load_model(const std::filesystem::path& path);
 
-/// The same of the text of a model file; `path` stands for the file in messages.
+/// The same of the text of a model file; `path` represents the file in messages.
 ModelFile parse_model(std::string text, const std::filesystem::path& path);
 
 /// The TOML text of a model: every declared parameter, every active effect, noise and tolerance, each number with the

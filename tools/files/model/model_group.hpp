@@ -24,14 +24,14 @@ Words names_of(const Items& items) {
 /// Refuses a file without `schema = 1`.
 void require_schema(const TomlSource& source);
 
-/// Refuses every key of a table that is not in `known`. `prefix` is where the table stands, "actuator." say.
+/// Refuses every key of a table that is not in `known`. `prefix` is the path of the table, such as "actuator.".
 void refuse_unknown_keys(const TomlSource& source, const toml::table& table, std::string_view prefix, const Words& known);
 
 /// What a table of a model file is: all that is said of its group, or what differs from what was said before.
 enum class Extent { whole, difference };
 
 /// Reads one table of a model file into the parameters its group leads to, and checks it. Returns the numbers it does not
-/// give. Keys in `others` may stand there too and are left to who knows them. Throws FileError.
+/// give. Keys in `others` may be there too and are left to their own reader. Throws FileError.
 std::vector<const NumberKey*> read_group(const TomlSource& source, const toml::table& table, const KeyGroup& group,
                                          const std::string& prefix, const Words& others = {}, Extent extent = Extent::whole);
 

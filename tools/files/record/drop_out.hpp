@@ -7,7 +7,7 @@
 
 namespace hotfire {
 
-/// A stretch of a record's own time of which its user says that it is wrong: values may lack there, and whole rows.
+/// A stretch of a record's own time of which its user says that it is wrong: values may be missing there, and whole rows.
 struct DropOut {
   double from = 0.0;  ///< [s]
   double to = 0.0;    ///< [s], not in it any more

@@ -44,7 +44,7 @@ bool is_blank(char letter) { return letter == ' ' || letter == '\t'; }
                   column.name, shown));
 }
 
-/// Reads the cell that `cursor` stands at and moves to its end. `cell` becomes its text. NaN if that is no finite number.
+/// Reads the cell at `cursor` and moves to its end. `cell` becomes its text. NaN if that is no finite number.
 double read_cell(const Column& column, const char*& cursor, const char* end, std::string_view& cell) {
   while (cursor != end && is_blank(*cursor)) {
     ++cursor;
@@ -188,7 +188,7 @@ void require_channel(const Record& record, const std::string& channel, const std
   }
   const bool has_current = channel == "command" && record.find("current") != nullptr;
   throw FileError(fmt::format("{}:1: no column {}: {}; the record has {}{}", record.path.string(), channel, reason, has,
-                              has_current ? "; --command-per-current says what command a current stands for" : ""));
+                              has_current ? "; --command-per-current gives the command that a current represents" : ""));
 }
 
 }  // namespace hotfire

@@ -37,8 +37,8 @@ struct Record {
 /// repeated or backward time, sampling outside 50 Hz - 20 kHz, more than 10^7 rows, a binary file (refused after its first
 /// bytes, whatever its size).
 ///
-/// Within `drop_outs` a row may have cells without a number, and rows may lack (CSV only): their values are NaN, their times
-/// are kept.
+/// Within `drop_outs` a row may have cells without a number, and rows may be missing (CSV only): their values are NaN, their
+/// times are kept.
 Record load_record(const std::filesystem::path& path, const std::vector<DropOut>& drop_outs = {});
 
 /// Throws FileError unless the record has the channel; the message lists the channels it has and what the model needs.

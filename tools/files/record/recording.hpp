@@ -26,7 +26,7 @@ bool is_recording(const std::filesystem::path& path);
 /// takes them, unless one actuator is named, and begins with the first cycle: cycle n begins at n periods.
 ///
 /// Throws FileError for a file that is refused or damaged, an actuator it does not have or that must be named, cycles that
-/// were dropped, and fewer than two rows, with the mend.
+/// were dropped, and fewer than two rows, with the remedy.
 Record load_recording(const std::filesystem::path& path, const RecordingPart& part = {});
 
 }  // namespace hotfire

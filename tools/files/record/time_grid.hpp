@@ -9,8 +9,8 @@
 
 namespace hotfire {
 
-/// Watches how a time column is printed, to tell rounding from uneven sampling. A printer keeps either the digits after the
-/// point (%.4f) or all digits (%.6g); the largest count seen of each bounds the rounding of any time.
+/// Watches how a time column is printed, to separate rounding from uneven sampling. A printer keeps either the digits after
+/// the point (%.4f) or all digits (%.6g); the largest count seen of each bounds the rounding of any time.
 class PrintedDigits {
  public:
   void see(std::string_view cell);

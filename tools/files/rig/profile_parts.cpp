@@ -74,7 +74,7 @@ class Parts {
       if (stretch.highest(i) > limits_.highest[i] || stretch.lowest(i) < limits_.lowest[i]) {
         source_.refuse_missing(
             table, prefix,
-            fmt::format("the commands of actuator {}, {:g} to {:g} rad, stand for positions beyond limits.lowest_position "
+            fmt::format("the commands of actuator {}, {:g} to {:g} rad, demand positions beyond limits.lowest_position "
                         "and limits.highest_position, {:g} to {:g} rad",
                         i + 1, stretch.lowest(i), stretch.highest(i), limits_.lowest[i], limits_.highest[i]));
       }

@@ -15,7 +15,7 @@ class CsvLines {
   /// Opens and reads the first block. Throws FileError if the file cannot be read, is empty or is not text.
   explicit CsvLines(const std::filesystem::path& path);
 
-  /// The same from text that outlives the lines; `name` stands for the file in messages.
+  /// The same from text that outlives the lines; `name` represents the file in messages.
   CsvLines(std::string_view text, std::filesystem::path name);
 
   /// The next line without its end (LF or CRLF), valid until the next call; false at the end. Throws FileError for a line

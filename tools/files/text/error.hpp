@@ -14,7 +14,7 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A command used wrongly: what() says what and the mend.
+/// A command used wrongly: what() says what and the remedy.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -6,7 +6,7 @@
 namespace hotfire {
 
 /// The most parts that a key of a TOML file may have, `a.b.c` has three. A parser makes a table of each, one within the
-/// other, and takes stack for each: with the 256 tables and arrays that may stand within each other by brackets this stays
+/// other, and takes stack for each: with the 256 tables and arrays that may be nested by brackets this stays
 /// far below a megabyte.
 inline constexpr std::size_t kMostKeyParts = 16;
 
@@ -15,7 +15,7 @@ struct KeyFault {
   enum class Kind {
     none,
     long_key,       ///< a key has more than `kMostKeyParts` parts
-    foreign_letter  ///< a letter beyond ASCII stands outside of strings and comments, where TOML 1.0.0 has none
+    foreign_letter  ///< a letter beyond ASCII is outside of strings and comments, where TOML 1.0.0 has none
   };
   Kind kind = Kind::none;
   std::size_t line = 0;  ///< from 1

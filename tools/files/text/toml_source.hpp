@@ -8,13 +8,13 @@
 
 namespace hotfire {
 
-/// A parsed TOML file that knows where each thing stands, for messages.
+/// A parsed TOML file that knows the position of each value, for messages.
 class TomlSource {
  public:
   /// Throws FileError if the file cannot be read, is over a megabyte, has a key of too many parts or is not TOML.
   explicit TomlSource(const std::filesystem::path& path);
 
-  /// The same of a text; `path` stands for its file in messages.
+  /// The same of a text; `path` represents its file in messages.
   TomlSource(std::filesystem::path path, std::string content);
 
   const toml::table& root() const { return root_; }
@@ -25,7 +25,7 @@ class TomlSource {
   /// Throws FileError `path:line:column: key: problem` for a key.
   [[noreturn]] void refuse_key(const toml::key& at, std::string_view key, std::string_view problem) const;
 
-  /// Throws FileError `path:line: key: problem` for what a table lacks; `table` is where it should stand.
+  /// Throws FileError `path:line: key: problem` for what is missing in a table; `table` is where it belongs.
   [[noreturn]] void refuse_missing(const toml::table& table, std::string_view key, std::string_view problem) const;
 
   /// Refuses a file that does not say `schema = 1`.

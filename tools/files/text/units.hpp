@@ -9,7 +9,7 @@ union cv_converter;
 
 namespace hotfire {
 
-/// A unit that is not known or not of the dimension wanted: what() names the unit, the dimension wanted and the mend.
+/// A unit that is not known or not of the dimension wanted: what() names the unit, the dimension wanted and the remedy.
 /// It has no place in a file: whoever read the unit adds file, line and key.
 class UnitError : public std::runtime_error {
  public:

@@ -25,7 +25,7 @@
  *
  * Time. hotfire_set (of inputs), hotfire_get, hotfire_step and hotfire_time take a bounded time that does not depend on the
  * state: they belong in a real-time loop. hotfire_start, hotfire_set of parameters, hotfire_differentiate and a state with
- * other parameters compute constants anew: they do not belong there.
+ * other parameters compute constants again: they do not belong there.
  *
  * Threads. A model is used by one thread at a time. Different models are independent of each other, in any number and any
  * threads. hotfire_open and hotfire_open_text wait for each other, because the library of units allows one thread only.
@@ -99,7 +99,7 @@ HOTFIRE_API void hotfire_default_options(hotfire_options* options);
  * characters; NULL with 0 for none) that names file, line, key, value and remedy. */
 HOTFIRE_API hotfire_model* hotfire_open(const char* path, const hotfire_options* options, char* message, size_t size);
 
-/* The same from the text of a model file. `name` stands for the file in messages; a mode table is looked for beside it. */
+/* The same from the text of a model file. `name` represents the file in messages; a mode table is read from beside it. */
 HOTFIRE_API hotfire_model* hotfire_open_text(const char* text, const char* name, const hotfire_options* options, char* message,
                                        size_t size);
 
@@ -122,7 +122,7 @@ HOTFIRE_API size_t hotfire_count(const hotfire_model* model, hotfire_kind kind);
 /* Describes one number of a table. */
 HOTFIRE_API hotfire_status hotfire_describe(hotfire_model* model, hotfire_kind kind, size_t index, hotfire_variable* variable);
 
-/* Where a name stands in a table. */
+/* The index of a name in a table. */
 HOTFIRE_API hotfire_status hotfire_find(hotfire_model* model, hotfire_kind kind, const char* name, size_t* index);
 
 /* Sets inputs or parameters: all of them, or none if one is refused. A relation between parameters is checked when all are
@@ -135,7 +135,7 @@ HOTFIRE_API hotfire_status hotfire_get(hotfire_model* model, hotfire_kind kind, 
                                        size_t count);
 
 /* Starts, or starts again, at `time` [s]: hydraulic axes in the steady state under their commands, a `direct` mass at
- * "start.position" with "start.velocity". The noise of the sensors begins anew. */
+ * "start.position" with "start.velocity". The noise of the sensors begins again. */
 HOTFIRE_API hotfire_status hotfire_start(hotfire_model* model, double time);
 
 /* Advances by one period with the inputs held. */

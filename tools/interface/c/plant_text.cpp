@@ -19,7 +19,7 @@ class Lines {
  public:
   Lines(const std::string& text, const std::string& name) : text_(text), name_(name) {}
 
-  /// The value of the line that must stand here, `key value`.
+  /// The value of the line that must be here, `key value`.
   std::string take(const std::string& key) {
     ++line_;
     const std::size_t end = text_.find('\n', at_);

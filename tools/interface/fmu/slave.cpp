@@ -161,7 +161,7 @@ Status Slave::exit_initialization() noexcept {
   const Status status = start_if_needed("ExitInitializationMode");
   if (status == Status::ok) {
     phase_ = Phase::step;
-    say(Status::ok, Category::event, "the model stands in its steady state");
+    say(Status::ok, Category::event, "the model is in its steady state");
   }
   return status;
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/key_text.hpp"
-#include "model/step_size.hpp"
+#include "model/numerics/step_size.hpp"
 #include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::plant {

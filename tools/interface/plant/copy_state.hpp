@@ -7,15 +7,15 @@
 #include <type_traits>
 #include <utility>
 
-#include "model/delay_line.hpp"
-#include "model/memory.hpp"
-#include "model/scalar.hpp"
+#include "model/numerics/delay_line.hpp"
+#include "model/numerics/memory.hpp"
+#include "model/numerics/scalar.hpp"
 
 namespace hotfire::plant {
 
 namespace detail {
 
-/// Stands for a member of any type when the members of an aggregate are counted.
+/// Represents a member of any type when the members of an aggregate are counted.
 struct AnyMember {
   template <class T>
   operator T() const;  // NOLINT(google-explicit-constructor): the conversion is what counts the members

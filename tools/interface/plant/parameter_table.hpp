@@ -11,7 +11,7 @@
 
 namespace hotfire::plant {
 
-/// A number that tells texts apart (FNV-1a, 64 bits).
+/// A number that identifies a text (FNV-1a, 64 bits).
 class Fingerprint {
  public:
   void add(std::string_view bytes) noexcept {
@@ -85,7 +85,7 @@ class ParameterTable {
   Fingerprint fingerprint_{};
 };
 
-/// Fills parameters in any scalar from a table, and keeps where its parameters stand, in the order of the table.
+/// Fills parameters in any scalar from a table, and keeps the places of its parameters, in the order of the table.
 template <class S>
 class ParameterSlots {
  public:

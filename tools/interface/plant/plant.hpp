@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "model/direct.hpp"
+#include "model/sensors/vehicle_sensors.hpp"
 #include "model/simplex.hpp"
 #include "model/vehicle.hpp"
-#include "model/vehicle_sensors.hpp"
 #include "tools/interface/plant/variable.hpp"
 
 namespace hotfire::plant {
@@ -26,7 +26,7 @@ using AnyParameters =
 
 /// How a plant is run.
 struct Setup {
-  double period = 1e-3;  ///< between two readings [s]; split into equal steps of the model (model/step_size.hpp)
+  double period = 1e-3;  ///< between two readings [s]; split into equal steps of the model (model/numerics/step_size.hpp)
   unsigned seed = 1;     ///< of the sensors' noise
   bool strings = false;  ///< the model declares string potentiometers: they are outputs
 };
@@ -63,7 +63,7 @@ class Plant {
   std::span<const double> parameter_values() const noexcept { return parameter_values_; }
 
   /// Takes new values of all parameters, in the order of `parameters`, each within its bounds. Returns what relation between
-  /// them is broken, and changes nothing then; empty if none is. Computes the model's constants anew: set-up work, without
+  /// them is broken, and changes nothing then; empty if none is. Computes the model's constants again: set-up work, without
   /// allocation, in a bounded time.
   virtual std::string_view set_parameters(std::span<const double> values) noexcept = 0;
 
@@ -89,7 +89,7 @@ class Plant {
   std::size_t state_size() const noexcept;
   void save(std::span<std::byte> bytes) const noexcept;
   void load(std::span<const std::byte> bytes) noexcept;
-  /// Tells models apart whose states are not exchangeable.
+  /// Identifies models whose states are exchangeable.
   std::uint64_t identity() const noexcept { return identity_; }
 
  protected:

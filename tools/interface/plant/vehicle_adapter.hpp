@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "model/sensors/vehicle_sensors.hpp"
 #include "model/vehicle.hpp"
 #include "model/vehicle_keys.hpp"
-#include "model/vehicle_sensors.hpp"
 #include "tools/interface/plant/axis_adapters.hpp"
 #include "tools/interface/plant/normal.hpp"
 #include "tools/interface/plant/plant.hpp"

@@ -1,4 +1,4 @@
-"""Hotfire in Python: the model of a thrust-vector-control axis, and what a declared model lacks.
+"""Hotfire in Python: the model of a thrust-vector-control axis, and what is missing in a declared model.
 
     import hotfire
 
@@ -10,7 +10,7 @@
     found.verdict, found.effects
 
 Everything is in SI unless a unit is given. Errors have the words of the command `hotfire`: FileError for bad data, UsageError
-for wrong use. docs/python.md is the manual.
+for wrong use. docs/interfaces/python.md is the manual.
 """
 
 from ._core import FileError, UnitError, UsageError

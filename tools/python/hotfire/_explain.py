@@ -1,4 +1,4 @@
-"""The finder: what a declared model lacks against measured records."""
+"""The finder: the effects that are missing in a declared model, from measured records."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Explanation:
     def __init__(self, report: dict[str, Any], series: _core.ReportSeries, model: Model, next_experiment: Optional[Record]):
         self.report = report  #: report.json
         self.model = model  #: the explained model
-        self.next_experiment = next_experiment  #: the command that would tell two explanations apart
+        self.next_experiment = next_experiment  #: the command that would separate two explanations
         self._series = series
 
     @property
@@ -102,7 +102,7 @@ def explain(
     threads: Optional[int] = None,
     progress: Optional[Callable[[str], None]] = None,
 ) -> Explanation:
-    """Finds what a declared model lacks against measured records, as ``hotfire explain`` does and with its figures.
+    """Identifies the effects that are missing in a declared model, from measured records, as ``hotfire explain`` does and with its figures.
 
     ``hold_out`` records are judged at the end and seen by no fit. ``exclude`` names rows that are known to be wrong:
     "steps.csv@3.0-3.5". ``progress`` is called with a sentence for every thing that is tried. Ctrl-C ends the search with

@@ -48,7 +48,7 @@ class Model:
 
     @classmethod
     def from_text(cls, text: str, name: str = "model") -> Model:
-        """The model of a file's text; ``name`` stands for the file in messages."""
+        """The model of a file's text; ``name`` represents the file in messages."""
         return cls._of(_core.Model.parse(text, name))
 
     @staticmethod

@@ -31,7 +31,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect that the declared model lacks."""
+    """An effect that is missing in the declared model."""
 
     name: str
     site: str

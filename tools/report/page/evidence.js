@@ -32,7 +32,7 @@ function roundText(rows) {
   const name = `Round ${round}${isFilled(axis) ? ` of the ${axis} axis` : ""}`;
   return [`${name}: ${countOf(tried.length, "candidate")} of ${countOf(effectsTried, "effect")} screened, ` +
     `${joint || "none"} of them fitted together with everything else.`,
-    kept ? `Kept: ${kept}.` : "None was kept.", named("tied") && `Not told apart from it: ${named("tied")}.`,
+    kept ? `Kept: ${kept}.` : "None was kept.", named("tied") && `Not separated from it: ${named("tied")}.`,
     named("taken out") && `Taken out again: ${named("taken out")}.`].filter(Boolean).join(" ");
 }
 

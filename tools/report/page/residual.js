@@ -17,7 +17,7 @@ const smallCharts = (title, note, figures) => {
   return node;
 };
 
-/** `rangeOf(values, band)` is the range of the vertical axis; `title` its title; `remark(view)` stands after the channel's name. */
+/** `rangeOf(values, band)` is the range of the vertical axis; `title` its title; `remark(view)` comes after the channel's name. */
 function correlationFigures(report, view, { title, rangeOf, remark = () => null }) {
   return channelsWith(report, view, "lag_s").map(([name, each]) => {
     const lag = displayUnit("s", Math.max(...extent(each.lag_s, 0).map(Math.abs)));
@@ -75,7 +75,7 @@ function byFrequency(report) {
     `the dashed line, nothing but white noise of the sensor is left.${fromZero ? " The lowest band begins at 0 Hz." : ""}`, figures);
 }
 
-/** A row per channel and range of amplitudes; what belongs to the channel stands in its first row. */
+/** A row per channel and range of amplitudes; what belongs to the channel is in its first row. */
 function amplitudeRows(report) {
   return channelsWith(report, "by_amplitude", "from").flatMap(([name, each]) => {
     const unit = report.channels[name]?.unit ?? "";

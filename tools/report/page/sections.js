@@ -3,10 +3,10 @@
 // report has nothing to say.
 
 const VERDICTS = {
-  explained: ["Explained", "The declared model lacks the effects named below; with them it follows the records."],
+  explained: ["Explained", "The effects named below are missing in the declared model; with them it follows the records."],
   "nothing-missing": ["Nothing missing", "The declared model already fits the records down to the noise: no effect is missing."],
   "partly-explained": ["Partly explained", "A part of the declared model's error is explained; something else is left in it."],
-  "unlisted-effect": ["Unlisted effect", "The declared model lacks an effect that is none of the known ones."],
+  "unlisted-effect": ["Unlisted effect", "An effect is missing in the declared model, and none of the known effects explains it."],
   undecided: ["Undecided", "The search did not come to an end: more than noise is left, and nothing is known to explain it."],
 };
 const STAGES = [{ key: "before", title: "as declared", colour: "declared" },
@@ -34,7 +34,7 @@ function ratioStrip(row, [low, high]) {
     drawing("path", { d: `M${place(1)} 0V20`, stroke: "#1b1f24", "stroke-width": 2 }));
 }
 
-/** A row per channel and stage; what belongs to the channel stands in its first row. */
+/** A row per channel and stage; what belongs to the channel is in its first row. */
 function errorRows(channels) {
   return Object.entries(channels).flatMap(([name, channel]) => {
     const stages = STAGES.filter((stage) => isFilled(channel[stage.key]));
@@ -169,7 +169,7 @@ function trace(report) {
 /** What no fit can decide from these records, whatever it found. */
 function identifiability(report) {
   const told = (report.identifiability ?? []).filter((each) => isFilled(each?.text));
-  return told.length ? section("What the data cannot tell apart",
+  return told.length ? section("What the data cannot separate",
     element("ul", { class: "sentences" }, told.map((each) => element("li", {}, each.text)))) : null;
 }
 

@@ -21,7 +21,7 @@ inline constexpr std::string_view kWild = "wild";
 /// What a case is to be.
 struct CaseOrder {
   std::string name;                  ///< of its folder
-  std::vector<std::string> effects;  ///< what the declared model lacks; none: a null record
+  std::vector<std::string> effects;  ///< what is missing in the declared model; none: a null record
   std::uint64_t seed = 1;
   double noise_factor = 1.0;    ///< on the sensors' noise, true and declared alike
   double scatter_factor = 1.0;  ///< on the tolerances within which the true parameters are scattered

@@ -23,10 +23,10 @@ struct Plan {
   bool in_model_terms = true;            ///< whether the model has keys for all of them
 };
 
-/// One effect that a case may lack.
+/// One effect that may be missing in a case.
 struct StudiedEffect {
   std::string_view name;
-  /// Where it acts; a second site, after a bar, is one from which it cannot be told apart.
+  /// Where it acts; a second site, after a bar, is one that cannot be separated from it.
   std::string_view site;
   /// Draws the magnitude from a plausible range and puts it into the plan. The seed picks the law, so that three seeds are
   /// three laws.

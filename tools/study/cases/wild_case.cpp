@@ -37,7 +37,8 @@ ReferenceAxis with_law(ReferenceAxis axis, const WildLaw& law) {
   return axis;
 }
 
-/// The play between torque motor and spool follows what the torque motor asks by its rate, which a drawn law does not tell.
+/// The play between torque motor and spool follows what the torque motor asks by its rate, which a drawn law does not
+/// determine.
 bool can_be_together(const ReferenceAxis& axis, const WildLaw& law) {
   return axis.play == 0.0 || (law.site != WildSite::command && law.site != WildSite::valve_command);
 }

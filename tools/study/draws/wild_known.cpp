@@ -7,7 +7,7 @@ using Shape = WildCurve::Shape;
 using Kind = WildMemory::Kind;
 using Argument = WildArgument;
 
-/// Piston, engine and command go together but for what a finder is to tell.
+/// Piston, engine and command go together but for what a finder is to identify.
 bool is_position(Argument argument) {
   return argument == Argument::position || argument == Argument::angle || argument == Argument::command;
 }

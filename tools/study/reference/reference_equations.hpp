@@ -65,7 +65,7 @@ struct ReferenceProblem {
   const ReferenceAxis& axis;
   std::vector<ReferenceState> states;
   double command = 0.0;        ///< what is asked for in this interval [rad]
-  double command_start = 0.0;  ///< where a limited command stands at its beginning
+  double command_start = 0.0;  ///< value of a limited command at its beginning
   double start_time = 0.0;
   double first_row = 0.0;    ///< when the record begins
   double other_angle = 0.0;  ///< of the engine about its other axis; zero for an axis alone
@@ -85,7 +85,7 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
 /// What laws are drawn over.
 WildQuantities quantities_at(const ReferenceProblem& problem, double t, const StateVector& y);
 
-/// Tells the axis' drawn law that a row begins.
+/// Informs the axis' drawn law that a row begins.
 void begin_row(ReferenceProblem& problem, double t, const StateVector& y);
 
 /// What the three channels read.

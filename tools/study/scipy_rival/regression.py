@@ -1,7 +1,7 @@
 """Sparse regression of the missing term (SINDy: Brunton, Proctor and Kutz 2016, PNAS 113(15), 3932-3937).
 
 Measured motion, smoothed and differentiated, is put into the model's equations; what they leave over is fitted by a library of
-terms, of which sequentially thresholded least squares keep few. The rival is told the site of the effect, may build on the
+terms, of which sequentially thresholded least squares keep few. The rival knows the site of the effect, may build on the
 declared or on the calibrated model, and smoothing and threshold are chosen by simulation.
 """
 
@@ -26,7 +26,7 @@ SITES = {"gimbal_friction": "engine_torque", "duct_hardening": "engine_torque", 
 
 
 def odd_terms(variable, size):
-    """Terms of one variable. Steep tanh stand for its sign: a sign would chatter in any integrator."""
+    """Terms of one variable. Steep tanh replace its sign: a sign would chatter in any integrator."""
     terms = [(variable, lambda at, s: s / size), (f"{variable} |{variable}|", lambda at, s: s * abs(s) / size**2),
              (f"{variable}^3", lambda at, s: s * s * s / size**3)]
     for width in (0.03, 0.1, 0.3, 1.0):

@@ -1,0 +1,271 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+
+#include "model/declaration/field.hpp"
+#include "model/declaration/sites.hpp"
+
+namespace hotfire::model {
+
+/// An effect is what may be missing in a declared model: one file, one name, one site, a few parameters.
+///
+/// - `Params<S>`: neutral by default, one scalar a field, and `option` (an index into `options`) if the effect has laws or
+///   channels to choose from.
+/// - `State<S>`: what it remembers.
+/// - `step(params, state, input)`: advances the state over one step and returns the site's output. It never throws,
+///   allocates or blocks.
+///
+/// An effect may carry another one of the same additive site: `carries` is that one's name, and `carry(params, state, input,
+/// step)` evaluates it by `step(input)`, on what it sees through the carrier. Such an effect adds nothing of its own.
+///
+/// Optional: `needs_other_axis` marks an effect that acts only where the engine has another axis, `options_of_two_axes` (a
+/// bit each) such laws; `settle(params, state, input)` puts the state where a constant input leaves it;
+/// `broken_relation(params)` names a relation between fields that the values break, empty if none.
+template <class E, class S>
+concept Effect = requires(const typename E::template Params<S>& params, typename E::template State<S>& state,
+                          const typename SiteInput<E::site, S>::type& input) {
+  { E::name } -> std::convertible_to<std::string_view>;
+  { E::options.size() } -> std::convertible_to<std::size_t>;
+  { E::template Params<S>::fields().size() } -> std::convertible_to<std::size_t>;
+  { E::step(params, state, input) }
+  noexcept;
+};
+
+/// True for an effect that acts only where the engine has another axis.
+template <class E>
+constexpr bool needs_other_axis() noexcept {
+  return requires { E::needs_other_axis; };
+}
+
+/// The same for one of its laws, which alone is another of them.
+template <class E>
+constexpr bool needs_other_axis(int option) noexcept {
+  if constexpr (requires { E::options_of_two_axes; }) {
+    return (E::options_of_two_axes >> static_cast<unsigned>(option) & 1U) != 0;
+  } else {
+    return needs_other_axis<E>();
+  }
+}
+
+/// For effects that have nothing to choose.
+using NoOptions = std::array<std::string_view, 0>;
+
+/// A compile-time list of effects. The order is the order of application at serial sites; elsewhere it has no meaning.
+template <class... Es>
+struct EffectList {
+  static constexpr std::size_t size = sizeof...(Es);
+
+  /// Calls `f.template operator()<E, index>()` for every effect.
+  template <class F>
+  static constexpr void for_each(F&& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) { (f.template operator()<Es, I>(), ...); }
+    (std::make_index_sequence<size>{});
+  }
+};
+
+/// Parameters of every effect of a list, and which of them are active.
+template <class S, class List>
+struct EffectParameters;
+
+template <class S, class... Es>
+struct EffectParameters<S, EffectList<Es...>> {
+  static_assert((Effect<Es, S> && ...));
+  std::tuple<typename Es::template Params<S>...> values{};
+  std::array<bool, sizeof...(Es)> active{};
+};
+
+/// States of every effect of a list, and the output each one gave last (the first guess of the next step).
+template <class S, class List>
+struct EffectStates;
+
+template <class S, class... Es>
+struct EffectStates<S, EffectList<Es...>> {
+  std::tuple<typename Es::template State<S>...> values{};
+  std::array<S, sizeof...(Es)> outputs{};
+};
+
+/// Whether an evaluation keeps the states it reaches. A step evaluates its effects more than once and keeps the last.
+enum class Keep { no, yes };
+
+namespace detail {
+
+/// The channel that a sensor's effect acts on: its option, unless it is made for one.
+template <class E, class Params>
+constexpr int channel_of(const Params& params) noexcept {
+  if constexpr (requires { E::sensor_channel; }) {
+    return E::sensor_channel;
+  } else {
+    return params.option;
+  }
+}
+
+}  // namespace detail
+
+namespace detail {
+
+template <class S>
+void pass_on(Signal<S>& input, const S& output) noexcept {
+  input.value = output;
+}
+template <class S>
+void pass_on(Spring<S>& input, const Spring<S>& output) noexcept {
+  input = output;
+}
+
+/// What the body does without the force that an effect gave last; other sites have no such thing.
+template <class S>
+Motion<S> without_force(Motion<S> input, const S& force) noexcept {
+  input.free_velocity = input.velocity + input.compliance * force;
+  return input;
+}
+template <class Input, class S>
+const Input& without_force(const Input& input, const S&) noexcept {
+  return input;
+}
+
+template <class E, class Params, class State, class Input>
+auto evaluate(const Params& params, State& state, const Input& input, Keep keep) noexcept {
+  if (keep == Keep::yes) {
+    return E::step(params, state, input);
+  }
+  State trial = state;
+  return E::step(params, trial, input);
+}
+
+}  // namespace detail
+
+namespace detail {
+
+/// Calls `f.template operator()<Carrier, index>()` for the effect of the list that carries E, if there is one.
+template <class E, class List, class F>
+void with_carrier(F&& f) noexcept {
+  List::for_each([&]<class C, std::size_t I>() {
+    if constexpr (requires { C::carries; }) {
+      if constexpr (C::carries == E::name) {
+        f.template operator()<C, I>();
+      }
+    }
+  });
+}
+
+/// The output of one effect of an additive site, through its carrier if that is active.
+template <class E, std::size_t I, class S, class List, class Input>
+S output_of(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states, const Input& input,
+            Keep keep) noexcept {
+  bool carried = false;
+  S output{0.0};
+  with_carrier<E, List>([&]<class C, std::size_t K>() {
+    if (parameters.active[K]) {
+      auto own = std::get<I>(states.values);
+      auto carrier = std::get<K>(states.values);
+      carried = true;
+      output = C::carry(std::get<K>(parameters.values), carrier, input, [&](const Input& seen) {
+        own = std::get<I>(states.values);
+        return E::step(std::get<I>(parameters.values), own, seen);
+      });
+      if (keep == Keep::yes) {
+        std::get<I>(states.values) = own;
+        std::get<K>(states.values) = carrier;
+      }
+    }
+  });
+  return carried ? output : evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values), input, keep);
+}
+
+}  // namespace detail
+
+/// Passes `input` through the active effects of a serial site, in the order of the list.
+template <Site site, class S, class List>
+typename SiteInput<site, S>::type pass_through(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+                                               typename SiteInput<site, S>::type input, Keep keep) noexcept {
+  static_assert(is_serial(site) && site != Site::sensor);
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site) {
+      if (parameters.active[I]) {
+        detail::pass_on(input, detail::evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values), input, keep));
+      }
+    }
+  });
+  return input;
+}
+
+/// Passes a measured value through the active sensor effects of one channel.
+template <class S, class List>
+S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+                      Signal<S> input) noexcept {
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == Site::sensor) {
+      if (parameters.active[I] && detail::channel_of<E>(std::get<I>(parameters.values)) == channel) {
+        input.value = E::step(std::get<I>(parameters.values), std::get<I>(states.values), input);
+      }
+    }
+  });
+  return input.value;
+}
+
+/// Puts the states of the active sensor effects of one channel where a constant reading leaves them, each under the steady
+/// output of the one before it.
+template <class S, class List>
+void settle_channel(int channel, const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+                    Signal<S> input) noexcept {
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == Site::sensor) {
+      if (parameters.active[I] && detail::channel_of<E>(std::get<I>(parameters.values)) == channel) {
+        if constexpr (requires { E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input); }) {
+          E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input);
+        }
+        input.value = E::step(std::get<I>(parameters.values), std::get<I>(states.values), input);
+      }
+    }
+  });
+}
+
+/// Sum of the active effects of an additive site.
+template <Site site, class S, class List>
+S sum_over(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+           const typename SiteInput<site, S>::type& input, Keep keep) noexcept {
+  static_assert(!is_serial(site));
+  S total{0.0};
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site) {
+      if (parameters.active[I]) {
+        states.outputs[I] =
+            detail::output_of<E, I>(parameters, states, detail::without_force(input, states.outputs[I]), keep);
+        total += states.outputs[I];
+      }
+    }
+  });
+  return total;
+}
+
+/// Puts the states of the active effects of one site where a constant input leaves them.
+template <Site site, class S, class List>
+void settle(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
+            const typename SiteInput<site, S>::type& input) noexcept {
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site &&
+                  requires { E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input); }) {
+      if (parameters.active[I]) {
+        E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input);
+      }
+    }
+  });
+}
+
+/// True if an active effect of the list enters at `site`.
+template <Site site, class S, class List>
+bool any_active(const EffectParameters<S, List>& parameters) noexcept {
+  bool any = false;
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site) {
+      any = any || parameters.active[I];
+    }
+  });
+  return any;
+}
+
+}  // namespace hotfire::model

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "model/numerics/scalar.hpp"
+
+namespace hotfire::model {
+
+/// Where in the equations an effect enters. `sensor` is followed by the channel's name in configuration and report.
+enum class Site {
+  command,
+  valve_command,
+  valve,
+  flow,
+  pressure,
+  piston,
+  load_spring,
+  structure,
+  engine_torque,
+  mass_force,
+  sensor
+};
+
+constexpr std::string_view site_name(Site site) noexcept {
+  constexpr std::array<std::string_view, 11> names{"command",       "valve_command", "valve",       "flow",
+                                                   "pressure",      "piston",        "load_spring", "structure",
+                                                   "engine_torque", "mass_force",    "sensor"};
+  return names[static_cast<std::size_t>(site)];
+}
+
+/// Sites at which effects are applied one after the other, in the order of the effect list; at all others they add up.
+constexpr bool is_serial(Site site) noexcept {
+  return site == Site::command || site == Site::valve_command || site == Site::valve || site == Site::load_spring ||
+         site == Site::sensor;
+}
+
+template <class S>
+struct Surroundings;
+
+/// What an effect sees at the sites `command`, `valve_command`, `valve` and `sensor`, over one step of `h` [s].
+/// The effect returns what the value becomes.
+template <class S>
+struct Signal {
+  using Scalar = S;
+  S value;  ///< mean over the step
+  double h = 0.0;
+  Precise<S> time{0.0};                   ///< of the record, mean over the step [s]
+  S change{0.0};                          ///< end of the step less its start; known at `valve_command` only
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
+};
+
+/// What an effect sees at the site `flow`: it returns flow added into the extend chamber [m^3/s].
+template <class S>
+struct Hydraulics {
+  using Scalar = S;
+  S load_pressure;  ///< mean over the step [Pa]
+  S opening;        ///< mean spool position after the valve's effects [-]
+  S supply_pressure;
+  double h = 0.0;
+  Precise<S> time{0.0};  ///< of the record, mean over the step [s]
+  S flow{0.0};           ///< through the valve's orifices into the extend chamber, mean over the step [m^3/s]
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
+};
+
+/// What an effect sees at the site `pressure`: it returns flow added to the flow that builds up pressure [m^3/s].
+///
+/// The piston yields to the pressure within the step: `free_flow` is the net flow without this effect, and `relief` how much
+/// of it a unit of added flow takes away, in [0, 1), so that the law can solve net = free_flow - relief * added in closed
+/// form instead of being stepped explicitly, which would be unstable at the oil's resonance.
+template <class S>
+struct Compression {
+  using Scalar = S;
+  S free_flow;      ///< into the extend chamber less what the piston takes, mean over the step [m^3/s]
+  S relief;         ///< [-]
+  S load_pressure;  ///< mean over the step [Pa]
+  double h;
+};
+
+/// What an effect sees at the sites `piston`, `engine_torque` and `mass_force`: it returns the force or torque that opposes
+/// the motion, mean over the step.
+///
+/// `velocity` is the mean velocity over the step as the last pass found it. `free_velocity` is what it would be without this
+/// effect and `compliance` how much a unit of mean force slows it, so that a stiff law can solve
+/// velocity = free_velocity - compliance * force in closed form instead of being stepped explicitly.
+template <class S>
+struct Motion {
+  using Scalar = S;
+  S position;  ///< mean over the step
+  S velocity;
+  S free_velocity;
+  S compliance;
+  double h = 0.0;
+  Precise<S> time{0.0};  ///< of the record, mean over the step [s]
+  S other_angle{0.0};    ///< of the engine about its other axis, mean over the step [rad]; known at `engine_torque` only
+  S other_rate{0.0};     ///< its rate [rad/s]; both zero for an axis alone
+  S load{0.0};           ///< A p_L at `piston`, the load spring's force at `engine_torque`, mean over the step [N]
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
+};
+
+/// What an effect sees at the site `load_spring`, and returns with its change. The spring's force is
+/// `stiffness * deflection`, so a nonlinear spring returns the deflection that gives its force.
+template <class S>
+struct Spring {
+  using Scalar = S;
+  S deflection;          ///< x_a - stroke(beta) - w, mean over the step [m]
+  S angle;               ///< engine angle beta, mean over the step [rad]
+  S nominal_arm;         ///< moment arm of the declared model [m]
+  S arm;                 ///< moment arm that turns force into torque, as the effects leave it [m]
+  S stiffness;           ///< K_T of the declared model [N/m]
+  S actuator_stiffness;  ///< K_act [N/m]
+  S load_stiffness;      ///< K_L [N/m]
+  double h = 0.0;
+  Precise<S> time{0.0};                   ///< of the record, mean over the step [s]
+  const Surroundings<S>* seen = nullptr;  ///< the axis around it
+};
+
+/// What an effect sees at the site `structure`: it returns the further motion of the attach point, mean over the step [m].
+template <class S>
+struct AttachPoint {
+  using Scalar = S;
+  S force;  ///< F of the load spring, mean over the step [N]
+  double h;
+};
+
+/// The input type of a site.
+template <Site site, class S>
+struct SiteInput {
+  using type = Signal<S>;
+};
+template <class S>
+struct SiteInput<Site::flow, S> {
+  using type = Hydraulics<S>;
+};
+template <class S>
+struct SiteInput<Site::pressure, S> {
+  using type = Compression<S>;
+};
+template <class S>
+struct SiteInput<Site::piston, S> {
+  using type = Motion<S>;
+};
+template <class S>
+struct SiteInput<Site::engine_torque, S> {
+  using type = Motion<S>;
+};
+template <class S>
+struct SiteInput<Site::mass_force, S> {
+  using type = Motion<S>;
+};
+template <class S>
+struct SiteInput<Site::load_spring, S> {
+  using type = Spring<S>;
+};
+template <class S>
+struct SiteInput<Site::structure, S> {
+  using type = AttachPoint<S>;
+};
+
+}  // namespace hotfire::model

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "model/declaration/effect.hpp"
+#include "model/numerics/scalar.hpp"
+
+namespace hotfire::model {
+
+/// Free play between piston and engine: no force while abs(deflection) < half_width, the spring beyond it.
+struct Backlash {
+  static constexpr std::string_view name = "backlash";
+  static constexpr Site site = Site::load_spring;
+  static constexpr NoOptions options{};
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 0;
+    S half_width{0.0};
+    static constexpr auto fields() {
+      return std::array{Field<Params>{"half_width", "m", 0.0, 0.01, 1e-4, "half of the free play", &Params::half_width}};
+    }
+  };
+
+  template <class S>
+  struct State {};
+
+  template <class S>
+  static Spring<S> step(const Params<S>& params, State<S>&, const Spring<S>& input) noexcept {
+    Spring<S> output = input;
+    output.deflection = input.deflection - clamp_symmetric<S>(input.deflection, params.half_width);
+    return output;
+  }
+};
+
+}  // namespace hotfire::model

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "model/declaration/effect.hpp"
+
+namespace hotfire::model {
+
+/// Hardening (or softening) spring: force = stiffness x^3, beside the declared linear stiffness [Duffing 1918].
+struct CubicStiffness {
+  static constexpr std::string_view name = "cubic_stiffness";
+  static constexpr Site site = Site::mass_force;
+  static constexpr NoOptions options{};
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 0;
+    S stiffness{0.0};
+    static constexpr auto fields() {
+      return std::array{Field<Params>{"stiffness", "force/position^3", -1e15, 1e15, 0.05,
+                                      "force per position to the third power", &Params::stiffness}};
+    }
+  };
+
+  template <class S>
+  struct State {};
+
+  template <class S>
+  static S step(const Params<S>& params, State<S>&, const Motion<S>& input) noexcept {
+    return params.stiffness * input.position * input.position * input.position;
+  }
+};
+
+}  // namespace hotfire::model

@@ -1,0 +1,213 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "model/actuator/surroundings.hpp"
+#include "model/effects/unlisted/unlisted.hpp"
+#include "model/numerics/memory.hpp"
+
+namespace hotfire::model {
+
+namespace term {
+
+inline constexpr std::array<std::string_view, kArgumentNames.size() + 1> kFactorNames = [] {
+  std::array<std::string_view, kArgumentNames.size() + 1> names{"none"};
+  for (std::size_t i = 0; i < kArgumentNames.size(); ++i) {
+    names[i + 1] = kArgumentNames[i];
+  }
+  return names;
+}();
+
+enum class Order { curve_last, curve_first };
+inline constexpr std::array<std::string_view, 2> kOrderNames{"curve_last", "curve_first"};
+
+/// What a term adds at its site: name and unit.
+template <Site at, int channel>
+struct Names;
+template <>
+struct Names<Site::command, -1> {
+  static constexpr std::string_view name = "term_command", unit = "rad";
+};
+template <>
+struct Names<Site::valve_command, -1> {
+  static constexpr std::string_view name = "term_valve_command", unit = "1";
+};
+template <>
+struct Names<Site::flow, -1> {
+  static constexpr std::string_view name = "term_flow", unit = "m^3/s";
+};
+template <>
+struct Names<Site::piston, -1> {
+  static constexpr std::string_view name = "term_piston_force", unit = "N";
+};
+template <>
+struct Names<Site::load_spring, -1> {
+  static constexpr std::string_view name = "term_deflection", unit = "m";
+};
+template <>
+struct Names<Site::engine_torque, -1> {
+  static constexpr std::string_view name = "term_torque", unit = "N.m";
+};
+template <>
+struct Names<Site::sensor, 0> {
+  static constexpr std::string_view name = "term_piston_reading", unit = "m";
+};
+template <>
+struct Names<Site::sensor, 1> {
+  static constexpr std::string_view name = "term_engine_reading", unit = "rad";
+};
+
+}  // namespace term
+
+/// A term of the grammar. What is added at a site is a curve and a memory, in either order, of one quantity of the axis or
+/// of the product s of two, and `direct` times s: a signal that is replaced has -1 there. Without points the curve is a
+/// gain; of `stops` the points are the widths and what each operator counts (Prandtl and Ishlinskii). A force or torque
+/// opposes the motion.
+template <Site at, int channel = -1>
+struct Term {
+  using Names = term::Names<at, channel>;
+  static constexpr std::string_view name = Names::name;
+  static constexpr Site site = at;
+  static constexpr bool is_unlisted = true;
+  static constexpr bool is_term = true;
+  static constexpr int sensor_channel = channel;
+  static constexpr auto options = kMemoryNames;
+  static constexpr std::string_view option_key = "memory";
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 0;
+    int argument = 0;
+    int factor = 0;
+    int order = 0;
+    S gain{0.0};
+    S direct{0.0};
+    S time{0.01};
+    S frequency{1.0};
+    S damping{0.5};
+    S width{1.0};
+    UnlistedTable<S> table{};
+    static constexpr auto choices() {
+      return std::array{Choice<Params>{"argument", kArgumentNames, &Params::argument},
+                        Choice<Params>{"factor", term::kFactorNames, &Params::factor},
+                        Choice<Params>{"order", term::kOrderNames, &Params::order}};
+    }
+    static constexpr auto fields() {
+      using enum Memory;
+      return std::array{
+          Field<Params>{"gain", "", -1e18, 1e18, 1.0, "what is added for a unit of the memory's output, without points",
+                        &Params::gain, ~memories({stops})},
+          Field<Params>{"direct", "", -1e18, 1e18, 1.0, "what is added for a unit of the argument itself", &Params::direct,
+                        ~memories({none})},
+          Field<Params>{"time", "s", 1e-5, 1e3, 0.02, "delay, time constant or sampling period", &Params::time,
+                        memories({delay, lag, washout, hold})},
+          Field<Params>{"frequency", "Hz", 1e-3, 1e4, 5.0, "natural frequency", &Params::frequency,
+                        memories({resonance, band_pass})},
+          Field<Params>{"damping", "1", 1e-3, 10.0, 0.5, "damping ratio", &Params::damping,
+                        memories({resonance, band_pass})},
+          Field<Params>{"width", "", 1e-15, 1e15, 1.0,
+                        "limit, quantum, half width or pitch in the argument's unit; of slew, of its rate", &Params::width,
+                        memories({slew, quantise, dead_zone, saturation, periodic})}};
+    }
+    static constexpr auto tables() {
+      return std::array{TableField<Params, UnlistedTable<S>>{"at", "", "added", Names::unit, -1e18, 1e18,
+                                                             "what is added at a value of the argument", &Params::table, ~0U,
+                                                             1.0, true}};
+    }
+  };
+
+  template <class S>
+  struct State {
+    MemoryState<S> memory{};
+  };
+
+  template <class S, class Input>
+  static void settle(const Params<S>&, State<S>& state, const Input&) noexcept {
+    state.memory.rest();
+  }
+
+  template <class S, class Input>
+  static auto step(const Params<S>& params, State<S>& state, const Input& input) noexcept {
+    if constexpr (std::is_same_v<Input, Signal<S>>) {
+      return S(input.value + added(params, state, input));
+    } else if constexpr (std::is_same_v<Input, Spring<S>>) {
+      Spring<S> output = input;
+      output.deflection += added(params, state, input);
+      return output;
+    } else {
+      return added(params, state, input);
+    }
+  }
+
+ private:
+  /// A quantity as the site sees it: its own signal as it comes in, everything else from around it.
+  template <class S, class Input>
+  static S quantity(Argument argument, const Input& input) noexcept {
+    if constexpr (std::is_same_v<Input, Signal<S>>) {
+      constexpr Argument kOwn = at == Site::command         ? Argument::command
+                                : at == Site::valve_command ? Argument::valve_command
+                                : channel == 0              ? Argument::position
+                                                            : Argument::angle;
+      if (argument == kOwn) {
+        return input.value;
+      }
+    } else if constexpr (std::is_same_v<Input, Spring<S>>) {
+      if (argument == Argument::deflection) {
+        return input.deflection;
+      }
+    } else if constexpr (std::is_same_v<Input, Hydraulics<S>>) {
+      if (argument == Argument::load_pressure) {
+        return input.load_pressure;
+      }
+      if (argument == Argument::spool) {
+        return input.opening;
+      }
+    } else if constexpr (std::is_same_v<Input, Motion<S>>) {
+      constexpr bool kIsPiston = at == Site::piston;
+      if (argument == (kIsPiston ? Argument::rate : Argument::angle_rate)) {
+        return input.velocity;
+      }
+      if (argument == (kIsPiston ? Argument::position : Argument::angle)) {
+        return input.position;
+      }
+    }
+    return input.seen == nullptr ? S{0.0} : input.seen->at(argument);
+  }
+
+  template <class S, class Input>
+  static S added(const Params<S>& params, State<S>& state, const Input& input) noexcept {
+    const auto argument = static_cast<Argument>(params.argument);
+    const bool has_curve = params.table.points > 0;
+    if constexpr (std::is_same_v<Input, Motion<S>>) {
+      constexpr Argument kRate = at == Site::piston ? Argument::rate : Argument::angle_rate;
+      if (has_curve && params.option == static_cast<int>(Memory::none) && argument == kRate && params.factor == 0) {
+        return unlisted::force_at_rate<S>(params.table, input);
+      }
+    }
+    S s = quantity<S>(argument, input);
+    if (params.factor > 0) {
+      s = s * quantity<S>(static_cast<Argument>(params.factor - 1), input);
+    }
+    const auto kind = static_cast<Memory>(params.option);
+    if (kind == Memory::stops) {
+      const auto& stops = state.memory.stop(params.table.x, params.table.points, s);
+      S sum = params.direct * s;
+      for (std::size_t k = 0; k < kMostStops; ++k) {
+        sum += params.table.y[k] * stops[k];
+      }
+      return sum;
+    }
+    const MemoryParameters<S> memory{kind, params.time, params.frequency, params.damping, params.width};
+    if (has_curve && static_cast<term::Order>(params.order) == term::Order::curve_first) {
+      return state.memory.step(memory, unlisted::value_at<S>(params.table, s), input.h) + params.direct * s;
+    }
+    const S remembered = state.memory.step(memory, s, input.h);
+    const S own = has_curve ? unlisted::value_at<S>(params.table, remembered) : S(params.gain * remembered);
+    return kind == Memory::none ? own : S(own + params.direct * s);
+  }
+};
+
+}  // namespace hotfire::model

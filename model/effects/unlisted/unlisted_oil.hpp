@@ -1,0 +1,97 @@
+#pragma once
+
+#include "model/effects/unlisted/unlisted.hpp"
+#include "model/numerics/scalar.hpp"
+
+namespace hotfire::model {
+
+/// Flow into the extend chamber [m^3/s] as a table over load pressure, spool position or time; or a share of the valve's
+/// flow as a table over how much has flowed of late, whichever way, remembered with a time constant (a supply that sags, oil
+/// that warms up).
+struct UnlistedFlow {
+  static constexpr std::string_view name = "unlisted_flow";
+  static constexpr Site site = Site::flow;
+  static constexpr bool is_unlisted = true;
+  static constexpr std::array<std::string_view, 4> options{"load_pressure", "opening", "time", "recent_flow"};
+  static constexpr std::string_view option_key = "depends_on";
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 0;
+    S memory{0.2};
+    UnlistedTable<S> table{};
+    static constexpr auto fields() {
+      return std::array{Field<Params>{"memory", "s", 1e-3, 1e3, 0.2, "time constant over which flow is remembered",
+                                      &Params::memory, 0b1000}};
+    }
+    static constexpr auto tables() {
+      using T = TableField<Params, UnlistedTable<S>>;
+      return std::array{T{"load_pressure", "Pa", "flow_at_pressure", "m^3/s", -1.0, 1.0, "further flow at a load pressure",
+                          &Params::table, 0b001, 5e-5},
+                        T{"opening", "1", "flow_at_opening", "m^3/s", -1.0, 1.0, "further flow at a spool position",
+                          &Params::table, 0b010, 5e-5},
+                        T{"time", "s", "flow_at_time", "m^3/s", -1.0, 1.0, "further flow at a time of the record",
+                          &Params::table, 0b100, 5e-5},
+                        T{"recent_flow", "m^3/s", "share_at_recent_flow", "1", -1.0, 10.0,
+                          "share by which the valve's flow grows with the flow of late", &Params::table, 0b1000, 0.1}};
+    }
+  };
+
+  template <class S>
+  struct State {
+    S recent{0.0};  ///< magnitude of the valve's flow as remembered [m^3/s]
+  };
+
+  template <class S>
+  static void settle(const Params<S>&, State<S>& state, const Hydraulics<S>& input) noexcept {
+    state.recent = input.flow * sign_of(input.flow);
+  }
+
+  template <class S>
+  static S step(const Params<S>& params, State<S>& state, const Hydraulics<S>& input) noexcept {
+    if (params.option == 3) {
+      const S magnitude = input.flow * sign_of(input.flow);
+      const S start = state.recent;
+      state.recent = magnitude + (start - magnitude) * fading_exponential<S>(input.h / params.memory);
+      return input.flow * unlisted::value_at<S>(params.table, S(0.5 * (start + state.recent)));
+    }
+    const Precise<S>& x = params.option == 0 ? input.load_pressure : params.option == 1 ? input.opening : input.time;
+    return unlisted::value_at<S>(params.table, x);
+  }
+};
+
+/// Oil whose compressibility depends on the load pressure: that of the declared bulk modulus, and of it a further share that
+/// is a table over the pressure (aerated oil, a hose that stiffens): dP/dt = (4 beta_e / V_T) net flow / (1 + share(P)).
+struct UnlistedPressure {
+  static constexpr std::string_view name = "unlisted_pressure";
+  static constexpr Site site = Site::pressure;
+  static constexpr bool is_unlisted = true;
+  static constexpr std::array<std::string_view, 1> options{"load_pressure"};
+  static constexpr std::string_view option_key = "depends_on";
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 0;
+    UnlistedTable<S> table{};
+    static constexpr auto fields() { return std::array<Field<Params>, 0>{}; }
+    static constexpr auto tables() {
+      return std::array{TableField<Params, UnlistedTable<S>>{
+          "load_pressure", "Pa", "compressibility_at_pressure", "1", -0.5, 1000.0,
+          "share by which the oil is more compressible than declared at a load pressure", &Params::table, 0b1, 0.2}};
+    }
+  };
+
+  template <class S>
+  struct State {};
+
+  template <class S>
+  static S step(const Params<S>& params, State<S>&, const Compression<S>& input) noexcept {
+    const S share = unlisted::value_at<S>(params.table, input.load_pressure);
+    // Of the net flow, what does not build up pressure as declared is -share / (1 + share).
+    return -share * input.free_flow / (1.0 + share * (1.0 - input.relief));
+  }
+};
+
+}  // namespace hotfire::model

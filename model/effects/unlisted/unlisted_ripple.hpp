@@ -1,0 +1,41 @@
+#pragma once
+
+#include "model/effects/unlisted/unlisted.hpp"
+
+namespace hotfire::model {
+
+/// A sinusoid of time that a sensor's reading has and the motion has not: mains hum, a supply that ripples.
+struct UnlistedRipple {
+  static constexpr std::string_view name = "unlisted_ripple";
+  static constexpr Site site = Site::sensor;
+  static constexpr bool is_unlisted = true;
+  static constexpr std::array<std::string_view, 2> options{"piston", "engine"};
+  static constexpr std::string_view option_key = "channel";
+
+  template <class S>
+  struct Params {
+    using Scalar = S;
+    int option = 0;
+    S frequency{1.0};
+    S amplitude{0.0};
+    S angle{0.0};
+    S phase{0.0};
+    static constexpr auto fields() {
+      return std::array{
+          Field<Params>{"frequency", "Hz", 1e-3, 1e3, 50.0, "frequency of the sinusoid", &Params::frequency, 0b11},
+          Field<Params>{"amplitude", "m", 0.0, 1.0, 1e-4, "amplitude of the sinusoid", &Params::amplitude, 0b01},
+          Field<Params>{"angle", "rad", 0.0, 1.0, 1e-4, "amplitude of the sinusoid", &Params::angle, 0b10},
+          unlisted::phase_field<Params>(0b11)};
+    }
+  };
+
+  template <class S>
+  struct State {};
+
+  template <class S>
+  static S step(const Params<S>& params, State<S>&, const Signal<S>& input) noexcept {
+    return input.value + unlisted::periodic(params, params.option == 0 ? params.amplitude : params.angle, input.time);
+  }
+};
+
+}  // namespace hotfire::model

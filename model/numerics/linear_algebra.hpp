@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "model/numerics/scalar.hpp"
+
+namespace hotfire::model {
+
+/// True if the matrix equals its transpose to `kSymmetry` of its own scale, row by row and column by column.
+template <class S, int N>
+bool is_symmetric(const Eigen::Matrix<S, N, N>& matrix) {
+  constexpr double kSymmetry = 1e-9;  // what a matrix printed with ten digits keeps
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const double scale = std::sqrt(std::abs(value_of(matrix(i, i)) * value_of(matrix(j, j))));
+      if (!(std::abs(value_of(matrix(i, j)) - value_of(matrix(j, i))) <= kSymmetry * scale)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// The factor L of matrix = L L^T (Cholesky), of which only the lower triangle is read. Returns false, with the factor
+/// unfinished, if the matrix is not positive definite. Set-up only. Written out because Eigen's order of additions follows
+/// the instruction set, and a model must have the same bits in the host's tools and on the target.
+template <class S, int N>
+bool factorise(const Eigen::Matrix<S, N, N>& matrix, Eigen::Matrix<S, N, N>& factor) {
+  factor.setZero();
+  for (int j = 0; j < N; ++j) {
+    S pivot = matrix(j, j);
+    for (int k = 0; k < j; ++k) {
+      pivot -= factor(j, k) * factor(j, k);
+    }
+    if (!(value_of(pivot) > 0.0)) {
+      return false;
+    }
+    factor(j, j) = sqrt(pivot);
+    for (int i = j + 1; i < N; ++i) {
+      S sum = matrix(i, j);
+      for (int k = 0; k < j; ++k) {
+        sum -= factor(i, k) * factor(j, k);
+      }
+      factor(i, j) = sum / factor(j, j);
+    }
+  }
+  return true;
+}
+
+template <class S, int N>
+bool is_positive_definite(const Eigen::Matrix<S, N, N>& matrix) {
+  Eigen::Matrix<S, N, N> factor;
+  return factorise<S, N>(matrix, factor);
+}
+
+/// Inverse of a symmetric positive definite matrix. Set-up only; zero if the matrix is not what it must be.
+template <class S, int N>
+Eigen::Matrix<S, N, N> inverse_of_positive_definite(const Eigen::Matrix<S, N, N>& matrix) {
+  Eigen::Matrix<S, N, N> factor;
+  Eigen::Matrix<S, N, N> inverse = Eigen::Matrix<S, N, N>::Zero();
+  if (!factorise<S, N>(matrix, factor)) {
+    return inverse;
+  }
+  for (int column = 0; column < N; ++column) {
+    for (int i = 0; i < N; ++i) {
+      S sum = i == column ? S(1.0) : S(0.0);
+      for (int k = 0; k < i; ++k) {
+        sum -= factor(i, k) * inverse(k, column);
+      }
+      inverse(i, column) = sum / factor(i, i);
+    }
+    for (int i = N - 1; i >= 0; --i) {
+      S sum = inverse(i, column);
+      for (int k = i + 1; k < N; ++k) {
+        sum -= factor(k, i) * inverse(k, column);
+      }
+      inverse(i, column) = sum / factor(i, i);
+    }
+  }
+  return inverse;
+}
+
+}  // namespace hotfire::model

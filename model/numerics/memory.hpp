@@ -1,0 +1,192 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string_view>
+
+#include "model/numerics/scalar.hpp"
+
+namespace hotfire::model {
+
+/// What a term of the grammar remembers of its argument s: a linear filter, a hysteresis, a limit or a loss of information.
+enum class Memory {
+  none,
+  delay,       ///< s(t - time)
+  lag,         ///< first-order low pass of time constant `time`
+  washout,     ///< s less that low pass
+  resonance,   ///< second-order low pass of `frequency` and `damping`
+  band_pass,   ///< 2 damping / (2 pi frequency) times the rate of that
+  stops,       ///< stop operators (Krasnosel'skii and Pokrovskii 1989, sec. 2), one for each of up to four widths
+  slew,        ///< what follows s by at most `width` a second
+  hold,        ///< s as it was sampled once every `time`
+  quantise,    ///< s rounded to multiples of `width`
+  dead_zone,   ///< s without what lies within `width` of zero
+  saturation,  ///< s limited to `width`
+  periodic     ///< s less the nearest multiple of `width`
+};
+inline constexpr std::array<std::string_view, 13> kMemoryNames{"none",      "delay",      "lag",     "washout", "resonance",
+                                                               "band_pass", "stops",      "slew",    "hold",    "quantise",
+                                                               "dead_zone", "saturation", "periodic"};
+
+/// A bit for each of the memories: which of them use a parameter.
+constexpr unsigned memories(std::initializer_list<Memory> kinds) noexcept {
+  unsigned bits = 0;
+  for (const Memory kind : kinds) {
+    bits |= 1U << static_cast<unsigned>(kind);
+  }
+  return bits;
+}
+
+template <class S>
+struct MemoryParameters {
+  Memory kind = Memory::none;
+  S time{0.0};       ///< [s]
+  S frequency{1.0};  ///< [Hz]
+  S damping{0.5};    ///< of critical [1]
+  S width{1.0};      ///< in the argument's unit
+};
+
+inline constexpr std::size_t kMostStops = 4;
+
+/// State of a memory. Until it has started it rests under whatever the argument is: its output is the steady one.
+template <class S>
+class MemoryState {
+ public:
+  MemoryState() = default;
+  /// The same in another scalar, value by value.
+  template <class Other>
+  explicit MemoryState(const MemoryState<Other>& other) noexcept
+      : started_(other.started_),
+        value_(value_of(other.value_)),
+        rate_(value_of(other.rate_)),
+        since_(other.since_),
+        newest_(other.newest_),
+        age_(other.age_) {
+    for (std::size_t k = 0; k < kMostStops; ++k) {
+      stops_[k] = S(value_of(other.stops_[k]));
+    }
+    for (std::size_t k = 0; k < kEarlier; ++k) {
+      earlier_[k] = S(value_of(other.earlier_[k]));
+    }
+  }
+
+  void rest() noexcept { started_ = false; }
+
+  /// Output of every memory but `stops`, mean over a step of `h` [s] in which the argument `s` is held.
+  S step(const MemoryParameters<S>& params, const S& s, double h) noexcept {
+    start(s);
+    switch (params.kind) {
+      case Memory::none:
+      case Memory::stops:
+        return s;
+      case Memory::delay:
+        return delayed(params.time, s, h);
+      case Memory::lag:
+        return low_pass(params.time, s, h);
+      case Memory::washout:
+        return s - low_pass(params.time, s, h);
+      case Memory::resonance:
+      case Memory::band_pass: {
+        // Implicit midpoint rule: stable at any frequency.
+        const S natural = 2.0 * std::numbers::pi * params.frequency;
+        const S start = value_;
+        const S mean_rate = (rate_ + 0.5 * h * natural * natural * (s - start)) /
+                            (1.0 + natural * h * (params.damping + 0.25 * natural * h));
+        value_ = start + h * mean_rate;
+        rate_ = 2.0 * mean_rate - rate_;
+        return params.kind == Memory::resonance ? S(0.5 * (start + value_)) : S(2.0 * params.damping * mean_rate / natural);
+      }
+      case Memory::slew:
+        value_ = value_ + clamp_symmetric<S>(s - value_, params.width * h);
+        return value_;
+      case Memory::hold:
+        if (since_ >= value_of(params.time) * (1.0 - 1e-9)) {
+          value_ = s;
+          since_ = 0.0;
+        }
+        since_ += h;
+        return value_;
+      case Memory::quantise:
+        return params.width * std::round(value_of(s) / value_of(params.width));
+      case Memory::dead_zone:
+        return s - clamp_symmetric<S>(s, params.width);
+      case Memory::saturation:
+        return clamp_symmetric<S>(s, params.width);
+      case Memory::periodic:
+        return s - params.width * std::round(value_of(s) / value_of(params.width));
+    }
+    return s;
+  }
+
+  /// Output of the stop operators of given widths.
+  template <class Widths>
+  const std::array<S, kMostStops>& stop(const Widths& widths, int count, const S& s) noexcept {
+    start(s);
+    const S change = s - value_;
+    value_ = s;
+    for (std::size_t k = 0; k < kMostStops; ++k) {
+      if (static_cast<int>(k) < count) {
+        stops_[k] = clamp_symmetric<S>(stops_[k] + change, S(widths[k]));
+      }
+    }
+    return stops_;
+  }
+
+ private:
+  template <class Other>
+  friend class MemoryState;
+
+  static constexpr std::size_t kEarlier = 64;
+
+  void start(const S& s) noexcept {
+    if (!started_) {
+      started_ = true;
+      value_ = s;
+      rate_ = S{0.0};
+      stops_.fill(S{0.0});
+      earlier_.fill(s);
+      since_ = 0.0;
+      age_ = 0;
+    }
+  }
+
+  S low_pass(const S& time, const S& s, double h) noexcept {
+    const S behind = value_ - s;
+    const S left = fading_exponential<S>(h / time);
+    value_ = s + behind * left;
+    return s + behind * (1.0 - left) * (time / h);
+  }
+
+  /// The argument `time` ago, between samples that are as many steps apart as the ring needs to reach so far.
+  S delayed(const S& time, const S& s, double h) noexcept {
+    const S steps = time / h;
+    const int stride = 1 + static_cast<int>(value_of(steps) / (kEarlier - 3));
+    age_ = age_ + 1;
+    if (age_ >= stride) {
+      age_ = 0;
+      newest_ = (newest_ + 1) % kEarlier;
+      earlier_[newest_] = s;
+    }
+    const S back = (steps - static_cast<double>(age_)) / static_cast<double>(stride);
+    if (value_of(back) < 0.0) {
+      return s + (earlier_[newest_] - s) * (steps / static_cast<double>(age_));
+    }
+    const auto whole = static_cast<std::size_t>(value_of(back));
+    const S& later = earlier_[(newest_ + kEarlier - whole) % kEarlier];
+    const S& older = earlier_[(newest_ + kEarlier - whole - 1) % kEarlier];
+    return later + (older - later) * (back - static_cast<double>(whole));
+  }
+
+  bool started_ = false;
+  S value_{0.0};
+  S rate_{0.0};
+  std::array<S, kMostStops> stops_{};
+  double since_ = 0.0;  ///< the last sample of `hold` [s]
+  std::array<S, kEarlier> earlier_{};
+  std::size_t newest_ = 0;
+  int age_ = 0;  ///< of the newest of them, in steps
+};
+
+}  // namespace hotfire::model

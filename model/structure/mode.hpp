@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cmath>
+
+#include "model/numerics/scalar.hpp"
+
+namespace hotfire::model {
+
+/// One mode of a structure, mass-normalised: displacement eta [m kg^0.5] and its rate.
+template <class S>
+struct ModeMotion {
+  S displacement{0.0};
+  S velocity{0.0};
+};
+
+/// The exact advance of eta'' + 2 zeta w eta' + w^2 eta = 0 over `h` [s]. Under a force that is held it is that of the
+/// deviation from force / w^2, where the mode would come to rest. `w` is the undamped natural frequency [rad/s], above 0;
+/// zeta lies in [0, 1).
+template <class S>
+ModeMotion<S> advance_mode(const ModeMotion<S>& from, const S& w, const S& damping_ratio, double h) noexcept {
+  using std::cos;
+  using std::sin;
+  const S decay_rate = damping_ratio * w;
+  const S damped = w * sqrt(1.0 - damping_ratio * damping_ratio);
+  const S envelope = exp(-decay_rate * h);
+  const S c = cos(damped * h) * envelope;
+  const S s = sin(damped * h) * envelope;
+  return {from.displacement * c + (from.velocity + decay_rate * from.displacement) / damped * s,
+          from.velocity * c - (from.velocity * decay_rate + from.displacement * (w * w)) / damped * s};
+}
+
+}  // namespace hotfire::model

@@ -1,0 +1,105 @@
+// Steps from random states under random commands, for callgrind to count: vehicle_cost.cmake runs it.
+//   vehicle_cost axis|taos|masv MODES
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "tests/model/cvode/axis_comparison.hpp"
+#include "tests/model/support/vehicles.hpp"
+
+namespace hotfire::test {
+namespace {
+
+using Axis = model::Simplex<double>;
+
+constexpr int kSteps = 200;
+constexpr double kStep = 5e-4;
+
+/// Moves one axis anywhere it can be. Half of them are all but at rest, so that the bristle sticks.
+template <class State>
+void disturb(State& state, Random& random, double size) {
+  state.y(Axis::kOpening) += size * random.either_sign(1e-4, 1.0);
+  state.y(Axis::kOpeningRate) = size * random.either_sign(1e-3, 100.0);
+  state.y(Axis::kPressure) += size * random.either_sign(1e3, 2e7);
+  state.y(Axis::kWashout) += size * random.either_sign(1e3, 2e7);
+  state.y(Axis::kPiston) += size * random.either_sign(1e-9, 1e-2);
+  state.y(Axis::kPistonRate) = size * random.either_sign(1e-9, 1.0);
+  state.y(Axis::kAngle) += size * random.either_sign(1e-9, 1e-2);
+  state.y(Axis::kAngleRate) = size * random.either_sign(1e-7, 2.0);
+}
+
+}  // namespace
+
+// callgrind knows it by name and counts what is inside.
+extern "C" __attribute__((noinline)) void hotfire_measured_axis(const Axis& plant, Axis::State& state, double command);
+void hotfire_measured_axis(const Axis& plant, Axis::State& state, double command) { plant.step(state, command); }
+extern "C" __attribute__((noinline)) void hotfire_measured_taos(const Taos& plant, Taos::State& state,
+                                                                const Taos::Inputs& inputs);
+void hotfire_measured_taos(const Taos& plant, Taos::State& state, const Taos::Inputs& inputs) { plant.step(state, inputs); }
+extern "C" __attribute__((noinline)) void hotfire_measured_masv(const Masv& plant, Masv::State& state,
+                                                                const Masv::Inputs& inputs);
+void hotfire_measured_masv(const Masv& plant, Masv::State& state, const Masv::Inputs& inputs) { plant.step(state, inputs); }
+
+namespace {
+
+void step_axis() {
+  const Axis plant(hot_fire_axis().parameters, kStep);
+  constexpr std::size_t friction = index_in<model::GimbalFriction>(Axis::Effects{});
+  Random random(11);
+  for (int i = 0; i < kSteps; ++i) {
+    Axis::State state = plant.steady(random.uniform(-0.05, 0.05));
+    const double size = random.one_in(2) ? 1.0 : 1e-5;
+    disturb(state, random, size);
+    std::get<friction>(state.effects.values).deflection = size * random.uniform(-1.0, 1.0) * 1.5e-4;
+    hotfire_measured_axis(plant, state, random.uniform(-0.05, 0.05));
+  }
+}
+
+template <class Vehicle, class Measured>
+void step_vehicle(int modes, Measured&& measured) {
+  typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
+  parameters.modes = random_modes<typename Vehicle::Modes>(modes, 1.0 / 1.05e8, 5);
+  const Vehicle plant(parameters, kStep);
+  Random random(11);
+  const typename Vehicle::State rest = plant.steady({});
+  for (int i = 0; i < kSteps; ++i) {
+    typename Vehicle::State state = rest;
+    typename Vehicle::Inputs inputs;
+    for (int e = 0; e < Vehicle::kEngines; ++e) {
+      const double size = random.one_in(2) ? 1.0 : 1e-5;
+      for (int axis = 2 * e; axis < 2 * e + 2; ++axis) {
+        disturb(state.axes[static_cast<std::size_t>(axis)], random, size);
+        inputs.commands[static_cast<std::size_t>(axis)] = random.uniform(-0.05, 0.05);
+      }
+      auto& gimbal = state.gimbals[static_cast<std::size_t>(e)];
+      gimbal.bristle = {size * random.uniform(-1e-4, 1e-4), size * random.uniform(-1e-4, 1e-4)};
+      gimbal.torque = 1e8 * gimbal.bristle;
+    }
+    for (int k = 0; k < modes; ++k) {
+      state.structure.modes[static_cast<std::size_t>(k)].displacement += random.either_sign(1e-9, 1e-2);
+      state.structure.modes[static_cast<std::size_t>(k)].velocity = random.either_sign(1e-9, 1.0);
+    }
+    measured(plant, state, inputs);
+  }
+}
+
+}  // namespace
+}  // namespace hotfire::test
+
+int main(int argc, char** argv) {
+  using namespace hotfire::test;
+  const std::string what = argc > 1 ? argv[1] : "";
+  const int modes = argc > 2 ? static_cast<int>(std::strtol(argv[2], nullptr, 10)) : 0;
+  if (what == "axis") {
+    step_axis();
+  } else if (what == "taos") {
+    step_vehicle<Taos>(modes, hotfire_measured_taos);
+  } else if (what == "masv") {
+    step_vehicle<Masv>(modes, hotfire_measured_masv);
+  } else {
+    std::fputs("vehicle_cost axis|taos|masv MODES\n", stderr);
+    return 2;
+  }
+  return 0;
+}

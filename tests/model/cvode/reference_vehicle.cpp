@@ -1,0 +1,244 @@
+#include "tests/model/cvode/reference_vehicle.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/model/cvode/reference_parts.hpp"
+#include "tools/study/reference/cvode_integrator.hpp"
+
+namespace hotfire::test {
+namespace {
+
+using Vector = Eigen::Vector3d;
+using Pair = Eigen::Vector2d;
+using Six = Eigen::Matrix<double, 6, 1>;
+
+// States: of every engine two axes, the bristle and the bearing; then displacement and rate of every mode.
+constexpr int kAxisStates = kReferenceStates;
+constexpr int kBristle = 2 * kAxisStates;
+constexpr int kBearing = kBristle + 2;
+constexpr int kEngineStates = kBearing + 6;
+
+struct Problem {
+  const ReferenceVehicle* vehicle = nullptr;
+  const double* commands = nullptr;
+};
+
+/// The engine turned: first by yaw about its own z, then with it by pitch about the vehicle's y.
+struct Turned {
+  Eigen::Matrix3d rotation;
+  std::array<Vector, 2> axes;  ///< about which a change of pitch, of yaw turns it
+
+  Turned(double pitch, double yaw) {
+    const Eigen::Matrix3d about_y = Eigen::AngleAxisd(pitch, Vector::UnitY()).toRotationMatrix();
+    rotation = about_y * Eigen::AngleAxisd(yaw, Vector::UnitZ()).toRotationMatrix();
+    axes = {Vector::UnitY(), about_y * Vector::UnitZ()};
+  }
+};
+
+/// How an actuator stands between vehicle and engine.
+struct Actuator {
+  double stroke;     ///< from zero angles [m]
+  Vector direction;  ///< of its push on the engine
+  Pair arms;         ///< torque about pitch and yaw per force [m]
+};
+
+Actuator actuator_of(const ReferenceVehicle::Engine& engine, int axis, const Turned& turned, double angle) {
+  const auto i = static_cast<std::size_t>(axis);
+  if (engine.declared_arms) {
+    const double arm = engine.axes[i].arm;
+    return {arm * angle, -Vector::UnitX(), arm * Pair::Unit(axis)};
+  }
+  const Vector at = turned.rotation * engine.on_engine[i];
+  const Vector line = at - engine.on_vehicle[i];
+  const Vector direction = line.normalized();
+  return {line.norm() - (engine.on_engine[i] - engine.on_vehicle[i]).norm(), direction,
+          Pair(direction.dot(turned.axes[0].cross(at)), direction.dot(turned.axes[1].cross(at)))};
+}
+
+struct Friction {
+  Pair torque;
+  Pair bristle_rate;
+};
+
+Friction lugre(const ReferenceVehicle::Engine& engine, const Pair& slip, const Pair& z) {
+  const auto& law = engine.friction;
+  if (law.level == 0.0) {
+    return {Pair::Zero(), Pair::Zero()};
+  }
+  const double speed = slip.norm();
+  const double sliding = law.level * (1.0 + (engine.vibration_ratio - 1.0) * std::exp(-speed / engine.vibration_velocity));
+  const double level = study::stribeck(sliding, law.static_ratio, law.stribeck, speed);
+  const Pair rate = slip - law.stiffness * speed / level * z;
+  const double fading = std::exp(-(speed / law.damping_dies_at) * (speed / law.damping_dies_at));
+  return {law.stiffness * z + law.damping * fading * rate, rate};
+}
+
+/// Friction and the rate of the bearing, which depend on each other: the torque turns the bearing, whose rate is part of the
+/// slip. The bristle's damping is weak against the bearing's, so that the repetition contracts.
+Friction friction_on_bearing(const ReferenceVehicle::Engine& engine, const Pair& rate_of_engine, const Pair& z,
+                             const Six& bearing, const Vector& force, Six& bearing_rate) {
+  Friction friction{Pair::Zero(), Pair::Zero()};
+  for (int i = 0; i < 60; ++i) {
+    Six wrench;
+    wrench << force, 0.0, friction.torque;
+    bearing_rate = (engine.bearing_compliance * wrench - bearing) / engine.loss_time;
+    const Friction next = lugre(engine, rate_of_engine - bearing_rate.tail<2>(), z);
+    const double change = (next.torque - friction.torque).norm();
+    friction = next;
+    if (change <= 1e-15 * friction.torque.norm()) {
+      break;
+    }
+  }
+  return friction;
+}
+
+/// What the structure does at one engine.
+struct Base {
+  Pair moved = Pair::Zero();  ///< attach points pulled together [m]
+  Pair turned = Pair::Zero();
+  Pair turned_rate = Pair::Zero();
+};
+
+/// What an engine does to the structure.
+struct OnStructure {
+  Pair forces;
+  Pair torques;
+};
+
+/// The equations of one engine, its states and their rates from `y` and `d` on.
+OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const double* commands, const Base& base,
+                              const double* y, double* d) {
+  const auto of = [&](int axis, int i) { return y[axis * kAxisStates + i]; };
+  const Turned turned(of(0, kReferenceAngle), of(1, kReferenceAngle));
+  const Eigen::Map<const Six> bearing(y + kBearing);
+  OnStructure result;
+  Pair torque = Pair::Zero();
+  Vector on_bearing = engine.thrust * (turned.rotation * Vector::UnitX());
+  for (int axis = 0; axis < 2; ++axis) {
+    const Actuator actuator = actuator_of(engine, axis, turned, of(axis, kReferenceAngle));
+    const double deflection =
+        of(axis, kReferencePiston) - actuator.stroke - base.moved(axis) - actuator.direction.dot(bearing.head<3>());
+    const double force = study::spring_force(engine.axes[static_cast<std::size_t>(axis)], deflection);
+    result.forces(axis) = force;
+    on_bearing += force * actuator.direction;
+    torque += force * actuator.arms;
+  }
+
+  const Pair rates(of(0, kReferenceAngleRate), of(1, kReferenceAngleRate));
+  Six bearing_rate;
+  const Friction friction = friction_on_bearing(engine, rates - base.turned_rate, Pair(y[kBristle], y[kBristle + 1]),
+                                                bearing, on_bearing, bearing_rate);
+  Eigen::Map<Six>(d + kBearing) = bearing_rate;
+  d[kBristle] = friction.bristle_rate(0);
+  d[kBristle + 1] = friction.bristle_rate(1);
+
+  for (int axis = 0; axis < 2; ++axis) {
+    const ReferenceAxis& a = engine.axes[static_cast<std::size_t>(axis)];
+    const double* own = y + axis * kAxisStates;
+    double* own_rate = d + axis * kAxisStates;
+    const double torque_motor = a.position_gain * (a.arm * commands[axis] - own[kReferencePiston]) -
+                                a.pressure_gain * (own[kReferencePressure] - own[kReferenceWashout]);
+    reference_hydraulics(a, study::clamp_to(torque_motor, 1.0), own, own_rate);
+    own_rate[kReferencePiston] = own[kReferencePistonRate];
+    own_rate[kReferencePistonRate] =
+        (a.area * own[kReferencePressure] - result.forces(axis) - a.piston_damping * own[kReferencePistonRate]) /
+        a.piston_mass;
+    own_rate[kReferenceAngle] = own[kReferenceAngleRate];
+    result.torques(axis) = friction.torque(axis) + a.duct_stiffness * (own[kReferenceAngle] - base.turned(axis)) +
+                           a.damping * (own[kReferenceAngleRate] - base.turned_rate(axis));
+    const double across = a.cross_stiffness * of(1 - axis, kReferenceAngle) + a.cross_damping * rates(1 - axis);
+    own_rate[kReferenceAngleRate] = (torque(axis) - result.torques(axis) - across) / a.inertia;
+  }
+  return result;
+}
+
+int derivative(double, N_Vector state, N_Vector result, void* user) {
+  const Problem& problem = *static_cast<Problem*>(user);
+  const ReferenceVehicle& vehicle = *problem.vehicle;
+  const std::size_t engines = vehicle.engines.size();
+  const double* y = N_VGetArrayPointer(state);
+  double* d = N_VGetArrayPointer(result);
+  const double* modes = y + engines * kEngineStates;
+  double* mode_rates = d + engines * kEngineStates;
+
+  // The modes without force; what the engines do comes on top.
+  for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
+    const ReferenceVehicle::Mode& mode = vehicle.modes[k];
+    const double w = 2.0 * std::numbers::pi * mode.frequency;
+    mode_rates[2 * k] = modes[2 * k + 1];
+    mode_rates[2 * k + 1] = -2.0 * mode.damping * w * modes[2 * k + 1] - w * w * modes[2 * k];
+  }
+  for (std::size_t e = 0; e < engines; ++e) {
+    Base base;
+    for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
+      const Eigen::Map<const Pair> attach(&vehicle.modes[k].attach[2 * e]);
+      const Eigen::Map<const Pair> rotation(&vehicle.modes[k].rotation[2 * e]);
+      base.moved += attach * modes[2 * k];
+      base.turned += rotation * modes[2 * k];
+      base.turned_rate += rotation * modes[2 * k + 1];
+    }
+    const OnStructure on =
+        engine_derivative(vehicle.engines[e], problem.commands + 2 * e, base, y + e * kEngineStates, d + e * kEngineStates);
+    for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
+      const Eigen::Map<const Pair> attach(&vehicle.modes[k].attach[2 * e]);
+      const Eigen::Map<const Pair> rotation(&vehicle.modes[k].rotation[2 * e]);
+      mode_rates[2 * k + 1] += attach.dot(on.forces) + rotation.dot(on.torques);
+    }
+  }
+  return 0;
+}
+
+std::vector<double> scales(const ReferenceVehicle& vehicle) {
+  constexpr std::array<double, kAxisStates> kAxis{0.01, 1.0, 1e6, 1e6, 0.01, 0.1, 0.01, 0.1};
+  std::vector<double> scale;
+  for (std::size_t e = 0; e < vehicle.engines.size(); ++e) {
+    scale.insert(scale.end(), kAxis.begin(), kAxis.end());
+    scale.insert(scale.end(), kAxis.begin(), kAxis.end());
+    scale.insert(scale.end(), 8, 1e-4);
+  }
+  for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
+    scale.insert(scale.end(), {0.1, 1.0});
+  }
+  return scale;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& vehicle, const ReferenceVehicle::Start& start,
+                                                     const std::vector<std::vector<double>>& commands, double sample,
+                                                     double tolerance, long* evaluations) {
+  Problem problem{&vehicle, nullptr};
+  study::CvodeIntegrator integrator(derivative, &problem, scales(vehicle), tolerance);
+  double* y = integrator.state();
+  for (const ReferenceVehicle::Start::Engine& engine : start.engines) {
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto& own = engine.axes[static_cast<std::size_t>(axis)];
+      std::copy(own.begin(), own.end(), y + axis * kAxisStates);
+    }
+    std::copy(engine.bearing.begin(), engine.bearing.end(), y + kBearing);
+    y += kEngineStates;
+  }
+  for (std::size_t k = 0; k < start.modes.size(); ++k) {
+    y[2 * k] = start.modes[k];
+  }
+  std::vector<std::vector<double>> rows;
+  rows.reserve(commands.size());
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    problem.commands = commands[i].data();
+    integrator.advance(static_cast<double>(i + 1) * sample);
+    std::vector<double> row;
+    for (std::size_t e = 0; e < vehicle.engines.size(); ++e) {
+      const double* now = integrator.state() + e * kEngineStates;
+      row.insert(row.end(), {now[kReferencePiston], now[kReferenceAngle], now[kAxisStates + kReferencePiston],
+                             now[kAxisStates + kReferenceAngle]});
+    }
+    rows.push_back(std::move(row));
+  }
+  if (evaluations != nullptr) {
+    *evaluations += integrator.evaluations();
+  }
+  return rows;
+}
+
+}  // namespace hotfire::test

@@ -1,0 +1,152 @@
+#include "model/numerics/memory.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace hotfire::test {
+namespace {
+
+using model::Memory;
+using Parameters = model::MemoryParameters<double>;
+
+constexpr double kStep = 1e-3;
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+Parameters of(Memory kind) {
+  Parameters parameters;
+  parameters.kind = kind;
+  return parameters;
+}
+
+/// Complex gain of a linear memory at a frequency [Hz], by correlation over the last ten of forty periods.
+std::complex<double> gain_at(const Parameters& parameters, double frequency) {
+  model::MemoryState<double> state;
+  const auto period = static_cast<int>(std::lround(1.0 / (frequency * kStep)));
+  std::complex<double> gain = 0.0;
+  for (int n = 0; n < 40 * period; ++n) {
+    // The argument is held over a step: its mean over the step is that of the middle.
+    const double phase = kTurn * (n + 0.5) / period;
+    const double output = state.step(parameters, std::sin(phase), kStep);
+    if (n >= 30 * period) {
+      gain += output * std::exp(std::complex<double>(0.0, -phase)) * std::complex<double>(0.0, 2.0) / (10.0 * period);
+    }
+  }
+  return gain;
+}
+
+void check_gain(const Parameters& parameters, double frequency, std::complex<double> wanted) {
+  const std::complex<double> gain = gain_at(parameters, frequency);
+  // The hold and the mean over a step are wrong by the square of a step's share of a period: (2 pi f h)^2 / 12 of the gain,
+  // and the midpoint rule by as much again in its frequency.
+  const double error = 0.02;
+  DOUBLES_EQUAL(wanted.real(), gain.real(), error);
+  DOUBLES_EQUAL(wanted.imag(), gain.imag(), error);
+}
+
+}  // namespace
+
+TEST_GROUP(TermMemory){};
+
+TEST(TermMemory, LagAndWashoutAreFirstOrder) {
+  for (const double frequency : {1.0, 5.0, 10.0}) {
+    const std::complex<double> s(0.0, kTurn * frequency);
+    Parameters parameters = of(Memory::lag);
+    parameters.time = 0.03;
+    check_gain(parameters, frequency, 1.0 / (1.0 + 0.03 * s));
+    parameters.kind = Memory::washout;
+    check_gain(parameters, frequency, 0.03 * s / (1.0 + 0.03 * s));
+  }
+}
+
+TEST(TermMemory, ResonanceAndBandPassAreSecondOrder) {
+  for (const double frequency : {1.0, 5.0, 10.0}) {
+    const std::complex<double> s(0.0, kTurn * frequency);
+    const double natural = kTurn * 6.0;
+    Parameters parameters = of(Memory::resonance);
+    parameters.frequency = 6.0;
+    parameters.damping = 0.4;
+    const std::complex<double> below = natural * natural + 0.8 * natural * s + s * s;
+    check_gain(parameters, frequency, natural * natural / below);
+    parameters.kind = Memory::band_pass;
+    check_gain(parameters, frequency, 0.8 * natural * s / below);
+  }
+}
+
+TEST(TermMemory, DelayReadsTheArgumentOfThenAtAnyLength) {
+  for (const double delay : {0.4e-3, 3e-3, 17.3e-3, 0.25}) {
+    Parameters parameters = of(Memory::delay);
+    parameters.time = delay;
+    model::MemoryState<double> state;
+    double output = 0.0;
+    for (int n = 0; n <= 600; ++n) {
+      output = state.step(parameters, 5.0 * n * kStep, kStep);
+    }
+    DOUBLES_EQUAL(5.0 * (0.6 - delay), output, 1e-9);
+  }
+}
+
+TEST(TermMemory, AStopFollowsTheArgumentWithinItsWidthAndTurnsAtOnce) {
+  model::MemoryState<double> state;
+  const std::array<double, 2> widths{0.5, 2.0};
+  const auto last = [&](double argument) { return state.stop(widths, 2, argument); };
+  last(0.0);
+  const auto forth = last(1.0);
+  DOUBLES_EQUAL(0.5, forth[0], 1e-15);
+  DOUBLES_EQUAL(1.0, forth[1], 1e-15);
+  const auto back = last(0.7);
+  DOUBLES_EQUAL(0.2, back[0], 1e-15);
+  DOUBLES_EQUAL(0.7, back[1], 1e-15);
+}
+
+TEST(TermMemory, SlewFollowsNoFasterThanItsLimit) {
+  Parameters parameters = of(Memory::slew);
+  parameters.width = 3.0;
+  model::MemoryState<double> state;
+  state.step(parameters, 0.0, kStep);
+  for (int n = 1; n <= 100; ++n) {
+    DOUBLES_EQUAL(n * 3.0 * kStep, state.step(parameters, 1.0, kStep), 1e-12);
+  }
+}
+
+TEST(TermMemory, HoldKeepsTheSampleOfEveryPeriod) {
+  Parameters parameters = of(Memory::hold);
+  parameters.time = 5.0 * kStep;
+  model::MemoryState<double> state;
+  for (int n = 0; n < 50; ++n) {
+    DOUBLES_EQUAL(n - n % 5, state.step(parameters, n, kStep), 1e-12);
+  }
+}
+
+TEST(TermMemory, MemorylessDistortionsAreWhatTheyAreCalled) {
+  model::MemoryState<double> state;
+  Parameters parameters = of(Memory::quantise);
+  parameters.width = 0.4;
+  DOUBLES_EQUAL(0.8, state.step(parameters, 0.93, kStep), 1e-12);
+  parameters.kind = Memory::dead_zone;
+  DOUBLES_EQUAL(-0.53, state.step(parameters, -0.93, kStep), 1e-12);
+  parameters.kind = Memory::saturation;
+  DOUBLES_EQUAL(-0.4, state.step(parameters, -0.93, kStep), 1e-12);
+  parameters.kind = Memory::periodic;
+  DOUBLES_EQUAL(0.13, state.step(parameters, 0.93, kStep), 1e-12);
+}
+
+TEST(TermMemory, AMemoryThatHasNotStartedRestsUnderItsArgument) {
+  for (std::size_t kind = 0; kind < model::kMemoryNames.size(); ++kind) {
+    Parameters parameters = of(static_cast<Memory>(kind));
+    parameters.time = 0.05;
+    parameters.width = 100.0;
+    model::MemoryState<double> first;
+    const double start = first.step(parameters, 0.7, kStep);
+    double later = start;
+    for (int n = 0; n < 200; ++n) {
+      later = first.step(parameters, 0.7, kStep);
+    }
+    DOUBLES_EQUAL(start, later, 1e-12);
+  }
+}
+
+}  // namespace hotfire::test

@@ -1,0 +1,191 @@
+#include <CppUTest/TestHarness.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "tests/model/support/vehicles.hpp"
+
+namespace hotfire::test {
+
+namespace {
+
+using Friction = model::BearingFriction<double>;
+using Pair = model::Pair<double>;
+
+constexpr double kStep = 5e-4;
+
+/// Hot fire whose friction, structure, bearing and trim follow the thrust.
+template <class Vehicle>
+typename Vehicle::Parameters thrust_dependent(double thrust) {
+  typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
+  for (auto& gimbal : parameters.gimbals) {
+    gimbal.bearing.thrust = thrust;
+    gimbal.bearing.rated_thrust = 1.86e6;
+    gimbal.bearing.dead_load = -3.4e4;
+    gimbal.bearing.unloaded_structure = 0.4;
+    gimbal.bearing.unloaded_stiffness = 0.5;
+    gimbal.bearing.load_scale = 8e5;
+    gimbal.bearing.pitch_misalignment = 3e-3;
+    gimbal.friction.coulomb_torque = 0.0;
+    gimbal.friction.coefficient = 0.08;
+  }
+  return parameters;
+}
+
+/// Torque of steady sliding along pitch.
+double sliding(const Friction& friction, double speed, double load) {
+  Pair bristle;
+  Pair torque;
+  for (int k = 0; k < 4000; ++k) {
+    torque = friction.torque(bristle, {{speed, 0.0}, {speed, 0.0}, {}, kStep}, {load, 1.0});
+  }
+  return torque.pitch;
+}
+
+}  // namespace
+
+TEST_GROUP(BearingUnderLoad){};
+
+TEST(BearingUnderLoad, RubsByItsConstantTorqueAndMuNR) {
+  Friction friction{2, 1e3, 1e8, 1.2, 0.01, 3e3};
+  friction.coefficient = 0.08;
+  friction.radius = 0.13;
+  for (const double load : {0.0, 3.4e4, 1.86e6}) {
+    const double expected = 1e3 + 0.08 * 0.13 * load;
+    DOUBLES_EQUAL(expected, sliding(friction, 0.2, load), 1e-6 * expected);
+  }
+}
+
+TEST(BearingUnderLoad, ForgetsItsBristleWhereNothingRubs) {
+  Friction friction{2, 0.0, 1e8};
+  friction.coefficient = 0.08;
+  Pair bristle{1e-4, -1e-4};
+  const Pair torque = friction.torque(bristle, {{0.1, 0.0}, {0.1, 0.0}, {}, kStep}, {0.0, 1.0});
+  DOUBLES_EQUAL(0.0, torque.length(), 0.0);
+  DOUBLES_EQUAL(0.0, bristle.length(), 0.0);
+}
+
+TEST(BearingUnderLoad, AddsTheViscousTorqueOfTheSlip) {
+  Friction friction{2, 2e4, 1e8};
+  const double without = sliding(friction, 0.2, 0.0);
+  friction.viscous = 5e3;
+  DOUBLES_EQUAL(without + 5e3 * 0.2, sliding(friction, 0.2, 0.0), 1e-6 * without);
+}
+
+// Against dT/dx = sigma0 (1 - T / level)^exponent, integrated by Heun's method in a hundredth of the steps.
+TEST(BearingUnderLoad, YieldsByDahlsExponent) {
+  constexpr double kLevel = 2e4;
+  constexpr double kStiffness = 1e7;
+  constexpr double kSpeed = 0.02;
+  for (const double exponent : {1.0, 1.5, 2.0, 3.0}) {
+    Friction friction{1, kLevel, kStiffness};
+    friction.exponent = exponent;
+    Pair bristle;
+    double torque = 0.0;
+    double reference = 0.0;
+    const auto slope = [&](double t) { return kStiffness * kSpeed * std::pow(std::max(0.0, 1.0 - t / kLevel), exponent); };
+    for (int k = 0; k < 400; ++k) {
+      friction.torque(bristle, {{kSpeed, 0.0}, {kSpeed, 0.0}, {}, kStep});
+      torque = kStiffness * bristle.pitch;
+      for (int i = 0; i < 100; ++i) {
+        const double first = slope(reference);
+        reference += 0.5 * kStep / 100.0 * (first + slope(reference + kStep / 100.0 * first));
+      }
+      DOUBLES_EQUAL(reference, torque, 0.01 * kLevel);
+    }
+    CHECK_TRUE(torque > 0.5 * kLevel);
+  }
+}
+
+// The displacement is the gradient of an energy: around a closed loop of forces it gives and takes nothing.
+TEST(BearingUnderLoad, MakesNoWorkAroundALoopOfForces) {
+  model::GimbalParameters<double> gimbal;
+  gimbal.compliant = true;
+  gimbal.stiffness = bearing_stiffness();
+  gimbal.stiffness(1, 1) = 5e8;
+  gimbal.bearing.unloaded_stiffness = 0.2;
+  gimbal.bearing.load_scale = 5e5;
+  const model::GimbalSpring<double> spring(gimbal, kStep);
+  constexpr int kPoints = 20000;
+  const auto force_at = [](int k) {
+    const double angle = 2.0 * std::numbers::pi * k / kPoints;
+    return model::Vector3<double>{2e5 + 4e5 * std::cos(angle), 3e5 * std::sin(angle), 2e5 * std::sin(2.0 * angle)};
+  };
+  double work = 0.0;
+  double exchanged = 0.0;
+  for (int k = 0; k < kPoints; ++k) {
+    const model::Vector3<double> mean = 0.5 * (force_at(k) + force_at(k + 1));
+    const double part = mean.dot((spring.settled(force_at(k + 1), {}) - spring.settled(force_at(k), {})).head<3>());
+    work += part;
+    exchanged += std::abs(part);
+  }
+  CHECK_TRUE(exchanged > 100.0);
+  DOUBLES_EQUAL(0.0, work, 1e-4 * exchanged);
+}
+
+TEST(BearingUnderLoad, IsSofterWithoutIt) {
+  model::GimbalParameters<double> gimbal;
+  gimbal.compliant = true;
+  gimbal.stiffness = bearing_stiffness();
+  gimbal.bearing.unloaded_stiffness = 0.2;
+  gimbal.bearing.load_scale = 5e5;
+  const model::GimbalSpring<double> spring(gimbal, kStep);
+  DOUBLES_EQUAL(5.0, spring.softness({0.0, 0.0, 0.0}), 1e-12);
+  DOUBLES_EQUAL(1.0 + 4.0 * std::exp(-1.0), spring.softness({5e5, 0.0, 0.0}), 1e-9);
+  DOUBLES_EQUAL(1.0, spring.softness({3e6, 0.0, 0.0}), 1e-9);
+}
+
+// A step's thrust is the declared one and what is put in: it does not matter which of them says it.
+TEST(BearingUnderLoad, DoesNotMatterWhetherThrustIsDeclaredOrPutIn) {
+  for (const double thrust : {0.0, 0.9e6, 1.86e6}) {
+    const auto declared = std::make_unique<Taos>(thrust_dependent<Taos>(thrust), kStep);
+    const auto put_in = std::make_unique<Taos>(thrust_dependent<Taos>(1.86e6), kStep);
+    Taos::State one = declared->steady({});
+    Taos::State other = put_in->steady({}, {thrust - 1.86e6});
+    Taos::Inputs inputs;
+    double largest = 0.0;
+    for (int k = 0; k < 2000; ++k) {
+      const double time = k * kStep;
+      inputs.thrust = {};
+      inputs.commands = {0.01 * std::sin(40.0 * time), 0.007 * std::sin(25.0 * time)};
+      declared->step(one, inputs);
+      inputs.thrust = {thrust - 1.86e6};
+      put_in->step(other, inputs);
+      for (std::size_t channel = 0; channel < one.measured.size(); ++channel) {
+        DOUBLES_EQUAL(one.measured[channel], other.measured[channel], 1e-9 * std::abs(one.measured[channel]) + 1e-9);
+        largest = std::max(largest, std::abs(one.measured[channel]));
+      }
+    }
+    CHECK_TRUE(std::isfinite(largest));
+  }
+}
+
+TEST(BearingUnderLoad, IsWhatATorqueOnTheEngineIsThatAnEffectNames) {
+  Taos::Parameters parameters = hot_fire<Taos>();
+  const auto pushed = std::make_unique<Taos>(parameters, kStep);
+  activate_in<model::TorqueOffset, Taos>(parameters, 0, {0, -5e3});
+  const auto named = std::make_unique<Taos>(parameters, kStep);
+  Taos::State one = pushed->steady({});
+  Taos::State other = one;
+  Taos::Inputs inputs;
+  for (int k = 0; k < 400; ++k) {
+    inputs.torque[0] = 5e3;
+    pushed->step(one, inputs);
+    inputs.torque[0] = 0.0;
+    named->step(other, inputs);
+  }
+  CHECK_TRUE(one.measured[1] > 1e-5);
+  DOUBLES_EQUAL(other.measured[1], one.measured[1], 1e-9);
+}
+
+TEST(BearingUnderLoad, RefusesAStructureThatFollowsNoThrust) {
+  model::GimbalParameters<double> gimbal;
+  gimbal.bearing.unloaded_structure = 0.5;
+  CHECK_FALSE(model::broken_relation(gimbal).empty());
+  gimbal.bearing.rated_thrust = 1.86e6;
+  CHECK_TRUE(model::broken_relation(gimbal).empty());
+}
+
+}  // namespace hotfire::test

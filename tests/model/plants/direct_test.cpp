@@ -1,0 +1,130 @@
+#include "model/direct.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <vector>
+
+#include "tests/model/support/plants.hpp"
+
+namespace hotfire::test {
+namespace {
+
+using Plant = model::Direct<double>;
+
+/// Times [s] at which the mass passes zero upward, interpolated within a step, when a hammer blow sets it moving.
+std::vector<double> hammer_test(const Plant& plant, double duration) {
+  Plant::State state = plant.moving(0.0, 0.01);
+  std::vector<double> passes;
+  const double h = plant.step_size();
+  for (int k = 0; k * h < duration; ++k) {
+    const double before = state.y(0);
+    plant.step(state, 0.0);
+    if (before < 0.0 && state.y(0) >= 0.0) {
+      passes.push_back((k + before / (before - state.y(0))) * h);
+    }
+  }
+  return passes;
+}
+
+}  // namespace
+
+TEST_GROUP(Direct){};
+
+// [SD] eq. 8-10: with the actuator locked the engine swings on its load spring at sqrt((K_n + K_T R^2) / J), damped by D.
+// The position between two steps of 0.5 ms is linear to (w h)^2 / 8 = 7e-5 of the swing; over 10 periods less than 1e-5.
+TEST(Direct, SwingsAtTheFrequencyOfTheLockedPendulum) {
+  constexpr double load_spring = 1.0 / (1.0 / 1.2e8 + 1.0 / 5.75e7);
+  constexpr double stiffness = 4e5 + load_spring * 0.7544 * 0.7544;
+  constexpr double inertia = 9490.0;
+  constexpr double damping = 1.2e4;
+  const double natural = std::sqrt(stiffness / inertia);
+  const double ratio = damping / (2.0 * inertia * natural);
+
+  Plant::Parameters parameters;
+  parameters.mass = {inertia, damping, stiffness};
+  const std::vector<double> passes = hammer_test(Plant(parameters, 5e-4), 2.0);
+  CHECK_TRUE(passes.size() > 10);
+  const double measured = 2.0 * std::numbers::pi * 10.0 / (passes[10] - passes[0]);
+  DOUBLES_EQUAL(natural * std::sqrt(1.0 - ratio * ratio), measured, 1e-5 * natural);
+  DOUBLES_EQUAL(7.75, natural / (2.0 * std::numbers::pi), 0.25);  // [SD 2.2]: 7.5-8 Hz with linear stiffness
+}
+
+// m x'' + c x' + k x = F with F held: the exact hold leaves rounding only, at any step.
+TEST(Direct, FollowsTheClosedSolutionAtAnyStep) {
+  Plant::Parameters parameters;
+  parameters.mass = {2.0, 0.6, 50.0};
+  constexpr double force = 3.0;
+  const double decay = 0.6 / 4.0;
+  const double damped = std::sqrt(25.0 - decay * decay);
+  const double rest = force / 50.0;
+  for (const double h : {1e-4, 1e-2, 0.5}) {
+    const Plant plant(parameters, h);
+    Plant::State state = plant.at_rest(0.0);
+    double time = 0.0;
+    for (int k = 1; k * h < 10.0; ++k) {
+      plant.step(state, force);
+      time = k * h;
+    }
+    const double exact =
+        rest * (1.0 - std::exp(-decay * time) * (std::cos(damped * time) + decay / damped * std::sin(damped * time)));
+    DOUBLES_EQUAL(exact, state.y(0), 1e-10 * rest);  // 100,000 steps of 1e-16, and the same again in the exponential
+  }
+}
+
+TEST(Direct, KeepsItsEnergyWithoutDamping) {
+  Plant::Parameters parameters;
+  parameters.mass = {2.0, 0.0, 50.0};
+  const Plant plant(parameters, 1e-3);
+  Plant::State state = plant.moving(0.3, -1.0);
+  const auto energy = [&] { return 0.5 * (2.0 * state.y(1) * state.y(1) + 50.0 * state.y(0) * state.y(0)); };
+  const double first = energy();
+  for (int k = 0; k < 100'000; ++k) {
+    plant.step(state, 0.0);
+  }
+  DOUBLES_EQUAL(first, energy(), 1e-10 * first);
+}
+
+// A body that slides on rigid Coulomb friction with 2 m/s^2 stops after v^2 / (2 a), and stays.
+TEST(Direct, StopsUnderCoulombFrictionAndStays) {
+  Plant::Parameters parameters;
+  ParamsOf<model::SlidingFriction, double> friction;
+  friction.option = 0;
+  friction.coulomb_forward = 2.0;
+  friction.coulomb_backward = 2.0;
+  activate<model::SlidingFriction, Plant>(parameters, friction);
+  const Plant plant(parameters, 1e-3);
+  Plant::State state = plant.moving(0.0, 1.0);
+  for (int k = 0; k < 600; ++k) {
+    plant.step(state, 0.0);
+  }
+  const double stopped = state.y(0);
+  DOUBLES_EQUAL(0.25, stopped, 1e-3);  // a step of 1 ms at the last speed
+  for (int k = 0; k < 1000; ++k) {
+    plant.step(state, k < 500 ? 1.9 : -1.9);
+  }
+  DOUBLES_EQUAL(stopped, state.y(0), 1e-12);
+}
+
+// Different levels per direction: 5 N forward and 3 N backward let a force of 4 N move it backward only.
+TEST(Direct, HasItsOwnFrictionInEachDirection) {
+  for (int law = 0; law < 3; ++law) {
+    Plant::Parameters parameters;
+    auto friction = typical<model::SlidingFriction, double>(law);
+    friction.coulomb_forward = 5.0;
+    friction.coulomb_backward = 3.0;
+    friction.static_ratio = 1.0;
+    friction.stiffness = 1e5;
+    activate<model::SlidingFriction, Plant>(parameters, friction);
+    const Plant plant(parameters, 1e-3);
+    Plant::State forward = plant.at_rest(0.0);
+    Plant::State backward = plant.at_rest(0.0);
+    for (int k = 0; k < 1000; ++k) {
+      plant.step(forward, 4.0);
+      plant.step(backward, -4.0);
+    }
+    CHECK_TRUE(std::abs(forward.y(0)) < 1e-3);  // no more than the bristle yields: 4 N / 1e5 N/m, with its first swing twice
+    CHECK_TRUE(backward.y(0) < -0.3);           // half of 1 m/s^2 for 1 s, less the viscous part
+  }
+}
+
+}  // namespace hotfire::test

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/cli/shared/commands.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/whole_file.hpp"
+#include "tools/structure/reduction.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct ReduceOptions {
+  std::string modes;
+  std::string output;
+  ReductionGoal goal;
+  bool json = false;
+};
+
+void print(const ReduceOptions& options, const ModeSet& full, const Reduction& reduction) {
+  const std::vector<std::string> names = port_names(full.engines);
+  if (options.json) {
+    nlohmann::ordered_json errors;
+    for (std::size_t i = 0; i < reduction.error.size(); ++i) {
+      errors[names[i]] = reduction.error[i];
+    }
+    const nlohmann::ordered_json result{{"output", options.output},
+                                        {"modes", full.modes()},
+                                        {"kept", reduction.modes.modes()},
+                                        {"band_hertz", {options.goal.lowest, options.goal.highest}},
+                                        {"error", errors},
+                                        {"static_error", reduction.static_error},
+                                        {"reached", reduction.reaches(options.goal)}};
+    std::cout << result.dump(2) << '\n';
+    return;
+  }
+  std::cout << fmt::format("{}: {} of {} modes kept for {:g} to {:g} Hz; static flexibility differs by {:.1e}\n",
+                           options.output, reduction.modes.modes(), full.modes(), options.goal.lowest, options.goal.highest,
+                           reduction.static_error);
+  for (std::size_t i = 0; i < reduction.error.size(); ++i) {
+    std::cout << fmt::format("  {:<14} in-band error {:.3f} %\n", names[i], 100.0 * reduction.error[i]);
+  }
+}
+
+void run_reduction(const ReduceOptions& options) {
+  const ModeSet full = load_modes(options.modes);
+  const Reduction reduction = reduce(full, options.goal);
+  WholeFile file(options.output);
+  file.write(mode_table_text(
+      reduction.modes,
+      {fmt::format("{} of the {} modes of {}, reduced for {:g} to {:g} Hz; the others are in the residual.",
+                   reduction.modes.modes(), full.modes(), std::filesystem::path(options.modes).filename().string(),
+                   options.goal.lowest, options.goal.highest)}));
+  file.commit();
+  print(options, full, reduction);
+  if (!reduction.reaches(options.goal)) {
+    throw CLI::RuntimeError(static_cast<int>(ExitStatus::bad_verdict));
+  }
+}
+
+}  // namespace
+
+void add_reduce(CLI::App& program) {
+  const auto options = std::make_shared<ReduceOptions>();
+  CLI::App* command = program.add_subcommand("reduce", "Keep the modes of a vehicle that matter in a band");
+  command->add_option("--modes", options->modes, "mode table (.csv)")->required();
+  command->add_option("--output", options->output, "mode table to write, with what is cut as residual flexibility")
+      ->required();
+  command->add_option("--lowest", options->goal.lowest, "lower end of the band [Hz]")->capture_default_str();
+  command->add_option("--highest", options->goal.highest, "upper end of the band [Hz]")->capture_default_str();
+  command->add_option("--error", options->goal.error, "allowed error of the in-band response, relative")
+      ->capture_default_str();
+  command->add_option("--most", options->goal.most, "keep at most this many modes")->capture_default_str();
+  command->add_flag("--json", options->json, "print the result as JSON");
+  command->footer(
+      "Example: hotfire reduce --modes vehicle.csv --output reduced.csv --lowest 1 --highest 20\n"
+      "Exit status 1: the error is not reached with that many modes; what was reached is written all the same.");
+  command->callback([options] { run_reduction(*options); });
+}
+
+}  // namespace hotfire

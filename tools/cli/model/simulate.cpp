@@ -1,0 +1,95 @@
+#include "tools/simulate/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/cli/shared/candump_options.hpp"
+#include "tools/cli/shared/commands.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct SimulateOptions {
+  std::string model;
+  std::string input;
+  std::string output;
+  std::size_t fit_start = 0;
+  unsigned seed = 1;
+  bool json = false;
+  CandumpOptions candump;
+};
+
+/// Reads the model, of one axis or several, and says how it is run.
+std::function<Record(const Record&)> simulation_of(const SimulateOptions& options) {
+  if (!is_vehicle(options.model)) {
+    return [model = load_model(options.model), rows = options.fit_start](const Record& inputs) {
+      return simulate(model, inputs, rows);
+    };
+  }
+  if (options.fit_start > 0) {
+    throw UsageError(
+        "--fit-start is for a direct model; hydraulic axes start in the steady state under their first commands");
+  }
+  return [model = load_vehicle(options.model), seed = options.seed](const Record& inputs) {
+    return simulate(model, inputs, {.seed = seed});
+  };
+}
+
+void run_simulation(const SimulateOptions& options) {
+  const std::function<Record(const Record&)> run = simulation_of(options);
+  const Record inputs = load_record_or_log(options.input, options.candump);
+
+  const auto before = std::chrono::steady_clock::now();
+  const Record outputs = run(inputs);
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  write_record(outputs, options.output);
+
+  const double simulated = static_cast<double>(outputs.rows) * outputs.period;
+  if (options.json) {
+    const nlohmann::ordered_json result{{"output", options.output},
+                                        {"rows", outputs.rows},
+                                        {"simulated_seconds", simulated},
+                                        {"seconds", took},
+                                        {"times_real_time", simulated / took}};
+    std::cout << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  } else {
+    std::cout << fmt::format("{}: {} rows, {:.6g} s simulated in {:.3g} s, {:.0f} times faster than real time\n",
+                             options.output, outputs.rows, simulated, took, simulated / took);
+  }
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program) {
+  const auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command = program.add_subcommand("simulate", "Run a model open loop on the commands (or forces) of a record");
+  command->add_option("--model", options->model, "model file (.toml)")->required();
+  command
+      ->add_option("--input", options->input,
+                   "record (.csv, or a candump .log) with the input channel: command, or force for a direct model")
+      ->required();
+  command->add_option("--output", options->output, "record to write: time, input and every model channel")->required();
+  command
+      ->add_option("--fit-start", options->fit_start,
+                   "fit the initial state of a direct mass on this many rows (0: start at rest)")
+      ->check(CLI::Range(std::size_t{0}, kMostRows));
+  command
+      ->add_option("--seed", options->seed,
+                   "of what sensors and strings of a model of several axes have of noise and placement errors")
+      ->capture_default_str();
+  add_candump_options(*command, options->candump);
+  command->add_flag("--json", options->json, "print the result as JSON");
+  command->footer("Example: hotfire simulate --model declared.toml --input steps.csv --output model.csv");
+  command->callback([options] { run_simulation(*options); });
+}
+
+}  // namespace hotfire

@@ -1,0 +1,10 @@
+#include "tools/cli/rig/realtime_program.hpp"
+#include "tools/cli/shared/commands.hpp"
+
+namespace hotfire {
+
+void add_controller(CLI::App& program) {
+  add_realtime_command(program, "controller", "Command a plant on a CAN bus, to try a rig that has nothing else", false);
+}
+
+}  // namespace hotfire

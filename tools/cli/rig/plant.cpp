@@ -1,0 +1,11 @@
+#include "tools/cli/rig/realtime_program.hpp"
+#include "tools/cli/shared/commands.hpp"
+
+namespace hotfire {
+
+void add_plant(CLI::App& program) {
+  add_realtime_command(program, "plant", "Run a model in real time: answer commands with sensor readings, every period",
+                       true);
+}
+
+}  // namespace hotfire

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/cli/shared/commands.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/suggestion.hpp"
+#include "tools/findings/document.hpp"
+#include "tools/trials/pictures.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct FindingsOptions {
+  std::string sets = HOTFIRE_SETS;
+  std::vector<std::string> only;
+  std::string pictures;
+  bool markdown = false;
+  bool json = false;
+  bool mutants = false;
+};
+
+std::vector<const findings::Finding*> chosen(const std::vector<std::string>& only) {
+  std::vector<const findings::Finding*> wanted;
+  std::vector<std::string_view> known;
+  for (const findings::Finding& finding : findings::all_findings()) {
+    known.push_back(finding.id);
+    if (only.empty() || std::find(only.begin(), only.end(), finding.id) != only.end()) {
+      wanted.push_back(&finding);
+    }
+  }
+  for (const std::string& name : only) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw UsageError(fmt::format("--only {}: no such finding; {}", name, suggestion(name, known)));
+    }
+  }
+  return wanted;
+}
+
+nlohmann::ordered_json to_json(const std::vector<findings::Row>& rows) {
+  auto all = nlohmann::ordered_json::array();
+  for (const findings::Row& row : rows) {
+    auto figures = nlohmann::ordered_json::array();
+    for (const findings::Figure& figure : row.outcome.figures) {
+      figures.push_back({{"what", figure.what},
+                         {"value", figure.value},
+                         {"lowest", figure.lowest},
+                         {"highest", figure.highest},
+                         {"unit", figure.unit},
+                         {"inside", figure.inside()}});
+    }
+    all.push_back({{"id", row.finding->id},
+                   {"title", row.finding->title},
+                   {"found", row.outcome.inside()},
+                   {"command", row.finding->command},
+                   {"figures", figures},
+                   {"note", row.outcome.note}});
+  }
+  return all;
+}
+
+void print(const std::vector<findings::Row>& rows) {
+  for (const findings::Row& row : rows) {
+    std::cout << fmt::format("{:<4} {:<10} {}\n", row.finding->id, row.outcome.inside() ? "found" : "NOT FOUND",
+                             row.finding->title);
+    for (const findings::Figure& figure : row.outcome.figures) {
+      std::cout << fmt::format("       {}{}: {} (allowed {:.4g} to {:.4g})\n", figure.inside() ? "" : "OUTSIDE ",
+                               figure.what, findings::figure_text(figure.value, figure.unit), figure.lowest, figure.highest);
+    }
+  }
+}
+
+/// Takes out of every finding what it is about, and says which figures notice. Returns false if a finding still holds.
+bool run_mutants(const FindingsOptions& options, const findings::Bench& bench) {
+  bool all_fail = true;
+  auto all = nlohmann::ordered_json::array();
+  for (const findings::Finding* finding : chosen(options.only)) {
+    for (const findings::Physics physics : finding->mutants.all()) {
+      const findings::Outcome outcome = finding->find(findings::without(bench, physics));
+      std::vector<std::string> outside;
+      for (const findings::Figure& figure : outcome.figures) {
+        if (!figure.inside()) {
+          outside.push_back(fmt::format("{}: {}", figure.what, findings::figure_text(figure.value, figure.unit)));
+        }
+      }
+      all_fail = all_fail && !outside.empty();
+      if (options.json) {
+        all.push_back({{"id", finding->id}, {"without", findings::physics_name(physics)}, {"outside", outside}});
+      } else {
+        std::cout << fmt::format("{:<4} {:<11} without {}: {} of {} figures outside\n", finding->id,
+                                 outside.empty() ? "STILL HOLDS" : "fails", findings::physics_name(physics), outside.size(),
+                                 outcome.figures.size());
+        for (const std::string& figure : outside) {
+          std::cout << fmt::format("       {}\n", figure);
+        }
+      }
+    }
+  }
+  if (options.json) {
+    std::cout << all.dump(2) << '\n';
+  }
+  return all_fail;
+}
+
+void run_findings(const FindingsOptions& options) {
+  const findings::Bench bench = findings::load_bench(options.sets);
+  if (options.mutants) {
+    if (!run_mutants(options, bench)) {
+      throw CLI::RuntimeError(static_cast<int>(ExitStatus::bad_verdict));
+    }
+    return;
+  }
+  std::vector<findings::Row> rows;
+  bool all_found = true;
+  if (!options.pictures.empty()) {
+    std::filesystem::create_directories(options.pictures);
+  }
+  for (const findings::Finding* finding : chosen(options.only)) {
+    rows.push_back({finding, finding->find(bench)});
+    all_found = all_found && rows.back().outcome.inside();
+    if (!options.pictures.empty()) {
+      trials::write_picture(rows.back().outcome.picture,
+                            std::filesystem::path(options.pictures) / findings::picture_name(*finding));
+    }
+  }
+  if (options.markdown) {
+    std::cout << findings::markdown(rows);
+  } else if (options.json) {
+    std::cout << to_json(rows).dump(2) << '\n';
+  } else {
+    print(rows);
+  }
+  if (!all_found) {
+    throw CLI::RuntimeError(static_cast<int>(ExitStatus::bad_verdict));
+  }
+}
+
+}  // namespace
+
+void add_findings(CLI::App& program) {
+  const auto options = std::make_shared<FindingsOptions>();
+  CLI::App* command = program.add_subcommand("findings", "What the papers found, reproduced: figures, tolerances, verdicts");
+  command->add_option("--sets", options->sets, "folder with lab.toml and core-stage.toml (the shipped ones)");
+  command->add_option("--only", options->only, "these findings alone: F1,F9")->delimiter(',');
+  command->add_option("--pictures", options->pictures, "write a picture of each into this folder (.svg)");
+  command->add_flag("--markdown", options->markdown, "print the page docs/findings.md");
+  command->add_flag("--json", options->json, "print the result as JSON")->excludes("--markdown");
+  command
+      ->add_flag("--mutants", options->mutants,
+                 "take out of each finding the physics that it is about: every one of these runs must fail")
+      ->excludes("--markdown")
+      ->excludes("--pictures");
+  command->footer(
+      "Example: hotfire findings --only F1,F2 --pictures pictures\nExit status 1: a figure is outside its tolerance, or a "
+      "mutant's are all inside.");
+  command->callback([options] { run_findings(*options); });
+}
+
+}  // namespace hotfire

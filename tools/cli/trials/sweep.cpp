@@ -1,0 +1,155 @@
+#include "tools/trials/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/shared/commands.hpp"
+#include "tools/cli/trials/trial_options.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/simulate/simulate_vehicle.hpp"
+#include "tools/trials/fine_sweep.hpp"
+#include "tools/trials/pictures.hpp"
+#include "tools/trials/profiles.hpp"
+#include "tools/trials/results_json.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct SweepOptions {
+  TrialOptions trial;
+  std::string profile = "green-run";
+  std::vector<double> amplitudes{0.4};  ///< [deg]
+  double from = 0.4;                    ///< [Hz]
+  double to = 14.0;                     ///< [Hz]
+  int count = 40;
+  bool coarse = false;
+  double moment_arm = 0.0;
+  trials::SweepGoal goal;
+};
+
+std::vector<trials::SineBand> bands_of(const SweepOptions& options) {
+  std::vector<trials::SineBand> bands;
+  bands.reserve(options.amplitudes.size());
+  for (const double amplitude : options.amplitudes) {
+    bands.push_back({trials::radians(amplitude), trials::spaced(options.from, options.to, options.count)});
+  }
+  return bands;
+}
+
+std::vector<double> command_of(const SweepOptions& options) {
+  if (options.profile == "green-run") {
+    return trials::stepped_sines(trials::green_run_sines(options.trial.axis.starts_with("yaw")));
+  }
+  if (options.profile == "multisine") {
+    return trials::multisine(trials::radians(options.amplitudes.front()), options.from, options.to, options.goal.segment, 8,
+                             1);
+  }
+  return trials::stepped_sines(bands_of(options));
+}
+
+/// A sweep by sines, and once more with a fine grid around the notches that it found, held until they have settled.
+Record simulate_finely(const SweepOptions& options, const Record& coarse) {
+  trials::SweepGoal goal = options.goal;
+  goal.moment_arm = moment_arm_of_trial(options.trial);
+  const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
+  const double settling = vehicle ? trials::settling_time(*vehicle, options.from, options.to)
+                                  : trials::settling_time(load_model(options.trial.model));
+  return simulate_command(options.trial,
+                          trials::fine_sines(bands_of(options), trials::analyse_sweep(coarse, goal), settling));
+}
+
+Record simulate_both(const TrialOptions& options) {
+  const std::optional<VehicleFile> vehicle = vehicle_of_trial(options);
+  if (!vehicle || !std::holds_alternative<TaosParameters>(vehicle->parameters)) {
+    throw UsageError("--profile green-run-both drives the two axes of one engine; allowed with topology \"taos\"");
+  }
+  return simulate(*vehicle, trials::green_run_record());
+}
+
+void print(const std::vector<trials::ChannelSweep>& sweeps) {
+  for (const trials::ChannelSweep& sweep : sweeps) {
+    const std::string amplitude =
+        sweep.amplitude > 0.0 ? fmt::format("{:.3g} deg", trials::degrees(sweep.amplitude)) : std::string("broadband");
+    std::cout << fmt::format("{} at {}: {} frequencies from {:.3g} to {:.3g} Hz", sweep.channel, amplitude,
+                             sweep.response.size(), sweep.response.front().frequency, sweep.response.back().frequency);
+    if (sweep.notch) {
+      std::cout << fmt::format(", notch {:.2f} Hz, {:.1f} dB under its upper shoulder", sweep.notch->frequency,
+                               sweep.notch->depth);
+    }
+    if (sweep.peak) {
+      std::cout << fmt::format(", peak {:.2f} Hz, {:+.1f} dB", sweep.peak->frequency, sweep.peak->gain);
+    }
+    std::cout << '\n';
+  }
+}
+
+void run_sweep(SweepOptions& options) {
+  options.goal.axis = options.trial.axis;
+  options.goal.moment_arm = options.moment_arm > 0.0 ? options.moment_arm : 1.0;
+  const Record record = record_of_trial(options.trial, [&] {
+    Record run = options.profile == "green-run-both" ? simulate_both(options.trial)
+                                                     : simulate_command(options.trial, command_of(options));
+    if (options.profile == "sines" && !options.coarse) {
+      run = simulate_finely(options, run);
+    }
+    if (options.moment_arm == 0.0) {
+      options.goal.moment_arm = moment_arm_of_trial(options.trial);
+    }
+    return run;
+  });
+  const std::vector<trials::ChannelSweep> sweeps = trials::analyse_sweep(record, options.goal);
+  draw_if_wanted(options.trial,
+                 [&] { return trials::bode_chart(fmt::format("Sweep of {}", name_of_trial(options.trial)), sweeps); });
+  if (options.trial.json) {
+    std::cout << trials::to_json(sweeps).dump(2) << '\n';
+  } else {
+    print(sweeps);
+  }
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& program) {
+  const auto options = std::make_shared<SweepOptions>();
+  CLI::App* command = program.add_subcommand("sweep", "Frequency response of piston and engine to the command");
+  add_trial_options(*command, options->trial);
+  command
+      ->add_option("--profile", options->profile,
+                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), green-run-both (the other axis "
+                   "driven as well, the other way round), sines, or multisine")
+      ->check(CLI::IsMember({"green-run", "green-run-both", "sines", "multisine"}))
+      ->capture_default_str();
+  command->add_option("--amplitudes", options->amplitudes, "of sines, one sweep each; of a multisine, its peak [deg]")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--from", options->from, "lowest frequency of sines and multisine [Hz]")
+      ->check(CLI::Range(0.01, 200.0))
+      ->capture_default_str();
+  command->add_option("--to", options->to, "highest frequency of sines and multisine [Hz]")
+      ->check(CLI::Range(0.01, 200.0))
+      ->capture_default_str();
+  command->add_option("--count", options->count, "frequencies of a sweep by sines")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  command->add_flag("--coarse", options->coarse,
+                    "sines: these frequencies alone, without a fine grid around each notch that is held until it settles");
+  command->add_option("--lowest", options->goal.lowest, "look for notch and peak from here [Hz]")->capture_default_str();
+  command->add_option("--highest", options->goal.highest, "look for notch and peak up to here [Hz]")->capture_default_str();
+  command->add_option("--segment", options->goal.segment, "of a broadband record's analysis [s]")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_option("--moment-arm", options->moment_arm,
+                      "gain of the piston is over command times this [m]; left out: the model's, or 1 for a record");
+  command->footer(
+      "Example: hotfire sweep --model lab.toml --profile sines --amplitudes 0.05,0.1,0.2,0.4 --from 4 --to 13 --picture "
+      "bode.svg\n"
+      "A record is analysed sine by sine where its command is a stepped sine, by Welch's method otherwise.");
+  command->callback([options] { run_sweep(*options); });
+}
+
+}  // namespace hotfire
