@@ -1,11 +1,10 @@
 #include "tools/explain/baseline.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "tools/explain/inference/residual_statistics.hpp"
 #include "tools/explain/report/errors_json.hpp"
+#include "tools/explain/words/conclusions.hpp"
 
 namespace hotfire::explain {
 
@@ -31,32 +30,36 @@ Prediction of_rows(const Prediction& full, const Dataset& data, const Dataset& t
   return result;
 }
 
-/// "between 2 and 2.83 Hz, at amplitudes of 0.001 to 0.002": where one model leaves more than the other.
+/// The frequencies and the amplitudes at which one model leaves more than the other, in a sentence.
 std::string where(const Dataset& data, const Prediction& worse, const Prediction& better, std::size_t channel) {
   const std::vector<Band> of_worse = error_by_frequency(data, worse, channel);
   const std::vector<Band> of_better = error_by_frequency(data, better, channel);
-  std::string text;
+  double from = 0.0;
+  double to = 0.0;
   double most = 0.0;
   for (std::size_t i = 0; i < of_worse.size(); ++i) {
     const double more = of_worse[i].rms * of_worse[i].rms - of_better[i].rms * of_better[i].rms;
     if (more > most) {
       most = more;
-      text = fmt::format("between {:.3g} and {:.3g} Hz", of_worse[i].from, of_worse[i].to);
+      from = of_worse[i].from;
+      to = of_worse[i].to;
     }
   }
   const std::vector<AmplitudeRange> ranges_of_worse = error_by_amplitude(data, worse, channel);
   const std::vector<AmplitudeRange> ranges_of_better = error_by_amplitude(data, better, channel);
   most = 0.0;
-  std::string amplitude;
+  double least_amplitude = 0.0;
+  double most_amplitude = 0.0;
   for (std::size_t i = 0; i < ranges_of_worse.size(); ++i) {
     const double more =
         (std::pow(ranges_of_worse[i].rms, 2) - std::pow(ranges_of_better[i].rms, 2)) * ranges_of_worse[i].seconds;
     if (more > most) {
       most = more;
-      amplitude = fmt::format(", at amplitudes of {:.3g} to {:.3g}", ranges_of_worse[i].from, ranges_of_worse[i].to);
+      least_amplitude = ranges_of_worse[i].from;
+      most_amplitude = ranges_of_worse[i].to;
     }
   }
-  return text + amplitude;
+  return words::baseline_difference(from, to, least_amplitude, most_amplitude);
 }
 
 }  // namespace
@@ -84,20 +87,15 @@ json baseline_json(const BlackBox& box, const Dataset& data, const Prediction& e
     channel = errors_of(of_box.held_out[c]);
     channel["order"] = model.order();
     channel["delay"] = static_cast<double>(model.delay) * box.period;
-    text += fmt::format("{}{}: order {} with a delay of {:.3g} ms leaves {:.3g}, the explained model {:.3g}",
-                        text.empty() ? "" : "; ", data.channels[c], model.order(),
-                        1e3 * static_cast<double>(model.delay) * box.period, left, explained_left);
+    text += " " + words::baseline_channel(data.channels[c], static_cast<std::size_t>(model.order()),
+                                          static_cast<double>(model.delay) * box.period, left, explained_left);
     if (left < (1.0 - kSame) * explained_left) {
       is_better = true;
-      text += fmt::format(" (something is missing from it, most of it {})", where(thin, by_model, by_box, c));
+      text += " " + where(thin, by_model, by_box, c);
     }
   }
   baseline["better_than_explained"] = is_better;
-  baseline["sentence"] = fmt::format(
-      "{} (rms on held-out data). {}.",
-      is_better ? "The best linear black box meets the records better than the explained model: something is missing"
-                : "The best linear black box is no better than the explained model",
-      text);
+  baseline["sentence"] = words::baseline(is_better) + text;
   return baseline;
 }
 

@@ -1,7 +1,5 @@
 #include "tools/explain/explain.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <functional>
 
@@ -11,6 +9,9 @@
 #include "tools/explain/report/conclusion.hpp"
 #include "tools/explain/report/report_json.hpp"
 #include "tools/explain/search/search.hpp"
+#include "tools/explain/words/conclusions.hpp"
+#include "tools/explain/words/refusals.hpp"
+#include "tools/explain/words/warnings.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
@@ -21,27 +22,24 @@ namespace {
 template <class Family>
 void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const Fitted<Family>& explained,
                          const ExplainOptions& options, Explanation& explanation) {
-  std::string text = fmt::format("{} and {} explain these records equally well", label(rival.kept), label(rival.other));
+  std::string text = words::explain_equally(label(rival.kept), label(rival.other));
   if constexpr (std::is_same_v<Family, SimplexFamily>) {
-    options.watch.progress("looking for the experiment that tells them apart");
-    const char* limits = options.limits ? "the rig's limits" : "these records' largest command";
+    options.watch.progress("searching for the experiment that separates them");
+    const std::string limits = options.limits ? words::limits_of_rig() : words::limits_of_records();
     NextExperiment next =
         best_separation(data, explained, rival.model, options.limits.value_or(limits_of(data)), options.threads);
     // Over some thousand rows a mean square of a hundredth of the noise's is beyond chance.
-    constexpr double kTells = 0.1;
+    constexpr double kSeparates = 0.1;
     if (next.words.empty()) {
-      text += fmt::format(", and {} leave no profile to tell them apart", limits);
-    } else if (next.separation > kTells) {
-      text += fmt::format(
-          ": under {} they differ by {:.2g} times the sensor noise (rms), more than under any other profile tried within {}",
-          next.words, next.separation, limits);
+      text += " " + words::no_profile(limits);
+    } else if (next.separation > kSeparates) {
+      text += " " + words::separating_profile(next.words, next.separation, limits);
       explanation.next_experiment = std::move(next);
     } else {
-      text += fmt::format(", and no profile within {} tells them apart: the best, {}, shows {:.2g} of the sensor noise",
-                          limits, next.words, next.separation);
+      text += " " + words::weak_profile(next.words, next.separation, limits);
     }
   }
-  explanation.report["residual"]["next_experiment"] = text + ".";
+  explanation.report["residual"]["next_experiment"] = text;
 }
 
 /// Refuses records in which a mass moves against its force. A servo is held to its declared model before the search
@@ -63,10 +61,7 @@ void refuse_turned_sign(const Dataset& data, const ModelFile& model, const Searc
   const SearchResult<DirectFamily> other = search<DirectFamily>(turned, model, options);
   const double left_turned = other.explained.goodness.held_out.front().rms;
   if (!other.interrupted && left_turned < kClearlyLess * left.rms) {
-    throw FileError(fmt::format(
-        "{}: the mass moves against its force: with the sign of one turned a model leaves {:.3g} of position (rms, held-out "
-        "data), as it is {:.3g}. Position or force looks inverted; turn its sign in the records, nothing is fitted to it",
-        data.experiments.front().name, left_turned, left.rms));
+    throw FileError(words::turned_mass(data.experiments.front().name, left_turned, left.rms));
   }
 }
 
@@ -76,10 +71,7 @@ void add_common_bias(const Dataset& data, const SearchResult<SimplexFamily>& fou
   if (const auto bias = common_valve_bias(data, found.explained.zeros, plant)) {
     plant = with_valve_bias(plant, *bias);
     explanation.report["valve_bias"] = *bias;
-    explanation.report["warnings"].push_back(
-        fmt::format("The zeros of all records are those of one null bias of the valve, {:.3g} of its full command, or of a "
-                    "command that is off by as much: explained.toml has it as valve_bias.",
-                    *bias));
+    explanation.report["warnings"].push_back(words::common_bias(*bias));
   }
 }
 
@@ -103,7 +95,7 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
     explanation.report["baseline"] = baseline;
     if (baseline["better_than_explained"]) {
       std::string& sentence = explanation.report["sentence"].get_ref<std::string&>();
-      sentence += " A linear black box meets the records better, so something is missing from it.";
+      sentence += " " + words::black_box_is_better();
     }
   }
   if (!kept_back.empty()) {

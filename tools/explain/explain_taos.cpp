@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <optional>
 
@@ -8,6 +7,8 @@
 #include "tools/explain/report/conclusion.hpp"
 #include "tools/explain/report/report_json.hpp"
 #include "tools/explain/report/two_axis_report.hpp"
+#include "tools/explain/words/conclusions.hpp"
+#include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
@@ -46,7 +47,7 @@ Found search_axis(const AxisOfTwo& axis, const ExplainOptions& options) {
     return search<SimplexFamily>(axis.data, axis.model,
                                  {options.threads, options.most_effects, watch_of(options.watch, axis.name)});
   } catch (const FileError& error) {
-    throw FileError(fmt::format("{} axis: {}", axis.name, error.what()));
+    throw FileError(words::of_axis(axis.name, error.what()));
   }
 }
 
@@ -105,8 +106,7 @@ nlohmann::json held_out_together(const TaosParameters& declared, unsigned thread
                                       std::pair("after", &Found::explained)}) {
       const auto run = run_coupled(together(declared, found, stage), axes, threads);
       if (!run) {
-        throw FileError(fmt::format("{}: a model runs away on this record, which was held out",
-                                    axes.front().records.front().path.string()));
+        throw FileError(words::diverges_held_out(axes.front().records.front().path.string()));
       }
       for (std::size_t i = 0; i < axes.size(); ++i) {
         stages[i].emplace_back(name, run->prediction[i]);
@@ -131,8 +131,7 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   const TaosParameters declared = std::get<TaosParameters>(vehicle.parameters);
   const auto before = run_coupled(declared, axes, options.threads);
   if (!before) {
-    throw FileError(fmt::format("{}: the declared model runs away on these records: its parameters make it unstable",
-                                vehicle.path.string()));
+    throw FileError(words::diverges_declared(vehicle.path.string()));
   }
   put_beside(*before, axes);
   FoundAxes found;
@@ -162,8 +161,8 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
     }
     reports.push_back({axes[i].name, report_json(axes[i].model, axes[i].records, axes[i].data, *found[i])});
     if (found[i]->rival) {
-      reports.back().report["residual"]["next_experiment"] = fmt::format(
-          "{} and {} explain these records equally well.", label(found[i]->rival->kept), label(found[i]->rival->other));
+      reports.back().report["residual"]["next_experiment"] =
+          words::explain_equally(label(found[i]->rival->kept), label(found[i]->rival->other));
     }
     append_series(axes[i].name, series_of(axes[i].records, axes[i].data, *found[i]), explanation.series);
   }

@@ -1,10 +1,9 @@
 #include "tools/explain/held_out_records.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "tools/explain/report/errors_json.hpp"
+#include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
@@ -24,7 +23,7 @@ Prediction prediction_of(Fitted<Family> model, const Dataset& data, unsigned thr
   }
   Prediction prediction;
   if (!Evaluator<Family>(data, Resolution::fine).predict(model.base, model.free, model.u, threads, prediction)) {
-    throw FileError(fmt::format("{}: a model runs away on this record, which was held out", data.experiments.front().name));
+    throw FileError(words::diverges_held_out(data.experiments.front().name));
   }
   return prediction;
 }

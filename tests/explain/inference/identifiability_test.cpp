@@ -32,10 +32,10 @@ TEST(Identifiability, OfANotchOnlyItsFrequencyIsTold) {
   const auto sentences = not_told_apart(axis(1e7, 0.0));
   CHECK_EQUAL(1U, sentences.size());
   STRCMP_CONTAINS("K_T R^2 / J", sentences.front().c_str());
-  STRCMP_CONTAINS("engine.inertia to ", sentences.front().c_str());
-  STRCMP_CONTAINS("structure.stiffness to ", sentences.front().c_str());
+  STRCMP_CONTAINS("engine.inertia (", sentences.front().c_str());
+  STRCMP_CONTAINS("structure.stiffness (", sentences.front().c_str());
   // One over the root of 1e7.
-  STRCMP_CONTAINS("to 0.032 %, and not its factors", sentences.front().c_str());
+  STRCMP_CONTAINS("to 0.032 %. They do not identify its factors separately", sentences.front().c_str());
 }
 
 TEST(Identifiability, WhereEachIsToldThereIsNothingToSay) { CHECK_TRUE(not_told_apart(axis(1e7, 1e6)).empty()); }
@@ -43,7 +43,7 @@ TEST(Identifiability, WhereEachIsToldThereIsNothingToSay) { CHECK_TRUE(not_told_
 TEST(Identifiability, WhereTheDataSayNothingTheDeclarationStands) {
   const auto sentences = not_told_apart(axis(0.0, 0.0));
   CHECK_EQUAL(1U, sentences.size());
-  STRCMP_CONTAINS("next to nothing on structure.stiffness, engine.inertia", sentences.front().c_str());
+  STRCMP_CONTAINS("say little about structure.stiffness, engine.inertia", sentences.front().c_str());
 }
 
 TEST(Identifiability, ParametersOfWhichOneMakesUpForTheOtherAreNamedWithTheirRate) {

@@ -41,12 +41,12 @@ const Candidate kScale{0, 1, "sensor_scale", "engine", "sensor.engine"};
 TEST_GROUP(Verdict){};
 
 TEST(Verdict, AFaultOfTheRecordIsNotSaidOfTheModel) {
-  STRCMP_CONTAINS("The declared model lacks leakage (laminar) at flow: with it", sentence_with({kLeakage}).c_str());
-  STRCMP_CONTAINS("The records are at fault: sensor scale (engine) at sensor.engine: with it",
+  STRCMP_CONTAINS("The declared model is missing leakage (laminar) at flow. With it,", sentence_with({kLeakage}).c_str());
+  STRCMP_CONTAINS("The records have a fault: sensor scale (engine) at sensor.engine. With it,",
                   sentence_with({kScale}).c_str());
   STRCMP_CONTAINS(
-      "The declared model lacks leakage (laminar) at flow, and the records are at fault: sensor scale (engine) at "
-      "sensor.engine: with them the error on held-out data falls from 8.0 to 1.00 times the noise",
+      "The declared model is missing leakage (laminar) at flow. The records have a fault: sensor scale (engine) at "
+      "sensor.engine. With them, the error on held-out data falls from 8.0 to 1.00 times the noise.",
       sentence_with({kScale, kLeakage}).c_str());
 }
 
@@ -61,27 +61,28 @@ TEST(Verdict, AnInterruptedSearchNamesWhatPromisedMostByThen) {
   fitted.delta_criterion = -400.0;
   fitted.held_out_ratio = 0.25;
   found.trials = {screened};
-  STRCMP_CONTAINS("4.0 times the noise off on held-out data; in screening leakage (laminar) at flow promised most",
+  STRCMP_CONTAINS("on held-out data is 4.0 times the noise. In screening, leakage (laminar) at flow ranked first.",
                   sentence_of("undecided", found).c_str());
   found.trials = {screened, fitted};
-  STRCMP_CONTAINS("of what was fitted by then backlash at load_spring leaves least, 25 % of that",
+  STRCMP_CONTAINS("Of the candidates fitted before, backlash at load_spring leaves the least: 25 % of that error.",
                   sentence_of("undecided", found).c_str());
   found.trials.clear();
-  STRCMP_CONTAINS("off on held-out data.", sentence_of("undecided", found).c_str());
+  STRCMP_CONTAINS("on held-out data is 4.0 times the noise.", sentence_of("undecided", found).c_str());
+  CHECK(sentence_of("undecided", found).ends_with("the noise."));
 }
 
-TEST(Verdict, TimesTheNoiseIsNotSaidWhereAFloorStandsForIt) {
+TEST(Verdict, TimesTheNoiseIsNotSaidWhereAFloorReplacesIt) {
   SearchResult<SimplexFamily> found;
   found.declared = leaving(8.0);
   found.calibrated = leaving(4.0);
   found.explained = leaving(1.0);
   found.kept.push_back({tried(kLeakage), {}});
   const std::string sentence = sentence_of("partly-explained", found, false);
-  STRCMP_CONTAINS("falls to 12.5 % of what the declared model leaves", sentence.c_str());
+  STRCMP_CONTAINS("falls to 12.5 % of the declared model's error", sentence.c_str());
   CHECK(sentence.find("times the noise") == std::string::npos);
 }
 
-TEST(Verdict, TermsOverTheTimeOfARecordAreTold) {
+TEST(Verdict, TermsOverTheTimeOfARecordAreRecognised) {
   CHECK_TRUE(is_of_record_time({0, 4, "unlisted_torque", "friction_along_time", "engine_torque"}));
   CHECK_TRUE(is_of_record_time({0, 0, "unlisted_drift", "piston", "sensor.piston"}));
   CHECK_FALSE(is_of_record_time({0, 0, "unlisted_torque", "friction_along_position", "engine_torque"}));

@@ -9,6 +9,7 @@
 #include "tools/explain/data/hold_out.hpp"
 #include "tools/explain/data/statistics.hpp"
 #include "tools/explain/data/zeros.hpp"
+#include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
@@ -23,7 +24,7 @@ void share_out(Experiment& experiment) {
   experiment.fitted = without(without({{0, experiment.rows()}}, experiment.held_out), taken);
   experiment.held_out = without(experiment.held_out, experiment.excluded);
   if (experiment.fitted.empty()) {
-    throw UsageError(fmt::format("--exclude leaves no row of {} to fit", experiment.name));
+    throw UsageError(words::nothing_to_fit(experiment.name));
   }
 }
 
@@ -32,9 +33,7 @@ void require_values(const Channel& channel, const Experiment& experiment) {
   for (const Block& kept : without({{0, channel.values.size()}}, experiment.excluded)) {
     for (std::size_t row = kept.first; row < kept.last; ++row) {
       if (std::isnan(channel.values[row])) {
-        throw UsageError(
-            fmt::format("{}: channel {} has no value at {:.6g} s, beside what --exclude names; exclude that too",
-                        experiment.name, channel.name, experiment.time_of(row)));
+        throw UsageError(words::missing_value(experiment.name, channel.name, experiment.time_of(row)));
       }
     }
   }
@@ -54,7 +53,7 @@ struct ChannelsOf<DirectParameters> {
 /// A record in the channels of the model, of which it marks those that the record has as used.
 Experiment experiment_of(const Record& record, const std::string& input, const std::vector<Exclusion>& exclusions,
                          Dataset& data) {
-  require_channel(record, input, "the model is driven by it");
+  require_channel(record, input, words::drives_the_model());
   Experiment experiment;
   experiment.name = record.name;
   experiment.start = record.start;
@@ -83,7 +82,7 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
     }
   }
   if (std::ranges::all_of(experiment.measured, &std::vector<double>::empty)) {
-    require_channel(record, data.channels.front(), "without a measured channel there is nothing to explain");
+    require_channel(record, data.channels.front(), words::nothing_to_explain());
   }
   return experiment;
 }

@@ -1,11 +1,10 @@
 #include "tools/explain/data/exclusions.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
+#include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
@@ -17,14 +16,13 @@ Exclusion exclusion_from(const std::string& text) {
       return {text.substr(0, at), *stretch};
     }
   }
-  throw UsageError(fmt::format("--exclude {}: write RECORD@FROM-TO with times in seconds, such as steps.csv@3.0-3.5", text));
+  throw UsageError(words::malformed_exclusion(text));
 }
 
 void require_known_records(const std::vector<Exclusion>& exclusions, const std::vector<std::string>& names) {
   for (const Exclusion& exclusion : exclusions) {
     if (std::find(names.begin(), names.end(), exclusion.record) == names.end()) {
-      throw UsageError(
-          fmt::format("--exclude {}: no record of that name; there are: {}", exclusion.record, fmt::join(names, ", ")));
+      throw UsageError(words::unknown_record(exclusion.record, names));
     }
   }
 }
@@ -51,9 +49,8 @@ std::vector<Block> excluded_rows(const Record& record, const std::vector<Exclusi
     };
     rows.push_back({row_at(exclusion.stretch.from), row_at(exclusion.stretch.to)});
     if (rows.back().first == rows.back().last) {
-      throw UsageError(fmt::format("--exclude {}@{:g}-{:g}: no row of the record lies there; it goes from {:g} to {:g} s",
-                                   exclusion.record, exclusion.stretch.from, exclusion.stretch.to, record.start,
-                                   record.start + static_cast<double>(record.rows - 1) * record.period));
+      throw UsageError(words::no_such_rows(exclusion.record, exclusion.stretch.from, exclusion.stretch.to, record.start,
+                                           record.start + static_cast<double>(record.rows - 1) * record.period));
     }
   }
   std::sort(rows.begin(), rows.end(), [](const Block& a, const Block& b) { return a.first < b.first; });
@@ -114,10 +111,7 @@ bool is_missing_somewhere(const Channel& channel) {
 std::vector<double> held_where_missing(const Channel& command, const Record& record) {
   std::vector<double> held = command.values;
   if (held.empty() || std::isnan(held.front())) {
-    throw FileError(
-        fmt::format("{}: channel {} is missing from the start, so that where the axis began is not known; cut "
-                    "the record to begin after it",
-                    record.path.string(), command.name));
+    throw FileError(words::missing_start(record.path.string(), command.name));
   }
   for (std::size_t row = 1; row < held.size(); ++row) {
     if (std::isnan(held[row])) {

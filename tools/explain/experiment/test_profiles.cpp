@@ -109,9 +109,7 @@ class AboutABias {
     const double a = amplitude_;
     const double b = bias_;
     return made(
-        fmt::format("a ramp of {:.3g} deg up, down through the middle and back{}, for {:.3g} s", a / kDegree, about(),
-                    seconds),
-        seconds,
+        fmt::format("a triangle of {:.3g} deg up and down{}, for {:.3g} s", a / kDegree, about(), seconds), seconds,
         [=](double t) {
           const double phase = std::min(1.0, t / seconds);
           return a * (phase < 0.25 ? 4.0 * phase : phase < 0.75 ? 2.0 - 4.0 * phase : 4.0 * phase - 4.0);

@@ -1,7 +1,5 @@
 #include "tools/explain/fit/two_axes.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <span>
@@ -9,6 +7,7 @@
 #include "model/numerics/step_size.hpp"
 #include "tools/explain/data/smoothing.hpp"
 #include "tools/explain/fit/parallel.hpp"
+#include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/run.hpp"
 
@@ -21,44 +20,30 @@ using Taos = model::Taos<double>;
 constexpr std::size_t kEngineChannel = 1;
 static_assert(Taos::AxisModel::channels[kEngineChannel] == "engine");
 
-[[noreturn]] void refuse(const VehicleFile& vehicle, const std::string& what) {
-  throw FileError(fmt::format("{}: {}", vehicle.path.string(), what));
+[[noreturn]] void refuse(const VehicleFile& vehicle, words::Unsupported part) {
+  throw FileError(words::unsupported(vehicle.path.string(), part));
 }
 
 /// The parameters of a model that can be explained.
 const TaosParameters& explainable(const VehicleFile& vehicle) {
   const auto* taos = std::get_if<TaosParameters>(&vehicle.parameters);
   if (taos == nullptr) {
-    refuse(
-        vehicle,
-        "topology = \"masv\": 'explain' takes \"simplex\", \"direct\" and \"taos\"; give one engine of it as \"taos\", with "
-        "records of its two axes");
+    refuse(vehicle, words::Unsupported::masv);
   }
   const auto& gimbal = taos->gimbals.front();
   if (gimbal.friction.rubs() || gimbal.vibration.pitch_velocity > 0.0 || gimbal.vibration.yaw_velocity > 0.0 ||
       gimbal.compliant) {
-    refuse(
-        vehicle,
-        "gimbal: 'explain' does not take a bearing with friction over both axes, vibration or stiffness; remove the table "
-        "(friction of one axis is declared as [effects.gimbal_friction.pitch])");
+    refuse(vehicle, words::Unsupported::gimbal);
   }
   if (taos->modes.modes > 0 || !taos->modes.residual.isZero(0.0)) {
-    refuse(vehicle,
-           "modes: 'explain' does not take a structure with modes; remove the table, and give [structure] the stiffness at "
-           "the attach points, sum of shape^2 / (2 pi frequency)^2 over the modes, inverted");
+    refuse(vehicle, words::Unsupported::modes);
   }
   if (vehicle.sensors.piston.lag > 0.0) {
-    refuse(
-        vehicle,
-        "sensors.piston.lag: 'explain' does not simulate the pistons' potentiometers; remove it, and declare a lag that the "
-        "records have as [effects.sensor_lag] with channel = \"piston\"");
+    refuse(vehicle, words::Unsupported::piston_lag);
   }
   for (const AxisDeclaration& axis : vehicle.axes) {
     if (!taos->constant_arms.front() && axis.tolerance.contains("actuator.moment_arm")) {
-      refuse(
-          vehicle,
-          "tolerance of actuator.moment_arm: has no meaning with [attach], from which the arms follow; remove it, or remove "
-          "[attach]");
+      refuse(vehicle, words::Unsupported::arm_tolerance);
     }
   }
   return *taos;
@@ -92,10 +77,7 @@ bool has_measurement(const Record& record) {
 void require_same_axes(const AxisOfTwo& axis) {
   for (const Record& record : axis.records) {
     if (axis.measured && !has_measurement(record)) {
-      throw FileError(fmt::format(
-          "{}: no measured channel of the {} axis, which other records have; give it piston.{} or engine.{}, or explain "
-          "it in a run of its own",
-          record.path.string(), axis.name, axis.name, axis.name));
+      throw FileError(words::axis_not_measured(record.path.string(), axis.name));
     }
   }
 }
@@ -106,7 +88,7 @@ TwoAxes axes_of(const VehicleFile& vehicle, const std::vector<Record>& records, 
   const TaosParameters& taos = explainable(vehicle);
   for (const Record& record : records) {
     if (record.find("command.pitch") == nullptr && record.find("command.yaw") == nullptr) {
-      require_channel(record, "command.pitch", "a model of two axes is driven by it and command.yaw");
+      require_channel(record, "command.pitch", words::drives_both_axes());
     }
   }
   TwoAxes axes;
@@ -130,7 +112,7 @@ TwoAxes axes_of(const VehicleFile& vehicle, const std::vector<Record>& records, 
     }
   }
   if (!axes[0].measured && !axes[1].measured) {
-    require_channel(records.front(), "piston.pitch", "without a measured channel there is nothing to explain");
+    require_channel(records.front(), "piston.pitch", words::nothing_to_explain());
   }
   return axes;
 }

@@ -1,13 +1,12 @@
 #include "tools/explain/inference/identifiability.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
 
 #include "tools/explain/inference/uncertainty.hpp"
+#include "tools/explain/words/conclusions.hpp"
 
 namespace hotfire::explain {
 
@@ -34,28 +33,25 @@ std::vector<Combination<Family>> combinations() {
   if constexpr (std::is_same_v<Family, SimplexFamily>) {
     // The step does not matter to what is asked of the plant.
     constexpr double kStep = 1e-3;
-    return {{"K_T R^2 / J, the square of the notch's frequency",
+    return {{words::name_of(words::Combination::notch),
              [](const P& p) {
                return model::Simplex<double>(p, kStep).stiffness() * p.actuator.moment_arm * p.actuator.moment_arm /
                       p.engine.inertia;
              }},
-            {"rated flow times position gain over piston area, the gain of the loop",
+            {words::name_of(words::Combination::loop_gain),
              [](const P& p) { return p.servovalve.rated_flow * p.servovalve.position_gain / p.actuator.piston_area; }},
-            {"bulk modulus times piston area squared over trapped volume, the stiffness of the oil",
+            {words::name_of(words::Combination::oil_stiffness),
              [](const P& p) {
                return p.actuator.bulk_modulus * p.actuator.piston_area * p.actuator.piston_area / p.actuator.trapped_volume;
              }},
-            {"the damping of the engine over its inertia",
+            {words::name_of(words::Combination::engine_damping),
              [](const P& p) { return p.engine.viscous_damping / p.engine.inertia; }}};
   } else {
-    return {{"stiffness over inertia, the square of the natural frequency",
+    return {{words::name_of(words::Combination::natural_frequency),
              [](const P& p) { return p.mass.stiffness / p.mass.inertia; }},
-            {"damping over inertia", [](const P& p) { return p.mass.damping / p.mass.inertia; }}};
+            {words::name_of(words::Combination::mass_damping), [](const P& p) { return p.mass.damping / p.mass.inertia; }}};
   }
 }
-
-/// Percent, with two digits.
-std::string percent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
 
 template <class Family>
 class Identifiability {
@@ -123,11 +119,10 @@ class Identifiability {
     }
     std::vector<std::string> each;
     for (const std::size_t k : factors) {
-      each.push_back(fmt::format("{} to {}", parameter(k).key, percent(relative_deviation(k))));
+      each.push_back(words::factor(parameter(k).key, relative_deviation(k)));
       said_.insert(k);
     }
-    all.push_back(fmt::format("The data tell {}, to {}, and not its factors one by one: {}.", combination.name,
-                              percent(deviation), fmt::join(each, ", ")));
+    all.push_back(words::combination_identified(combination.name, deviation, each));
   }
 
   double correlation(std::size_t a, std::size_t b) const {
@@ -166,14 +161,11 @@ class Identifiability {
         // Along the ridge, by a percent of the first.
         const double rate = covariance(first, k) / covariance(first, first) * relative_slope(k) / relative_slope(first);
         if (k != first) {
-          others.push_back(fmt::format("{} {} by {}", parameter(k).key, rate < 0.0 ? "smaller" : "larger",
-                                       percent(0.01 * std::abs(rate))));
+          others.push_back(words::moves_along(parameter(k).key, rate));
         }
       }
       said_.insert(group.begin(), group.end());
-      all.push_back(fmt::format(
-          "Hardly told apart: with {} larger by 1 %, {} fits nearly as well; {} by itself is known to {}.",
-          parameter(first).key, fmt::join(others, ", "), parameter(first).key, percent(relative_deviation(first))));
+      all.push_back(words::hardly_separated(parameter(first).key, others, relative_deviation(first)));
     }
   }
 
@@ -186,7 +178,7 @@ class Identifiability {
       }
     }
     if (!untold.empty()) {
-      all.push_back(fmt::format("The data say next to nothing on {}: what is declared stands.", fmt::join(untold, ", ")));
+      all.push_back(words::not_determined(untold));
     }
   }
 

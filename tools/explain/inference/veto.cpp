@@ -1,12 +1,11 @@
 #include "tools/explain/inference/veto.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "tools/explain/fit/goodness.hpp"
 #include "tools/explain/inference/residual_statistics.hpp"
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -56,8 +55,7 @@ std::string harm_of(const Dataset& data, const Prediction& model, const Predicti
       const double before = left_of(experiment, calibrated[e], c);
       const double after = left_of(experiment, model[e], c);
       if (after > kWorseRecord * before && after > kMoreThanNoise * experiment.noise[c]) {
-        return fmt::format("{} is worse by {:.0f} % on held-out rows ({})", experiment.name, 100.0 * (after / before - 1.0),
-                           data.channels[c]);
+        return words::worse_record(experiment.name, after / before - 1.0, data.channels[c]);
       }
     }
     const std::vector<Band> before = error_by_frequency(data, calibrated, c);
@@ -71,8 +69,7 @@ std::string harm_of(const Dataset& data, const Prediction& model, const Predicti
       const bool has_signal =
           signal[i].rms > kSignalOverNoise * signal[i].noise && signal[i].rms > kSignalShare * std::sqrt(whole);
       if (has_signal && after[i].rms > kWorseBand * before[i].rms && after[i].rms > kMoreThanNoise * after[i].noise) {
-        return fmt::format("{} is {:.1f} times as far off between {:.3g} and {:.3g} Hz", data.channels[c],
-                           after[i].rms / before[i].rms, after[i].from, after[i].to);
+        return words::worse_band(data.channels[c], after[i].rms / before[i].rms, after[i].from, after[i].to);
       }
     }
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/explain/words/conclusions.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -25,12 +27,6 @@ void add_hats(const std::vector<double>& points, double value, Row&& row) {
   }
 }
 
-std::string spoken(std::string_view name) {
-  std::string words(name);
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
-}
-
 }  // namespace
 
 Eigen::Index Form::size() const {
@@ -39,12 +35,12 @@ Eigen::Index Form::size() const {
 
 std::string in_words(const Form& form) {
   const std::string_view memory = model::kMemoryNames[static_cast<std::size_t>(form.memory.kind)];
-  std::string of = spoken(model::kArgumentNames[static_cast<std::size_t>(form.argument)]);
+  std::string of = words::spoken(model::kArgumentNames[static_cast<std::size_t>(form.argument)]);
   if (form.factor) {
-    of += " x " + spoken(model::kArgumentNames[static_cast<std::size_t>(*form.factor)]);
+    of += " x " + words::spoken(model::kArgumentNames[static_cast<std::size_t>(*form.factor)]);
   }
   const bool remembers = form.memory.kind != model::Memory::none;
-  const std::string kind = remembers ? spoken(memory) : "gain";
+  const std::string kind = remembers ? words::spoken(memory) : "gain";
   if (!form.has_curve()) {
     return fmt::format("{} of {}", kind, of);
   }

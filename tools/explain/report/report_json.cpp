@@ -1,8 +1,5 @@
 #include "tools/explain/report/report_json.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,6 +15,7 @@
 #include "tools/explain/report/trace.hpp"
 #include "tools/explain/report/verdict.hpp"
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/words/warnings.hpp"
 
 namespace hotfire::explain {
 
@@ -182,16 +180,12 @@ json calibration_json(const SearchResult<Family>& found, const std::vector<Estim
 void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
   for (const Kept& kept : found) {
     if (is_of_record_time(kept.trial.candidate)) {
-      warnings.push_back(fmt::format(
-          "{} at {} drifts over the time of these records: explained.toml, which runs others, has its mean; the report has "
-          "its table, and --keep-drift writes it.",
-          kept.trial.candidate.name, kept.trial.candidate.site));
+      warnings.push_back(words::drifts(kept.trial.candidate.name, kept.trial.candidate.site));
     }
     const std::string& name = kept.trial.candidate.name;
     if (is_fault_of_record(kept.trial.candidate)) {
-      warnings.push_back(fmt::format(
-          "{} is a fault of the record, not of the plant: explained.toml is without it; mend channel {} and explain again.",
-          name, kept.trial.candidate.option_name.empty() ? "command" : kept.trial.candidate.option_name));
+      const std::string& channel = kept.trial.candidate.option_name;
+      warnings.push_back(words::fault_of_record(name, channel.empty() ? "command" : channel));
     }
   }
 }
@@ -201,15 +195,15 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
                  const std::vector<Estimate>& estimated) {
   json warnings = json::array();
   if (found.interrupted) {
-    warnings.push_back("The search ended early, by Ctrl-C or --seconds: the report has what was known by then.");
+    warnings.push_back(words::ended_early());
   }
   warn_of_rows(data, warnings);
   warn_of_channels(found.kept, warnings);
   for (const std::string& key : model.left_out) {
-    warnings.push_back(key + " is not in the model file: its reference value was taken, and held exact.");
+    warnings.push_back(words::left_out(key));
   }
   if (found.explained.model.free.empty() || !found.explained.model.free.front().is_declared()) {
-    warnings.push_back("No declared parameter has a tolerance: a wrong declared value will look like a missing effect.");
+    warnings.push_back(words::no_tolerance());
   }
   for (std::size_t k = 0; k < estimated.size(); ++k) {
     const FreeParameter& free = found.explained.model.free[k];
@@ -217,11 +211,10 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
       continue;
     }
     if (estimated[k].pressed) {
-      warnings.push_back(free.is_declared() ? fmt::format("{} was moved {:.1f} tolerances from its declared value.",
-                                                          free.key, std::abs(found.explained.model.u[k]))
-                                            : fmt::format("{} ended at the edge of what the effect allows.", free.key));
+      warnings.push_back(free.is_declared() ? words::moved_far(free.key, std::abs(found.explained.model.u[k]))
+                                            : words::at_a_bound(free.key));
     } else if (!estimated[k].interval && !free.is_declared()) {
-      warnings.push_back(free.key + " is not determined by the data.");
+      warnings.push_back(words::undetermined(free.key));
     }
   }
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
@@ -235,8 +228,7 @@ json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult
     }
     const double seen = noise_from_differences(residual);
     if (seen > 1.5 * data.noise[c] || seen < data.noise[c] / 1.5) {
-      warnings.push_back(
-          fmt::format("{} noise is declared as {:.3g} but the records show {:.3g}.", data.channels[c], data.noise[c], seen));
+      warnings.push_back(words::noise_differs(data.channels[c], data.noise[c], seen));
     }
   }
   return warnings;
@@ -261,27 +253,21 @@ json record_channels_json(const Dataset& data, std::size_t experiment, const Zer
 void warn_of_rows(const Dataset& data, json& warnings) {
   for (const Experiment& experiment : data.experiments) {
     for (const std::string& channel : experiment.unused) {
-      warnings.push_back(fmt::format("{}: channel {} is not used: the model has no such channel (it has {}{}).",
-                                     experiment.name, channel, fmt::join(data.channels, ", "),
-                                     data.channels.size() > 1 ? "; a measured load is an input, torque" : ""));
+      warnings.push_back(words::unused_channel(experiment.name, channel, data.channels));
     }
   }
   for (const Experiment& experiment : data.experiments) {
     if (experiment.first_scored > 0) {
-      warnings.push_back(fmt::format("{} does not start at rest: its first {:.2f} s are simulated but not compared.",
-                                     experiment.name, static_cast<double>(experiment.first_scored) * experiment.period));
+      warnings.push_back(
+          words::not_at_rest(experiment.name, static_cast<double>(experiment.first_scored) * experiment.period));
     }
   }
   for (const Experiment& experiment : data.experiments) {
     for (const Block& block : experiment.excluded) {
-      warnings.push_back(fmt::format("{}: {:.4g} to {:.4g} s are excluded as the user asked: simulated, not compared.",
-                                     experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
+      warnings.push_back(words::excluded(experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
     }
     if (experiment.input_is_held) {
-      warnings.push_back(
-          fmt::format("{}: the input is missing in excluded rows and holds there: if it moved, exclude as much more as the "
-                      "axis needs to forget it, about a second.",
-                      experiment.name));
+      warnings.push_back(words::input_held(experiment.name));
     }
   }
 }

@@ -1,7 +1,5 @@
 #include "tools/explain/report/trace.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +7,7 @@
 
 #include "tools/explain/data/smoothing.hpp"
 #include "tools/explain/data/statistics.hpp"
+#include "tools/explain/words/conclusions.hpp"
 
 namespace hotfire::explain {
 
@@ -227,14 +226,12 @@ std::vector<Trace> reconstruct(const Dataset& data, const DirectParameters& para
 }
 
 std::string in_words(const Trace& trace) {
-  const std::string strength =
-      fmt::format("The {} equation leaves over a {} of {:.3g} {} rms, {:.1f} times what sensor noise gives", trace.equation,
-                  trace.missing.label, root_mean_square(trace.missing.values), trace.missing.unit, trace.signal_to_noise);
-  if (trace.share < 0.05) {
-    return strength + "; it depends on none of the quantities looked at.";
-  }
-  return strength + fmt::format("; of the quantities looked at, the {} tells most of it ({:.0f} % of its variance).",
-                                trace.depends_on.label, 100.0 * trace.share);
+  constexpr double kLeastShare = 0.05;
+  return words::trace(trace.equation, trace.missing.label, root_mean_square(trace.missing.values), trace.missing.unit,
+                      trace.signal_to_noise) +
+         " " +
+         (trace.share < kLeastShare ? words::trace_depends_on_none()
+                                    : words::trace_depends(trace.depends_on.label, trace.share));
 }
 
 }  // namespace hotfire::explain

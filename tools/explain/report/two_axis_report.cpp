@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "tools/explain/words/conclusions.hpp"
+
 namespace hotfire::explain {
 
 using nlohmann::json;
@@ -43,9 +45,9 @@ json joined_texts(const std::vector<AxisReport>& reports, const char* key) {
         const json& others = other.report.at(key);
         return std::find(others.begin(), others.end(), text) != others.end();
       });
-      const json told = common ? text : json(fmt::format("{}: {}", own.axis, text.get<std::string>()));
-      if (std::find(texts.begin(), texts.end(), told) == texts.end()) {
-        texts.push_back(told);
+      const json named = common ? text : json(fmt::format("{}: {}", own.axis, text.get<std::string>()));
+      if (std::find(texts.begin(), texts.end(), named) == texts.end()) {
+        texts.push_back(named);
       }
     }
   }
@@ -67,8 +69,7 @@ std::string joined_verdict(const std::vector<AxisReport>& reports) {
 std::string joined_sentence(const std::vector<AxisReport>& reports) {
   std::string sentence;
   for (const AxisReport& own : reports) {
-    sentence +=
-        fmt::format("{}{} axis: {}", sentence.empty() ? "" : " ", own.axis, own.report.at("sentence").get<std::string>());
+    sentence += (sentence.empty() ? "" : " ") + words::of_axis(own.axis, own.report.at("sentence").get<std::string>());
   }
   return sentence;
 }
@@ -105,9 +106,8 @@ json joined_report(const std::vector<AxisReport>& reports) {
     }
     add_rows(own.report.at("effects"), own.axis, joined["effects"]);
     add_rows(own.report.at("search"), own.axis, joined["search"]);
-    for (const json& told : own.report.at("identifiability")) {
-      joined["identifiability"].push_back(
-          {{"text", fmt::format("{} axis: {}", own.axis, told.at("text").get<std::string>())}});
+    for (const json& text : own.report.at("identifiability")) {
+      joined["identifiability"].push_back({{"text", words::of_axis(own.axis, text.at("text").get<std::string>())}});
     }
     const json& left = own.report.at("residual");
     residual["white"] = residual.at("white").get<bool>() && left.at("white").get<bool>();
@@ -118,15 +118,15 @@ json joined_report(const std::vector<AxisReport>& reports) {
     }
     if (left.contains("next_experiment")) {
       const std::string before = residual.value("next_experiment", "");
-      residual["next_experiment"] = fmt::format("{}{}{} axis: {}", before, before.empty() ? "" : " ", own.axis,
-                                                left.at("next_experiment").get<std::string>());
+      residual["next_experiment"] =
+          before + (before.empty() ? "" : " ") + words::of_axis(own.axis, left.at("next_experiment").get<std::string>());
     }
-    // The trace of the first axis that lacks something, else of the first that has one.
-    const json& lacks = own.report.at("effects");
-    const bool first_to_lack = !lacks.empty() && joined["effects"].size() == lacks.size();
-    if (own.report.contains("trace") && (first_to_lack || !joined.contains("trace"))) {
+    // The trace of the first axis with a missing effect, else of the first that has one.
+    const json& missing = own.report.at("effects");
+    const bool is_first_missing = !missing.empty() && joined["effects"].size() == missing.size();
+    if (own.report.contains("trace") && (is_first_missing || !joined.contains("trace"))) {
       joined["trace"] = own.report.at("trace");
-      joined["trace"]["text"] = fmt::format("{} axis: {}", own.axis, own.report.at("trace").at("text").get<std::string>());
+      joined["trace"]["text"] = words::of_axis(own.axis, own.report.at("trace").at("text").get<std::string>());
     }
   }
   return joined;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/words/conclusions.hpp"
 
 namespace hotfire::explain {
 
@@ -13,22 +14,11 @@ namespace {
 
 /// "gimbal friction (lugre) at engine_torque".
 std::string phrase(const Candidate& candidate) {
-  std::string name = candidate.name;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return fmt::format("{}{} at {}", name, candidate.option_name.empty() ? "" : " (" + candidate.option_name + ")",
-                     candidate.site);
+  return fmt::format("{}{} at {}", words::spoken(candidate.name),
+                     candidate.option_name.empty() ? "" : " (" + candidate.option_name + ")", candidate.site);
 }
 
-/// "a, b and c".
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  }
-  return text;
-}
-
-/// ", and of what was tried ... promised most": by a joint fit if there was one.
+/// Which candidate was best when the search ended, in a sentence: by a joint fit if there was one.
 std::string promising(const std::vector<Trial>& trials) {
   const auto best = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
     return a.refined == b.refined ? a.delta_criterion < b.delta_criterion : a.refined;
@@ -36,9 +26,8 @@ std::string promising(const std::vector<Trial>& trials) {
   if (best == trials.end() || best->delta_criterion > -kStrongEvidence) {
     return "";
   }
-  return best->refined ? fmt::format("; of what was fitted by then {} leaves least, {:.0f} % of that",
-                                     phrase(best->candidate), 100.0 * best->held_out_ratio)
-                       : fmt::format("; in screening {} promised most", phrase(best->candidate));
+  return " " + (best->refined ? words::best_so_far(phrase(best->candidate), best->held_out_ratio)
+                              : words::best_in_screening(phrase(best->candidate)));
 }
 
 /// The trial with the least held-out error of those fitted jointly that `is_meant`; null if there is none.
@@ -60,9 +49,9 @@ const Kept* first_unlisted(const SearchResult<Family>& found) {
   return kept == found.kept.end() ? nullptr : &*kept;
 }
 
-/// "a term at SITE that depends on ..., and gimbal friction at engine_torque" of everything that was kept.
+/// "a term at SITE that depends on ...", "gimbal friction at engine_torque": everything that was kept.
 template <class Family>
-std::string terms_in_words(const SearchResult<Family>& found) {
+std::vector<std::string> terms_in_words(const SearchResult<Family>& found) {
   std::vector<std::string> terms;
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
@@ -70,15 +59,13 @@ std::string terms_in_words(const SearchResult<Family>& found) {
                         ? fmt::format("a term at {} {}", fmt::join(sites_of(kept), " or "), dependence_in_words(candidate))
                         : phrase(candidate));
   }
-  return listed(terms);
+  return terms;
 }
 
 /// Where what is missing acts, as far as the records say.
 std::string place_in_words(const Located& located) {
   const std::vector<std::string> sites = located.likely_sites();
-  return located.is_single
-             ? fmt::format("One unknown signal at {} explains the records down to the noise", fmt::join(sites, " or "))
-             : fmt::format("No single place explains it; the most likely ones are {}", listed(sites));
+  return located.is_single ? words::one_place(fmt::format("{}", fmt::join(sites, " or "))) : words::several_places(sites);
 }
 
 }  // namespace
@@ -110,59 +97,37 @@ std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
 
 template <class Family>
 std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found, bool noise_is_known) {
-  const double before = Goodness::combined(found.declared.goodness.held_out);
-  const double after = Goodness::combined(found.explained.goodness.held_out);
-  // Times a floor that is no size of the sensor says nothing.
-  const std::string falls = noise_is_known
-                                ? fmt::format("from {:.1f} to {:.2f} times the noise", before, after)
-                                : fmt::format("to {:.3g} % of what the declared model leaves", 100.0 * after / before);
+  const words::HeldOutError error{Goodness::combined(found.declared.goodness.held_out),
+                                  Goodness::combined(found.explained.goodness.held_out), noise_is_known};
   if (verdict == "nothing-missing" && !is_within_tolerances(found.explained.model)) {
     const Moved farthest = farthest_from_declared(found.explained.model);
-    return fmt::format(
-        "No effect is found to be missing, but a declared value is wrong or stands in for one: the model meets the records "
-        "down to the sensor noise ({:.2f} times its rms on held-out data) only with {} {:.1f} tolerances from its declared "
-        "value.",
-        after, farthest.key, farthest.tolerances);
+    return words::wrong_declaration(error.model, farthest.key, farthest.tolerances);
   }
   if (verdict == "nothing-missing") {
-    return fmt::format(
-        "Nothing is missing: within its tolerances the declared model meets the records down to the sensor noise "
-        "({:.2f} times its rms on held-out data).",
-        after);
+    return words::nothing_missing(error.model);
   }
   if (verdict == "unlisted-effect" && !found.kept.empty()) {
-    return fmt::format(
-        "The records hold an effect that is in no list. The explained model has {}: the error on held-out data falls {}.",
-        terms_in_words(found), falls);
+    return words::unlisted_term(terms_in_words(found), error);
   }
   if (verdict == "unlisted-effect") {
-    return fmt::format(
-        "The records hold an effect that is in no list: the error of the calibrated model on held-out data is {}, and no "
-        "candidate is supported.{}",
-        noise_is_known ? fmt::format("{:.1f} times the noise", after)
-                       : fmt::format("{:.3g} % of the declared model's", 100.0 * after / before),
-        found.located.places.empty() ? "" : " " + place_in_words(found.located) + ".");
+    return words::unlisted_unexplained(error) + (found.located.places.empty() ? "" : " " + place_in_words(found.located));
   }
   if (verdict == "undecided") {
-    return fmt::format(
-        "{}: the calibrated model is {} off on held-out data{}.",
-        found.searched ? "Undecided, since the search was interrupted" : "Undecided, since no effect was looked for",
-        noise_is_known ? fmt::format("{:.1f} times the noise", after)
-                       : fmt::format("{:.3g} % of what the declared model is", 100.0 * after / before),
-        promising(found.trials));
+    return words::undecided(found.searched, error) + promising(found.trials);
   }
-  std::vector<std::string> lacks;
+  std::vector<std::string> missing;
   std::vector<std::string> faults;
   for (const Kept& kept : found.kept) {
-    (is_fault_of_record(kept.trial.candidate) ? faults : lacks).push_back(phrase(kept.trial.candidate));
+    (is_fault_of_record(kept.trial.candidate) ? faults : missing).push_back(phrase(kept.trial.candidate));
   }
-  std::string text = lacks.empty() ? "" : "The declared model lacks " + listed(lacks);
+  std::string text;
+  if (!missing.empty()) {
+    text += words::missing_effects(missing) + " ";
+  }
   if (!faults.empty()) {
-    text += fmt::format("{} at fault: {}", lacks.empty() ? "The records are" : ", and the records are", listed(faults));
+    text += words::faults_of_records(faults) + " ";
   }
-  return fmt::format("{}: with {} the error on held-out data falls {}{}.", text, found.kept.size() == 1 ? "it" : "them",
-                     falls,
-                     verdict == "explained" ? ", close to what the sensors can tell" : "; a part is left unexplained");
+  return text + words::error_falls(found.kept.size() == 1, error, verdict == "explained");
 }
 
 template <class Family>
@@ -176,15 +141,11 @@ std::string what_it_is_not(const SearchResult<Family>& found) {
   const Trial* other = closest_of(found.trials, [&](const Trial& t) {
     return is_unlisted<Family>(t.candidate) && label(t.candidate) != label(kept.candidate);
   });
-  std::string text = "No listed effect promised enough in screening to be fitted with everything else.";
-  if (listed != nullptr) {
-    text = fmt::format(
-        "Not {}, of the listed effects the one that alone came closest: it leaves {:.1f} % of the calibrated "
-        "model's held-out error, the term that was kept {:.1f} %.",
-        phrase(listed->candidate), 100.0 * listed->held_out_ratio, 100.0 * kept.held_out_ratio);
-  }
+  std::string text = listed == nullptr
+                         ? words::no_listed_finalist()
+                         : words::is_not_listed(phrase(listed->candidate), listed->held_out_ratio, kept.held_out_ratio);
   if (other != nullptr) {
-    text += fmt::format(" Not {} either, which leaves {:.1f} %.", phrase(other->candidate), 100.0 * other->held_out_ratio);
+    text += " " + words::is_not_other(phrase(other->candidate), other->held_out_ratio);
   }
   return text;
 }

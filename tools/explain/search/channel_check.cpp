@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
@@ -107,16 +108,11 @@ void check(const Dataset& data, const std::string& record, const std::vector<Com
     const std::string moving = is_command ? "every channel" : "channel " + data.channels[c.channel];
     const char* culprit = is_command ? "the command" : "it";
     if (c.is_against()) {
-      throw FileError(
-          fmt::format("{}: {} runs against the declared model (correlation {:.2f}): {} looks inverted. Turn its sign "
-                      "in the record, or the sign that the model declares; nothing is fitted to it",
-                      record, moving, c.correlation, culprit));
+      throw FileError(words::inverted_channel(record, moving, c.correlation, culprit));
     }
     if (c.is_out_of_scale()) {
-      throw FileError(
-          fmt::format("{}: {} follows the declared model at {:.4g} times its size (correlation {:.3f}): {} looks "
-                      "mis-scaled{}. Mend its unit in the record's first line, or its calibration; nothing is fitted to it",
-                      record, moving, c.ratio, c.correlation, culprit, unit_hint(is_command ? 1.0 / c.ratio : c.ratio)));
+      throw FileError(words::mis_scaled_channel(record, moving, c.ratio, c.correlation, culprit,
+                                                unit_hint(is_command ? 1.0 / c.ratio : c.ratio)));
     }
   }
 }

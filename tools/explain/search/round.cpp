@@ -7,6 +7,7 @@
 
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -211,9 +212,9 @@ template <class Family>
 RoundResult<Family> Round<Family>::undecided() {
   for (Trial& trial : trials_) {
     trial.decision = kUndecided;
-    trial.reason = trial.refined    ? "fitted jointly, not all others were, when the search was interrupted"
-                   : trial.screened ? "screened when the search was interrupted"
-                                    : "not fitted when the search was interrupted";
+    trial.reason = words::text(trial.refined    ? words::Reason::interrupted_refined
+                               : trial.screened ? words::Reason::interrupted_screened
+                                                : words::Reason::interrupted_before);
   }
   RoundResult<Family> result;
   result.trials = trials_;

@@ -15,6 +15,7 @@
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/search/unlisted_stage.hpp"
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -123,7 +124,7 @@ class Search {
     for (Trial& trial : result_.trials) {
       if (trial.round == round && trial.decision == "kept" && label(trial.candidate) == label(candidate)) {
         trial.decision = "dropped";
-        trial.reason += "; refused: " + harm;
+        trial.reason += "; " + words::refused(harm);
       }
     }
   }
@@ -137,7 +138,7 @@ class Search {
       }
       const Kept last = std::move(result_.kept.back());
       result_.kept.pop_back();
-      Trial trial{result_.next_round(), last.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", "refused: " + harm};
+      Trial trial{result_.next_round(), last.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", words::refused(harm)};
       Assessed<Family> rest =
           result_.kept.empty() ? result_.calibrated : refiner_.without(result_.explained.model, last.trial.candidate);
       if (!rest.good()) {
@@ -179,7 +180,7 @@ class Search {
       Candidate law = kept.trial.candidate;
       Assessed<Family> simple = refiner_.by_simplest_law(result_.explained, law);
       if (label(law) != label(kept.trial.candidate)) {
-        give_law(kept.trial.candidate, {law, std::move(simple)}, round, "leaves out only what the data leave open of");
+        give_law(kept.trial.candidate, {law, std::move(simple)}, round, words::LawChange::simpler);
       }
     }
     Assessed<Family> beyond = refiner_.over_ripples(result_.explained);
@@ -213,7 +214,7 @@ class Search {
       compare(trial, richer.model, result_.explained, richer.model.goodness.fitted);
       if (is_supported(trial)) {
         richer.model = refiner_.settled(richer.model.model);
-        give_law(candidate, std::move(richer), round, "is better, with a later effect added, than");
+        give_law(candidate, std::move(richer), round, words::LawChange::richer);
       }
     }
   }
@@ -240,7 +241,7 @@ class Search {
     Trial trial{round, rival.other, true, 0.0, 1.0, 0.0, "dropped", ""};
     compare(trial, with, result_.explained, with.goodness.fitted);
     if (is_supported(trial)) {
-      give_law(candidate, {rival.other, std::move(with)}, round, "explains more, with a later effect added, than");
+      give_law(candidate, {rival.other, std::move(with)}, round, words::LawChange::rival_better);
       for (Trial& alternative : kept->alternatives) {
         if (label(alternative.candidate) == label(rival.other)) {
           std::swap(kept->trial, alternative);
@@ -256,22 +257,22 @@ class Search {
     }
     if (trial.delta_criterion < kTied) {
       trial.decision = "tied";
-      trial.reason = "explains as much, with the later effects too, as " + label(candidate);
+      trial.reason = words::text(words::LawChange::rival_tied, label(candidate));
       if (!result_.rival) {
         result_.rival = Rival<Family>{candidate, rival.other, std::move(with.model)};
       }
     } else {
-      trial.reason = "explained as much before a later effect was added as " + label(candidate);
+      trial.reason = words::text(words::LawChange::rival_separated, label(candidate));
     }
     result_.trials.push_back(std::move(trial));
   }
 
   /// Gives an effect that was kept another law, and says why.
-  void give_law(Candidate& candidate, OfLaw<Family> other, int round, const std::string& why) {
+  void give_law(Candidate& candidate, OfLaw<Family> other, int round, words::LawChange why) {
     if (!other.model.good()) {
       return;
     }
-    Trial trial{round, other.candidate, true, 0.0, 1.0, 0.0, "kept", why + " " + label(candidate)};
+    Trial trial{round, other.candidate, true, 0.0, 1.0, 0.0, "kept", words::text(why, label(candidate))};
     compare(trial, other.model, result_.explained, other.model.goodness.fitted);
     result_.trials.push_back(std::move(trial));
     candidate = other.candidate;
@@ -284,15 +285,15 @@ class Search {
   void take_out_superfluous(int round) {
     const std::size_t newest = result_.kept.size() - 1;
     for (std::size_t i = newest + 1; i-- > 0;) {
-      Trial trial{round,
-                  result_.kept[i].trial.candidate,
-                  false,
-                  0.0,
-                  1.0,
-                  0.0,
-                  "taken out",
-                  i == newest ? "the model is as good without it: it led what stays to where it fits"
-                              : "the model is as good without it since a later effect was added"};
+      Trial trial{
+          round,
+          result_.kept[i].trial.candidate,
+          false,
+          0.0,
+          1.0,
+          0.0,
+          "taken out",
+          std::string(words::text(i == newest ? words::Reason::superfluous_newest : words::Reason::superfluous_earlier))};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
       const Stopwatch stopwatch;
       Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);

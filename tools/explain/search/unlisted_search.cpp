@@ -17,6 +17,7 @@
 #include "tools/explain/search/term_proposals.hpp"
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -26,7 +27,7 @@ namespace {
 template <class Family>
 void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<Family>& beside) {
   compare(trial, with, beside, with.goodness.fitted);
-  trial.reason = fmt::format("leaves {:.1f} % of the held-out error", 100.0 * trial.held_out_ratio);
+  trial.reason = words::leaves(trial.held_out_ratio);
 }
 
 /// Terms of the grammar that are fitted jointly, of those that were proposed: one of every site, or two of one.
@@ -101,7 +102,8 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
                    const Effort& effort, int round, const Watch& watch, UnlistedSearch<Family>& result) {
   std::size_t fitted = 0;
   for (Screened<Family>& s : screened) {
-    Trial trial{round, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "behind the finalists in screening"};
+    Trial trial{round, s.candidate, false,     s.criterion,
+                1.0,   s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
     double left = std::numeric_limits<double>::infinity();
     const bool is_decided = result.reaches_noise(data) && s.candidate.site == result.trials[*result.best].candidate.site;
     if (fitted < most && !is_decided && !watch.interrupted()) {
@@ -114,11 +116,11 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
         compare_and_say(trial, finalist, beside);
         left = excess_over_noise(data, finalist.prediction);
         if (falls_as_it_rises(finalist.model, s.candidate)) {
-          trial.reason += ", but by a signal that falls where it should rise";
+          trial.reason += words::text(words::Reason::falls_as_it_rises);
         } else if (feeds_energy<Family>(
                        Evaluator<Family>::with_values(finalist.model.base, finalist.model.free, finalist.model.u),
                        s.candidate)) {
-          trial.reason += ", but by a friction that feeds energy in";
+          trial.reason += words::text(words::Reason::feeds_energy);
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
           result.model = std::move(finalist);
@@ -138,7 +140,7 @@ void mark_tied_sites(UnlistedSearch<Family>& result) {
     Trial& trial = result.trials[i];
     if (result.left[i] < most && trial.candidate.site != result.trials[*result.best].candidate.site) {
       trial.decision = "tied";
-      trial.reason += ", no more than the one that is kept at another site";
+      trial.reason += words::text(words::Reason::tied_site);
     }
   }
 }

@@ -7,6 +7,7 @@
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -132,8 +133,7 @@ void UnlistedStage<Family>::refuse_misplaced_names() {
   const bool misplaced = std::ranges::any_of(
       result_.kept, [&](const Kept& kept) { return located().is_single && !located().allows(kept.trial.candidate.site); });
   if (misplaced) {
-    take_out_names(fmt::format("one unknown signal at {} explains the records down to the noise",
-                               fmt::join(located().likely_sites(), " or ")));
+    take_out_names(words::explained_by_signal(fmt::format("{}", fmt::join(located().likely_sites(), " or "))));
   }
 }
 
@@ -160,12 +160,11 @@ void UnlistedStage<Family>::take_instead_if_better() {
     return;
   }
   if (const std::string harm = harm_of(data_, instead_->model.prediction, result_.calibrated.prediction); !harm.empty()) {
-    result_.trials[instead_trials_ + *instead_->best].reason += "; refused: " + harm;
+    result_.trials[instead_trials_ + *instead_->best].reason += "; " + words::refused(harm);
     return;
   }
   if (!result_.kept.empty()) {
-    result_.trials[instead_trials_ + *instead_->best].reason +=
-        fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * listed);
+    result_.trials[instead_trials_ + *instead_->best].reason += words::replaces_listed(listed);
   }
   result_.kept.clear();
   result_.rival.reset();
@@ -225,7 +224,7 @@ void UnlistedStage<Family>::drop_light_names() {
                 1.0,
                 0.0,
                 "taken out",
-                "carries little beside a term of unknown law"};
+                std::string(words::text(words::Reason::beside_unlisted))};
     Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);
     if (!rest.good()) {
       continue;
@@ -248,7 +247,7 @@ void UnlistedStage<Family>::drop_names_that_explain_little() {
   });
   if (names_alone && left_by_listed() > kLittleExplained &&
       excess_over_noise(data_, result_.explained.prediction) > kNearNoise) {
-    take_out_names(fmt::format("leaves {:.0f} % of the held-out error, far above the noise", 100.0 * left_by_listed()));
+    take_out_names(words::leaves_far_above_noise(left_by_listed()));
   }
 }
 

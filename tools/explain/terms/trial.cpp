@@ -1,8 +1,8 @@
 #include "tools/explain/terms/trial.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -30,25 +30,22 @@ bool is_as_good(const Trial& trial) {
 
 std::string reason_of(const Trial& trial, const Trial* best) {
   if (trial.decision == "kept") {
-    return fmt::format("lowers the held-out error by {:.1f} % and the BIC by {:.0f}", 100.0 * (1.0 - trial.held_out_ratio),
-                       -trial.delta_criterion);
+    return words::lowers(1.0 - trial.held_out_ratio, -trial.delta_criterion);
   }
   if (trial.decision == "tied") {
-    return fmt::format("the data do not tell it from {}: {:+.1f} in BIC", label(best->candidate),
-                       trial.delta_criterion - best->delta_criterion);
+    return words::is_tied(label(best->candidate), trial.delta_criterion - best->delta_criterion);
   }
   if (!trial.screened) {
-    return "not fitted: none of the laws that it contains goes on";
+    return std::string(words::text(words::Reason::not_screened));
   }
   if (!trial.refined) {
-    return trial.delta_criterion > -kStrongEvidence ? "does not lower the BIC" : "behind the finalists in screening";
+    return std::string(words::text(trial.delta_criterion > -kStrongEvidence ? words::Reason::no_lower_criterion
+                                                                            : words::Reason::behind_finalists));
   }
   if (best != &trial && best->delta_criterion < trial.delta_criterion) {
-    return fmt::format("{} is better by {:.0f} in BIC", label(best->candidate),
-                       trial.delta_criterion - best->delta_criterion);
+    return words::is_better(label(best->candidate), trial.delta_criterion - best->delta_criterion);
   }
-  return fmt::format("changes the held-out error by {:+.2f} % and the BIC by {:+.0f}: too little",
-                     100.0 * (trial.held_out_ratio - 1.0), trial.delta_criterion);
+  return words::changes_too_little(trial.held_out_ratio - 1.0, trial.delta_criterion);
 }
 
 }  // namespace hotfire::explain

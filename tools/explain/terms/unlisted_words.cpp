@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/words/conclusions.hpp"
 
 namespace hotfire::explain {
 
@@ -29,12 +32,38 @@ double at(const FittedTable& table, double x) {
   return table.y[k - 1] + share * (table.y[k] - table.y[k - 1]);
 }
 
+/// "load pressure", "rate times angle": the argument of a term of the grammar.
+std::string quantity_of_term(const Candidate& candidate) {
+  const auto argument = static_cast<std::size_t>(candidate.choices[0]);
+  const auto factor = static_cast<std::size_t>(candidate.choices[1]);
+  return words::spoken(model::kArgumentNames[argument]) +
+         (factor == 0 ? "" : " times " + words::spoken(model::term::kFactorNames[factor]));
+}
+
+/// ", through a delay": its memory; empty if it has none.
+std::string memory_of_term(const Candidate& candidate) {
+  constexpr std::array<std::string_view, model::kMemoryNames.size()> kMemories{"",
+                                                                               ", through a delay",
+                                                                               ", through a first-order lag",
+                                                                               ", through a washout filter",
+                                                                               ", through a resonance",
+                                                                               ", through a band-pass filter",
+                                                                               ", with hysteresis",
+                                                                               ", through a rate limit",
+                                                                               ", through a sample-and-hold",
+                                                                               ", through quantisation",
+                                                                               ", through a dead zone",
+                                                                               ", through saturation",
+                                                                               ", through a periodic function"};
+  return std::string(kMemories[static_cast<std::size_t>(candidate.option)]);
+}
+
 }  // namespace
 
 std::string in_words(const FittedTable& table) {
   const auto [least, most] = std::minmax_element(table.y.begin(), table.y.end());
   std::string text = fmt::format(
-      "{} from {:.3g} to {:.3g} {} over {} from {:.3g} to {:.3g} {} (its bounds: beyond them the value at the end holds)",
+      "{} from {:.3g} to {:.3g} {} over {} from {:.3g} to {:.3g} {}. Beyond these bounds the value at the end holds",
       table.meaning, *least, *most, table.y_unit, table.x_name, table.x.front(), table.x.back(), table.x_unit);
   constexpr int kSamples = 101;
   const double reach = std::min(std::abs(table.x.front()), std::abs(table.x.back()));
@@ -54,71 +83,71 @@ std::string in_words(const FittedTable& table) {
     even += 0.25 * (forward + backward) * (forward + backward);
   }
   if (square > 0.0 && mean * mean > kMostly * square) {
-    text += "; mostly constant";
+    text += ". The curve is mostly constant";
   } else if (two_sided && odd > kMostly * (odd + even)) {
-    text += "; odd";
+    text += ". The curve is odd";
     const double near_zero = at(table, 0.1 * reach) - at(table, -0.1 * reach);
     const double whole = table.y.back() - table.y.front();
     if (std::abs(near_zero) > 0.5 * std::abs(whole)) {
-      text += ", with most of it in a jump about zero, as dry friction has";
+      text += ", with most of its range in a jump at zero, as in dry friction";
     }
   } else if (two_sided && even > kMostly * (odd + even)) {
-    text += "; even";
+    text += ". The curve is even";
   }
   const bool rises = std::is_sorted(table.y.begin(), table.y.end());
   const bool falls = std::is_sorted(table.y.rbegin(), table.y.rend());
   if (rises != falls) {
-    text += rises ? "; rises throughout" : "; falls throughout";
+    text += rises ? ". It rises throughout" : ". It falls throughout";
   }
   return text;
 }
 
 std::string law_in_words(const Candidate& candidate) {
+  if (!candidate.choices.empty()) {
+    return quantity_of_term(candidate) + memory_of_term(candidate);
+  }
   if (is_periodic(candidate)) {
-    return "a sinusoid of one frequency and one amplitude over the whole of every record, whatever the axis does";
+    return "a sinusoid of one frequency and one amplitude over the whole of every record, independent of the motion";
   }
   if (candidate.option_name == "creep") {
-    return "a share of the deflection that follows the load late, at one time constant, and goes back as late";
+    return "a part of the deflection that follows the load through a first-order lag";
   }
   if (candidate.option_name == "deflection_rate") {
-    return "a damper beside the load spring: a further spring that relaxes with one time constant, which slow motion does "
-           "not meet";
+    return "a damper in series with a spring, beside the load spring: it relaxes with one time constant";
   }
   if (candidate.option_name == "lag") {
-    return "a command that goes through a first-order lag before it acts: later and, where it is fast, smaller";
+    return "a first-order lag of the command: it delays the command and attenuates its fast part";
   }
   if (candidate.option_name == "slew") {
-    return "a spool that goes no faster than so, however much is asked of it";
+    return "a spool with a limited speed";
   }
   if (candidate.option_name == "slip") {
-    return "a joint beside the load spring that sticks, and slips once it is stretched so far: a loop between force and "
-           "deflection whose width does not depend on how fast it is run through";
+    return "a joint beside the load spring that sticks and slips beyond a fixed stretch: a hysteresis loop whose width does "
+           "not depend on the speed";
   }
   if (candidate.name == model::UnlistedWiperPlay::name) {
-    return "a reading that stays where it is until the motion has gone on by a play: a wiper that sticks, a slack linkage";
+    return "a reading that changes only after the motion exceeds a play, as with a sticking wiper or a slack linkage";
   }
   return "";
 }
 
 std::string dependence_in_words(const Candidate& candidate) {
+  if (!candidate.choices.empty()) {
+    return "that depends on " + quantity_of_term(candidate) + memory_of_term(candidate);
+  }
   if (is_periodic(candidate)) {
     return "of one frequency";
   }
-  if (!candidate.choices.empty()) {
-    return "that is a " + candidate.option_name;
-  }
   if (candidate.name == model::UnlistedWiperPlay::name) {
-    return "that is a play";
+    return "with a play";
   }
   if (candidate.name == model::UnlistedReading::name) {
-    return "over what it reads";
+    return "that depends on the reading itself";
   }
   if (candidate.name == model::UnlistedDrift::name) {
-    return "over the time of the record";
+    return "that depends on the time of the record";
   }
-  std::string quantity = candidate.option_name;
-  std::replace(quantity.begin(), quantity.end(), '_', ' ');
-  return "that is told by " + quantity;
+  return "that depends on " + words::spoken(candidate.option_name);
 }
 
 }  // namespace hotfire::explain

@@ -1,0 +1,78 @@
+#include "tools/explain/words/reasons.hpp"
+
+#include <fmt/format.h>
+
+namespace hotfire::explain::words {
+
+std::string_view text(Reason reason) noexcept {
+  constexpr std::array<std::string_view, kReasons> texts{
+      "not fitted: no law that it contains reached the finalists",
+      "does not lower the BIC",
+      "ranked below the finalists in screening",
+      "the model is as good without it: it only led the other effects to their final values",
+      "the model is as good without it since a later effect was added",
+      "explains little beside a term of unknown law",
+      ", but its signal falls where it should rise",
+      ", but its friction adds energy",
+      ", as much as the term that is kept at another site",
+      "fitted jointly before the search was interrupted; other candidates were not",
+      "screened before the search was interrupted",
+      "not fitted before the search was interrupted"};
+  return texts[static_cast<std::size_t>(reason)];
+}
+
+std::string text(LawChange change, const std::string& other) {
+  constexpr std::array<std::string_view, kLawChanges> texts{
+      "has no parameter that the data leave open, in contrast to",
+      "is better, with a later effect added, than",
+      "explains more, with a later effect added, than",
+      "with the later effects added, it explains as much as",
+      "only before a later effect was added did it explain as much as",
+  };
+  return fmt::format("{} {}", texts[static_cast<std::size_t>(change)], other);
+}
+
+std::string lowers(double share_of_error, double criterion) {
+  return fmt::format("lowers the held-out error by {:.1f} % and the BIC by {:.0f}", 100.0 * share_of_error, criterion);
+}
+
+std::string changes_too_little(double share_of_error, double criterion) {
+  return fmt::format("changes the held-out error by {:+.2f} % and the BIC by {:+.0f}: too little", 100.0 * share_of_error,
+                     criterion);
+}
+
+std::string is_better(const std::string& label, double criterion) {
+  return fmt::format("{} is better by {:.0f} in BIC", label, criterion);
+}
+
+std::string is_tied(const std::string& label, double criterion) {
+  return fmt::format("the data do not separate it from {}: the BIC differs by {:+.1f}", label, criterion);
+}
+
+std::string leaves(double share_of_error) {
+  return fmt::format("leaves {:.1f} % of the held-out error", 100.0 * share_of_error);
+}
+
+std::string leaves_far_above_noise(double share_of_error) {
+  return fmt::format("leaves {:.0f} % of the held-out error, far above the noise", 100.0 * share_of_error);
+}
+
+std::string replaces_listed(double share_left_by_listed) {
+  return fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * share_left_by_listed);
+}
+
+std::string explained_by_signal(const std::string& sites) {
+  return fmt::format("one unknown signal at {} explains the records down to the noise", sites);
+}
+
+std::string worse_record(const std::string& record, double share, const std::string& channel) {
+  return fmt::format("the error in {} is {:.0f} % larger on held-out rows ({})", record, 100.0 * share, channel);
+}
+
+std::string worse_band(const std::string& channel, double factor, double from, double to) {
+  return fmt::format("the error of {} is {:.1f} times as large between {:.3g} and {:.3g} Hz", channel, factor, from, to);
+}
+
+std::string refused(const std::string& harm) { return "refused: " + harm; }
+
+}  // namespace hotfire::explain::words
