@@ -12,7 +12,7 @@ namespace hotfire::model {
 /// "effects.gimbal_friction.coulomb_torque", "pitch2.engine.inertia". Without heap, so that the model can hand it out.
 class KeyText {
  public:
-  /// `prefix` is of whoever has several of such sections, "pitch2." say, or empty.
+  /// `prefix` is of the caller that has several of such sections, "pitch2." say, or empty.
   constexpr KeyText(std::string_view prefix, bool is_effect, std::string_view section, std::string_view name) {
     append(prefix);
     append(is_effect ? "effects." : "");

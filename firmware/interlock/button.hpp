@@ -42,7 +42,7 @@ struct PressTimes {
   std::uint32_t most = 1;
 };
 
-/// A press is a button that goes on and, after `times`, off again: it acts when it is let go, as ISO 13849-1:2015, 5.2.2,
+/// A press is a button that goes on and, after `times`, off again: it acts when it is released, as ISO 13849-1:2015, 5.2.2,
 /// asks of a manual reset. So neither a contact that sticks nor a wire that breaks is one. `may_begin`: a press may begin
 /// after this cycle if the button is off in it, and its line too: a line that is on already belongs to a press that began
 /// before and has not settled. `forbidden`: the press is refused, also if that is over when it ends, and

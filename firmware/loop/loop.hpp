@@ -78,7 +78,7 @@ struct NoRecorder {
 /// bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and `actuators()`. A bus that has
 /// `note_overrun()` is called after every cycle that overran.
 ///
-/// It counts up a heartbeat every turn, also while it waits for a first cycle, which whoever watches over the process may
+/// It counts up a heartbeat every turn, also while it waits for a first cycle, which a monitor of the process may
 /// look at from another thread.
 ///
 /// About 200 kB: make it on the heap, before memory is locked.

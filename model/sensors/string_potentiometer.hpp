@@ -32,7 +32,7 @@ struct PotentiometerReadout {
   static void settle(State& state, const S& length) noexcept { state = {length, length}; }
 
   /// Reading after a sampling period of `h` [s] at whose end the length is `length`: exact for a length that moves linearly
-  /// over the period (`SensorLag`). `draw` is a sample of a distribution of variance 1, from whoever has random numbers.
+  /// over the period (`SensorLag`). `draw` is a sample of a distribution of variance 1, from the caller's random numbers.
   S read(State& state, const S& length, const S& draw, double h) const noexcept {
     using std::floor;
     const S noisy = SensorLag::step(SensorLag::Params<S>{0, lag}, state, Signal<S>{length, h}) + noise * draw;

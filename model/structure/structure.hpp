@@ -33,7 +33,7 @@ struct ModeTable {
 /// Each mode is advanced exactly under the force's mean over the step, held (a 2x2 block), so it is right at any frequency
 /// and step for what it is given; the mean force makes the whole second order. Over one step the ports then are
 ///   p(end) = p_free + H f,   mean p = (p(start) + p_free) / 2 + (H / 2 + residual) f,
-/// with constant symmetric H: whoever works on the ports can solve together with them.
+/// with constant symmetric H: what works on the ports can be solved together with them.
 ///
 /// Cost per step is linear in the modes. No allocation; `State` is flat.
 /// [Hurty and Rubinstein 1964] Dynamics of Structures, ch. 8; residual flexibility: [MacNeal 1971] Computers & Structures 1.

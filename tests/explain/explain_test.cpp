@@ -104,6 +104,6 @@ TEST(Explain, OfATermThatNobodyListedItSaysWhatItLooksLikeWithinWhichBoundsAndWh
   const auto report = explained(oscillator(0.0, kNoise, 2.0)).report;
   STRCMP_EQUAL("unlisted-effect", text_of(report, "verdict").c_str());
   const auto& effect = report.at("effects").at(0);
-  CHECK(text_of(effect, "looks_like").find("its bounds: beyond them the value at the end holds") != std::string::npos);
+  CHECK(text_of(effect, "looks_like").find("Beyond these bounds the value at the end holds") != std::string::npos);
   CHECK(text_of(effect, "is_not").find("isted effect") != std::string::npos);
 }

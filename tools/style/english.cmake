@@ -1,11 +1,11 @@
 # Checks that pages and messages use the standard terms: no word of the lists below. The build runs it; by hand:
 #   cmake -D ROOT=$PWD -P tools/style/english.cmake
 # Pages are checked outside of code, which shows names and what a program prints. Messages, help and the pages that a program
-# writes are checked as string literals of the sources.
+# writes are checked as string literals of the sources; docstrings outside of code as well.
 cmake_minimum_required(VERSION 3.25)
 
-# A word and what to write in its place. A word stays out of pages and messages once no text has it.
-set(replaced_everywhere
+# A word and what to write in its place.
+set(replaced
   "stood|was, were"
   "lacking|missing"
   "mended|fixed, corrected"
@@ -14,11 +14,11 @@ set(replaced_everywhere
   "at the soonest|at least, not before"
   "let go|released"
   "who only|to ... only"
-  "whoever|anyone who")
-# The same for words that messages still have.
-set(replaced_in_pages
+  "whoever|anyone who"
   "told|identified, reported, known"
+  "tell|identify, distinguish, separate"
   "tells|identifies, reports, shows"
+  "stand|be, represent"
   "stands|is, represents"
   "lack|is missing in"
   "lacks|is missing in"
@@ -73,8 +73,7 @@ function(words_of replaced result)
   set(${result} "${words}" PARENT_SCOPE)
 endfunction()
 
-set(all_replaced ${replaced_everywhere} ${replaced_in_pages})
-words_of("${all_replaced}" words)
+words_of("${replaced}" words)
 foreach(page IN LISTS pages)
   read_lines(${page} "${words}" lines)
   set(number 0)
@@ -89,15 +88,14 @@ foreach(page IN LISTS pages)
       endif()
     elseif(NOT in_code AND NOT line MATCHES "^<!--")
       string(REGEX REPLACE "`[^`]*`" "`...`" line "${line}")
-      check_line(${page} ${number} "${line}" "${all_replaced}")
+      check_line(${page} ${number} "${line}" "${replaced}")
     endif()
   endforeach()
 endforeach()
 
-words_of("${replaced_everywhere}" words)
 set(sources "")
-foreach(folder model hal firmware interface tools)
-  foreach(pattern *.hpp *.h *.cpp)
+foreach(folder model hal firmware tools)
+  foreach(pattern *.hpp *.h *.cpp *.js *.py)
     file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/${folder}/${pattern})
     list(APPEND sources ${found})
   endforeach()
@@ -107,9 +105,20 @@ foreach(source IN LISTS sources)
   set(number 0)
   foreach(line IN LISTS lines)
     math(EXPR number "${number} + 1")
-    if(line MATCHES "\"" AND NOT line MATCHES "^ *//")
+    # A docstring, also one behind a member, and the comments of a C header; else string literals.
+    set(docstring "")
+    if(line MATCHES "///(.*)$")
+      set(docstring "${CMAKE_MATCH_1}")
+    elseif(source MATCHES "[.]h$" AND line MATCHES "^ */?[*]")
+      set(docstring "${line}")
+    endif()
+    if(NOT docstring STREQUAL "")
+      string(REGEX REPLACE "`[^`]*`" "`...`" docstring "${docstring}")
+      string(REGEX REPLACE "\"[^\"]*\"" "'...'" docstring "${docstring}")
+      check_line(${source} ${number} "${docstring}" "${replaced}")
+    elseif(line MATCHES "\"" AND NOT line MATCHES "^ *//")
       string(REGEX MATCHALL "\"[^\"]*\"" literals "${line}")
-      check_line(${source} ${number} "${literals}" "${replaced_everywhere}")
+      check_line(${source} ${number} "${literals}" "${replaced}")
     endif()
   endforeach()
 endforeach()

@@ -60,7 +60,8 @@ TEST(Veto, ARecordThatBecomesWorseIsNamedThoughTheWholeIsBetter) {
   const Dataset data = two_records();
   const Prediction calibrated = off_by(data, 0.10, 0.02, 0.0);
   STRCMP_EQUAL("", harm_of(data, off_by(data, 0.05, 0.0205, 0.0), calibrated).c_str());
-  STRCMP_CONTAINS("second.csv is worse by 50 %", harm_of(data, off_by(data, 0.05, 0.03, 0.0), calibrated).c_str());
+  STRCMP_CONTAINS("the error in second.csv is 50 % larger",
+                  harm_of(data, off_by(data, 0.05, 0.03, 0.0), calibrated).c_str());
 }
 
 TEST(Veto, ABandThatBecomesWorseIsNamedThoughEveryRecordIsBetter) {

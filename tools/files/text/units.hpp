@@ -10,7 +10,7 @@ union cv_converter;
 namespace hotfire {
 
 /// A unit that is not known or not of the dimension wanted: what() names the unit, the dimension wanted and the remedy.
-/// It has no place in a file: whoever read the unit adds file, line and key.
+/// It has no place in a file: the reader of the unit adds file, line and key.
 class UnitError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -118,7 +118,7 @@ class Plant {
   std::vector<double> parameter_values_{};
 };
 
-/// The plant of some parameters: the one place where a topology is chosen. The parameters are checked by whoever read them.
+/// The plant of some parameters: the one place where a topology is chosen. Their reader has checked the parameters.
 std::unique_ptr<Plant> make_plant(const AnyParameters& parameters, const Setup& setup);
 
 // One for each topology, each in a file of its own.
