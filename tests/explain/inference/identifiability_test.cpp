@@ -57,6 +57,6 @@ TEST(Identifiability, ParametersOfWhichOneMakesUpForTheOtherAreNamedWithTheirRat
   fitted.normal = 1e4 * sum * sum.transpose() + Eigen::Matrix2d::Identity();
   const auto sentences = not_told_apart(fitted);
   CHECK_EQUAL(1U, sentences.size());
-  STRCMP_CONTAINS("with actuator.piston_damping larger by 1 %, engine.viscous_damping smaller by 1 %",
+  STRCMP_CONTAINS("With actuator.piston_damping larger by 1 %, engine.viscous_damping smaller by 1 %",
                   sentences.front().c_str());
 }

@@ -73,7 +73,7 @@ std::string SentenceCheck::fault_of(const std::string& text) const {
   if (text.find_first_of("{}") != std::string::npos) {
     return "a placeholder is not filled";
   }
-  for (const char* mark : {" .", " ,", "..", ",,", ": .", "()", " ;", " none"}) {
+  for (const char* mark : {" .", " ,", "..", ",,", ": .", "()", " ;", " a none"}) {
     if (text.find(mark) != std::string::npos) {
       return std::string("'") + mark + "'";
     }
@@ -104,7 +104,7 @@ void SentenceCheck::add(const std::string& text) {
 }
 
 std::vector<std::string> sentences_elsewhere(const std::string& source) {
-  constexpr std::size_t kSentence = 5;
+  constexpr std::size_t kSentence = 6;
   // What the test calls with every input; names of the axes of a curve; the text of a profile's file.
   constexpr std::array kPrinted{"tools/explain/words/", "tools/explain/terms/unlisted_words.cpp",
                                 "tools/explain/report/curve.cpp", "tools/explain/experiment/test_profiles.cpp"};

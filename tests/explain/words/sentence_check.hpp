@@ -32,6 +32,6 @@ std::vector<std::string> sentences_of(const std::string& text);
 /// Words of a text: what blanks separate, if it has a letter or a digit.
 std::size_t words_in(const std::string& text);
 
-/// "FILE:LINE: LITERAL" for each string literal of five words or more in the sources of tools/explain that the test does not
+/// "FILE:LINE: LITERAL" for each string literal of six words or more in the sources of tools/explain that the test does not
 /// print: outside of the files whose sentences it builds, and no report of progress.
 std::vector<std::string> sentences_elsewhere(const std::string& source);

@@ -169,8 +169,8 @@ std::string factor(const std::string& key, double share) { return fmt::format("{
 
 std::string hardly_separated(const std::string& key, const std::vector<std::string>& others, double share) {
   return fmt::format(
-      "The data hardly separate these: with {} larger by 1 %, {} fits nearly as well. {} alone is known to {}.", key,
-      fmt::join(others, ", "), key, percent(share));
+      "The data hardly separate these parameters. With {} larger by 1 %, {} fits nearly as well. {} alone is known to {}.",
+      key, fmt::join(others, ", "), key, percent(share));
 }
 
 std::string moves_along(const std::string& key, double rate) {

@@ -70,7 +70,7 @@ std::string worse_record(const std::string& record, double share, const std::str
 }
 
 std::string worse_band(const std::string& channel, double factor, double from, double to) {
-  return fmt::format("the error of {} is {:.1f} times as large between {:.3g} and {:.3g} Hz", channel, factor, from, to);
+  return fmt::format("the error of {} is {:.1f} times as large at {:.3g} to {:.3g} Hz", channel, factor, from, to);
 }
 
 std::string refused(const std::string& harm) { return "refused: " + harm; }
