@@ -97,7 +97,7 @@ TEST(Explain, AskedForNoEffectItDoesNotSayThatNoneFits) {
   options.most_effects = 0;
   const auto report = explained(oscillator(400.0, kNoise), options).report;
   STRCMP_EQUAL("undecided", text_of(report, "verdict").c_str());
-  CHECK(text_of(report, "sentence").find("no effect was looked for") != std::string::npos);
+  CHECK(text_of(report, "sentence").find("no effect was searched for") != std::string::npos);
 }
 
 TEST(Explain, OfATermThatNobodyListedItSaysWhatItLooksLikeWithinWhichBoundsAndWhatItIsNot) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostWords = 25;
 /// A sentence of ours begins with its subject, or with a short condition, never with one of these.
-constexpr std::array kInverted{"Not ", "Hardly ", "Nor ", "Neither ", "Never ", "Only ", "Beside it ", "Gone ", "Of one "};
+constexpr std::array kInverted{"hardly ", "nor ", "neither ", "never ", "only ", "beside it "};
 
 std::string lower(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -88,7 +88,7 @@ std::string SentenceCheck::fault_of(const std::string& text) const {
       return std::to_string(words_in(sentence)) + " words";
     }
     for (const char* inverted : kInverted) {
-      if (sentence.starts_with(inverted)) {
+      if (lower(sentence).starts_with(inverted)) {
         return std::string("begins with '") + inverted + "'";
       }
     }

@@ -69,7 +69,7 @@ std::string harm_of(const Dataset& data, const Prediction& model, const Predicti
       const bool has_signal =
           signal[i].rms > kSignalOverNoise * signal[i].noise && signal[i].rms > kSignalShare * std::sqrt(whole);
       if (has_signal && after[i].rms > kWorseBand * before[i].rms && after[i].rms > kMoreThanNoise * after[i].noise) {
-        return words::worse_band(data.channels[c], after[i].rms / before[i].rms, after[i].from, after[i].to);
+        return words::worse_band(data.channels[c], after[i].rms / before[i].rms - 1.0, after[i].from, after[i].to);
       }
     }
   }

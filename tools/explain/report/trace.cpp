@@ -75,7 +75,7 @@ std::vector<LeftOver> left_over(const Experiment& experiment, const SimplexParam
   });
   std::vector<Quantity> around{{"engine rate", "rad/s", beta_rate}, {"engine angle", "rad", beta}, {"load", "N", load}};
   if (experiment.other.is_there()) {
-    around.push_back({"engine angle about the other axis", "rad", experiment.other.angle});
+    around.push_back({"angle about the other axis", "rad", experiment.other.angle});
   }
   return {{"engine", {"torque against the motion", "N.m", torque}, around},
           {"flow",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/unlisted.hpp"
@@ -104,7 +105,7 @@ std::string in_words(const FittedTable& table) {
 
 std::string law_in_words(const Candidate& candidate) {
   if (!candidate.choices.empty()) {
-    return quantity_of_term(candidate) + memory_of_term(candidate);
+    return "proportional to " + quantity_of_term(candidate) + memory_of_term(candidate);
   }
   if (is_periodic(candidate)) {
     return "a sinusoid of one frequency and one amplitude over the whole of every record, independent of the motion";
@@ -146,6 +147,19 @@ std::string dependence_in_words(const Candidate& candidate) {
   }
   if (candidate.name == model::UnlistedDrift::name) {
     return "that depends on the time of the record";
+  }
+  for (const auto& [law, clause] :
+       {std::pair("creep", "with creep"), std::pair("lag", "with a first-order lag"), std::pair("slew", "with a rate limit"),
+        std::pair("slip", "with slip"), std::pair("value", "that depends on the signal itself")}) {
+    if (candidate.option_name == law) {
+      return clause;
+    }
+  }
+  // "friction_along_position": one quantity as a curve over another.
+  constexpr std::string_view kAlong = "_along_";
+  if (const auto along = candidate.option_name.find(kAlong); along != std::string::npos) {
+    return fmt::format("whose {} depends on {}", words::spoken(candidate.option_name.substr(0, along)),
+                       words::spoken(candidate.option_name.substr(along + kAlong.size())));
   }
   return "that depends on " + words::spoken(candidate.option_name);
 }

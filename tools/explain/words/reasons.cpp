@@ -27,7 +27,7 @@ std::string text(LawChange change, const std::string& other) {
       "is better, with a later effect added, than",
       "explains more, with a later effect added, than",
       "with the later effects added, it explains as much as",
-      "only before a later effect was added did it explain as much as",
+      "before a later effect was added, it explained as much as",
   };
   return fmt::format("{} {}", texts[static_cast<std::size_t>(change)], other);
 }
@@ -69,8 +69,8 @@ std::string worse_record(const std::string& record, double share, const std::str
   return fmt::format("the error in {} is {:.0f} % larger on held-out rows ({})", record, 100.0 * share, channel);
 }
 
-std::string worse_band(const std::string& channel, double factor, double from, double to) {
-  return fmt::format("the error of {} is {:.1f} times as large at {:.3g} to {:.3g} Hz", channel, factor, from, to);
+std::string worse_band(const std::string& channel, double share, double from, double to) {
+  return fmt::format("the error of {} is {:.0f} % larger between {:.3g} and {:.3g} Hz", channel, 100.0 * share, from, to);
 }
 
 std::string refused(const std::string& harm) { return "refused: " + harm; }

@@ -42,7 +42,7 @@ std::string explained_by_signal(const std::string& sites);
 
 /// Why a model with an effect is refused although its error as a whole is smaller.
 std::string worse_record(const std::string& record, double share, const std::string& channel);
-std::string worse_band(const std::string& channel, double factor, double from, double to);
+std::string worse_band(const std::string& channel, double share, double from, double to);
 std::string refused(const std::string& harm);
 
 }  // namespace hotfire::explain::words
