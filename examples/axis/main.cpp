@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One hydraulic axis with gimbal friction, stepped through a command of 10 mrad: the C++ headers alone.
 
 #include <hotfire/keys.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A model file, stepped through a command of 10 mrad, and what the engine's inertia does to its angle: libhotfire from C.
  *   hotfire_example model.toml
  */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The board support of the example: vector table, start-up, semihosting, and what is measured. ARMv7-M Architecture
 // Reference Manual (DDI 0403E) for the core; Semihosting for AArch32 and AArch64 (Arm IHI 0103) for the calls; Arm AN500 for
 // the board.

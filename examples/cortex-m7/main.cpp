@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steps one axis through the commands of a file and writes what its sensors read, as a rig steps it between two frames of
 // its bus. Counts what a step costs. `Real` is float or double.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An effect of one's own in the model, without a change to Hotfire: a filter between the servovalve and its command.
 //
 // An effect is a type with a name, a site, parameters, a state and a step (docs/architecture.md). A plant takes its list of

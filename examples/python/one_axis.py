@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 # %% [markdown]
 # One axis from a declared model to its missing effect. Run it as a script, or cell by cell in an editor that knows
 # `# %%`: python3 one_axis.py [FOLDER]; pictures and the report go to FOLDER.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/can/bus_account.hpp"
 #include "firmware/text/json.hpp"
 #include "firmware/text/text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/session/run_loop.hpp"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/linux/can_bit_rates.hpp"
 
 #include <linux/can/netlink.h>

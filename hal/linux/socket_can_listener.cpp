@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/linux/socket_can_listener.hpp"
 
 #include <linux/can/raw.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints docs/performance.md: hotfire-benchmark --benchmark_min_time=0.2 > docs/performance.md
 
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The closed loop on one challenge case: closed_loop CASE.tar.xz FOLDER. Explains what is in given/, compares the names with
 // kept/truth.json, and the explained model with the noise-free record it has never seen. Exit 0 if the names are right and
 // the model is closer to the truth than the sensor is.

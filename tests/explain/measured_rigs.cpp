@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The closed loop on other people's rigs: measured_rigs emps|silverbox, whose data are not part of the project (the folder
 // that holds emps/ and silverbox/ is named by HOTFIRE_MEASURED_DATA, docs/explain.md; exit 77 without it), and measured_rigs
 // mts ARCHIVE FOLDER RECORD..., whose raw logs are in tests/data/measured.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the readers of candump logs: through the map of the project, and through somebody else's.
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the readers of CSV files: a record, a record with a drop-out, somebody else's table.
 
 #include <cstdint>

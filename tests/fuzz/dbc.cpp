@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the reader of DBC files, of the map made from one, and of what its signals read in a frame.
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the frame decoder, run by tools/fuzz: no crash, and no frame is taken whose check is wrong.
 
 #include <array>

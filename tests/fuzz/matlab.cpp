@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the reader of MATLAB files, which works in a process of its own. The first byte says what is asked
 // for.
 

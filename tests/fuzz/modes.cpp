@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the reader of mode tables: what it takes is written and read again, the same.
 
 #include <cstdint>

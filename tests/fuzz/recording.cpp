@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the readers of recordings. The first byte says which checksums are put right, or the fuzzer would
 // rarely come past them: 1 of the header, 2 of the model, 4 of the blocks.
 

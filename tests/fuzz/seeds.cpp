@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes what the fuzzers begin with: seeds SOURCE FOLDER, a folder for each fuzzer, with files like those people have.
 
 #include <cstdio>

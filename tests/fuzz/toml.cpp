@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer harness of the readers of TOML files. The first byte says which: model, vehicle, lab profile, faults, import
 // map.
 

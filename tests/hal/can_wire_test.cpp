@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/can_wire.hpp"
 
 #include <CppUTest/TestHarness.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "hal/sim/command_source.hpp"
 
 #include <CppUTest/TestHarness.h>

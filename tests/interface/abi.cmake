@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The binary interface of libhotfire against the kept list abi.txt: exported names, SONAME, sizes of the structures.
 #   cmake -D LIBRARY=... -D SIZES=... -D KEPT=... -P abi.cmake
 cmake_minimum_required(VERSION 3.25)

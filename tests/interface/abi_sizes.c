@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Prints the sizes of the structures of the C interface, for abi.cmake. */
 #include <hotfire.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Four projects of others on the installed library and on the source tree, built with flags that are not ours, and run:
 #   cmake -D ROOT=... -D BUILD=... -D SCRATCH=... -P consumers.cmake
 cmake_minimum_required(VERSION 3.25)

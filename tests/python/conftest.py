@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests share: the command, a model, a record, and a case with a missing effect."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The finder gives the report of the command, shows progress and can be stopped."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Models and records: from files, from dictionaries and arrays, with the errors of the command."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulation has the bits of the command, batches those of single runs, gradients those of differences."""
 
 import threading

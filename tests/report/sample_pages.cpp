@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the sample pages into a folder, for the browser: sample_pages FOLDER
 #include <filesystem>
 #include <fstream>

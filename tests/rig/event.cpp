@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What can happen to a program, and a mark of it among the writes to the lines, seen from outside of the machine:
 // rig_event stop|kill PID; rig_event panic; rig_event end. Port 0xe9 is where the rig's GPIO bank tells its lines
 // (tests/rig/kernel); a line is a byte below 128, a mark one above.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plant, controller and lab as programs on the virtual rig, for a given time, with everything that goes wrong going wrong at
 // random and together: frames lost, doubled and late, a queue that stands, bus-off, bus down, stop and enable lines, second
 // senders, stopped and killed processes, a disk that stalls, buttons that bounce. HOTFIRE_SOAK_SECONDS, HOTFIRE_SOAK_SEED.

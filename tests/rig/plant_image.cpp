@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints a plant image, what `hotfire plant --model` makes of a file, on a machine that has no host side: of the reference
 // axis with every effect active, or, for the argument `masv`, of four engines at hot fire on twenty modes.
 

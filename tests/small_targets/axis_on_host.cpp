@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The host's side of the example for a Cortex-M7: writes its commands, and compares what the target makes of them.
 //   axis_on_host commands FILE
 //   axis_on_host readings float|double FILE      this machine's, as the target writes them

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A lab on the wire in the process, for a given time, with everything that goes wrong going wrong at random, and what must
 // always hold checked in every cycle: lab_soak SECONDS [SEED] Exit 0: it held in every cycle, and enough went wrong for that
 // to mean something.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/structure/mode_table.hpp"
 
 #include <CppUTest/TestHarness.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/analysis/angle_calibration.hpp"
 
 #include <Eigen/Dense>

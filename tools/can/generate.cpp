@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes what firmware/ knows of the CAN map, from the DBC file: generate MAP.dbc can_map.hpp
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/held_out_records.hpp"
 
 #include <utility>

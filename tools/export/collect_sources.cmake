@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Copies the sources of an FMU and all that they include, but the standard library, to TARGET/sources.
 cmake_minimum_required(VERSION 3.25)
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/findings/parameters.hpp"
 
 #include <fmt/format.h>

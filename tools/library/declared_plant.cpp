@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/library/declared_plant.hpp"
 
 #include <type_traits>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The model's headers as others include them, <hotfire/simplex.hpp>: copies in the build folder, whose own includes have the
 # same prefix. The target hotfire::model is the same in a build, in an installation and in another project.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

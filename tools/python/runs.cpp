@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/python/runs.hpp"
 
 #include <pybind11/numpy.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Joins the page's parts and the charting library into one HTML text and writes it as a C++ array of bytes.
 # cmake -D PARTS=<folder of page.html ...> -D DYGRAPHS=<folder> -D OUTPUT=<page.cpp> -P embed_page.cmake
 cmake_policy(VERSION 3.25)

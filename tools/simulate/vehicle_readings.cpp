@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/simulate/vehicle_readings.hpp"
 
 namespace hotfire {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the mode table of the synthetic vehicle that is shipped: synthetic_vehicle > tools/structure/synthetic_vehicle.csv
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // hotfire-study: how often the finder is right, on cases made by an independent simulator (docs/study.md).
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes the rooms and their arrows into docs/architecture.md, between its two marks; by hand:
 #   cmake -D ROOT=$PWD -P tools/style/draw_rooms.cmake
 # With -D CHECK=ON it writes nothing and fails where the page says other than tools/style/rooms.cmake.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Checks that pages and messages use the standard terms: no word of the lists below. The build runs it; by hand:
 #   cmake -D ROOT=$PWD -P tools/style/english.cmake
 # Pages are checked outside of code, which shows names and what a program prints. Messages, help and the pages that a program

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes replaced words into a scratch copy of the pages and the sources, and expects english.cmake to name each.
 cmake_minimum_required(VERSION 3.25)
 

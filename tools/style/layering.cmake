@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Checks the arrows between the rooms, and that a file and a folder can be read in one sitting. The build runs it; by hand:
 #   cmake -D ROOT=$PWD -P tools/style/layering.cmake
 cmake_minimum_required(VERSION 3.25)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Breaks each rule of layering.cmake once, in a scratch copy of the tree, and expects the check to name it.
 cmake_minimum_required(VERSION 3.25)
 

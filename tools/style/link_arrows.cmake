@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The arrows between the rooms as the link lists draw them; layering.cmake checks the same arrows among the sources.
 
 # Targets of ours that a target of a room may link, as `room:target`. What has no room (settings) is for all, and tests link

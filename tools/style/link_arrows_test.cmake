@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A house of empty rooms, linked rightly and then wrongly: the configuration of the wrong one must fail.
 cmake_minimum_required(VERSION 3.25)
 

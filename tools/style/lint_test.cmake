@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Shows clang-format and clang-tidy sources with one defect each, and expects each to be named: a check that a typing error
 # in its configuration switched off is noticed here.
 cmake_minimum_required(VERSION 3.25)
@@ -38,7 +39,7 @@ expect_finding(readability-braces-around-statements "int f(bool a) {\n  if (a) r
 expect_finding(clang-diagnostic-error "int f() { return undeclared; }")
 
 file(WRITE ${SCRATCH}/source.cpp "int  f( ){return 1;}\n")
-execute_process(COMMAND ${CLANG_FORMAT} --style=file:${ROOT}/tools/style/clang-format --dry-run --Werror ${SCRATCH}/source.cpp
+execute_process(COMMAND ${CLANG_FORMAT} --style=file:${ROOT}/.clang-format --dry-run --Werror ${SCRATCH}/source.cpp
   RESULT_VARIABLE result ERROR_QUIET)
 if(result EQUAL 0)
   message(SEND_ERROR "clang-format does not see an unformatted line")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The rooms inside the larger folders: what each one is for, and below each room the rooms of the same folder that its files
 # may include. A file beside the rooms may include all of them; no room includes a file beside the rooms. Checked by
 # layering.cmake; drawn into docs/architecture.md by draw_rooms.cmake.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Checks docs/safety-case.md against the tree: every requirement has tests and they are there; every fault has its page and a
 # requirement. The build runs it; by hand:
 #   cmake -D ROOT=$PWD -P tools/style/safety_case.cmake

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Breaks each rule of safety_case.cmake once, in a scratch copy of what it reads, and expects a fault.
 cmake_minimum_required(VERSION 3.25)
 

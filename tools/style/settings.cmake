@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Warnings and code generation that every target of the project shares, as the interface target hotfire_settings.
 add_library(hotfire_settings INTERFACE)
 target_compile_features(hotfire_settings INTERFACE cxx_std_20)

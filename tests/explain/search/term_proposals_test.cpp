@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/search/term_proposals.hpp"
 
 #include <CppUTest/TestHarness.h>

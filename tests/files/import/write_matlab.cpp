@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/files/import/write_matlab.hpp"
 
 #include <matio.h>

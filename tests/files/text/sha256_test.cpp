@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/files/text/sha256.hpp"
 
 #include "tests/files/expect.hpp"

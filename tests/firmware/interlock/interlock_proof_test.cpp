@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The interlock is a function of its memory and its inputs. These tests visit every memory that any sequence of inputs can
 // lead to, and look at every input there: what they say holds for every sequence, however long. Times are short so that the
 // memories are few; the law of a time does not depend on its length. Of causes `decide` asks only whether there are any and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The limit of load pressure, with the frames that carry it: in every layout, of every actuator, in every driving state.
 
 #include <atomic>

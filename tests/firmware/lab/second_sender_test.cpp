@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two nodes that send one message, frames that are damaged or lost, and commands that nobody answers: in every layout, of
 // every message that a lab with a limit of load pressure listens to.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "model/numerics/step_size.hpp"
 
 #include <CppUTest/TestHarness.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/plant/vehicle_plant.hpp"
 
 #include <CppUTest/TestHarness.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A loop of eight actuators at 4 kHz, whose recorder's disk stalls every other stretch of one and the same run:
 //   recorder_stall [SECONDS OF A STRETCH [STRETCHES]]
 // Compares the loop's step times and the cost of recording with the disk stalled and not, and counts the drops again in the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kills a plant that records, without warning and at a random moment, again and again:
 //   recording_kill HOTFIRE-RT [TIMES [SEED]]
 // Every recording must open, replay to the same bits without a gap, and reach to within a second of the kill.

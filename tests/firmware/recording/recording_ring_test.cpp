@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/recording/recording_ring.hpp"
 
 #include <CppUTest/TestHarness.h>

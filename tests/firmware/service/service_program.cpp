@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs hotfire-rt as a service manager does, with a notify socket and a watchdog: service_program HOTFIRE-RT FOLDER-OF-UNITS
 #include <sys/wait.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Counts instructions with VALGRIND's callgrind. For the scripts of tests that compare the cost of steps.
 
 # count_instructions(RESULT WORK VALGRIND FUNCTION PROGRAM ARGUMENT...): what each call of FUNCTION in one run of PROGRAM takes,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Counts the instructions of each step of PROGRAM with VALGRIND's callgrind and compares the dearest with the cheapest:
 # cmake -D PROGRAM=... -D VALGRIND=... -D WORK=... -P step_cost.cmake
 include(${CMAKE_CURRENT_LIST_DIR}/instructions.cmake)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A thousand steps from random states under random commands, for callgrind to count: step_cost.cmake runs it.
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Compares the instructions that steps of one axis, a TAOS and a MASV take, counted by VALGRIND's callgrind:
 # cmake -D PROGRAM=... -D VALGRIND=... -D WORK=... -P vehicle_cost.cmake
 include(${CMAKE_CURRENT_LIST_DIR}/instructions.cmake)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Steps from random states under random commands, for callgrind to count: vehicle_cost.cmake runs it.
 //   vehicle_cost axis|taos|masv MODES
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "model/friction/vector_friction.hpp"
 
 #include <CppUTest/TestHarness.h>

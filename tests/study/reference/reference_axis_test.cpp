@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/study/reference/reference_axis.hpp"
 
 #include <CppUTest/TestHarness.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/study/reference/wild_law.hpp"
 
 #include <CppUTest/TestHarness.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/rig/realtime_program.hpp"
 
 #include <fmt/format.h>

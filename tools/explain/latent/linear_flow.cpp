@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/latent/linear_flow.hpp"
 
 #include <ceres/jet.h>

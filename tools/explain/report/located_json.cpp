@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/report/located_json.hpp"
 
 namespace hotfire::explain {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/report/two_axis_report.hpp"
 
 #include <fmt/format.h>

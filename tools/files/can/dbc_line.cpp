@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/files/can/dbc_line.hpp"
 
 #include <algorithm>

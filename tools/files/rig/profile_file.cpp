@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/files/rig/profile_file.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* The model of a thrust-vector-control actuator as a C library: libhotfire, or the sources of an FMU.
  *
  * A model is made from a model file (docs/contract.md) or its text. It has three tables of numbers: inputs, which are held

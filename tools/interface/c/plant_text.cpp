@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/interface/c/plant_text.hpp"
 
 #include <cstdint>

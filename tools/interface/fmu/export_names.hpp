@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // How the functions of an FMU are exported. In a shared library their names are those of the standard. Who links several

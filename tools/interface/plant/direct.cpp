@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/interface/plant/axis_adapters.hpp"
 #include "tools/interface/plant/plant_of.hpp"
 

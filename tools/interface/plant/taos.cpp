@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/interface/plant/plant_of.hpp"
 #include "tools/interface/plant/vehicle_adapter.hpp"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hotfire in Python: the model of a thrust-vector-control axis, and what is missing in a declared model.
 
     import hotfire

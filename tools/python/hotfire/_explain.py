@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The finder: the effects that are missing in a declared model, from measured records."""
 
 from __future__ import annotations

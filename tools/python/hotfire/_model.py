@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Models: what a TOML file or a dictionary declares."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records: uniformly sampled channels with units."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the finder reports, as objects with units. docs/report.md says what each figure is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs of a model: simulation, batches, gradients, sweeps."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Model files from dictionaries. Debian's Python reads TOML and does not write it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pictures by matplotlib, which is needed for nothing else."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // Small charts of one quantity over another, drawn as SVG: they may double back (hysteresis) and print sharply.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // Building the page. Text only ever becomes a text node, so nothing that a file or a channel is called can turn into markup.
 

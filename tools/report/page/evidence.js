@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // The chain of evidence: what was tried in which order, what each candidate reached, why it was kept or dropped; and who says so.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // What is on paper and not on the screen: every channel of every record instead of the one that is looked at, and a running foot.
 

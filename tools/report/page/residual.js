@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // What is left of the error, and where it is: correlations, bands of frequency, amplitudes. Each section takes the report and
 // returns a node, or null where the report has nothing to say.

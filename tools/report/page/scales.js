@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // How the axis of a chart is divided: the range of its values, where in the range a value lies, and the numbers written at it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // The sections of the page in the order in which they are read. Each takes the report and returns nodes, or null where the
 // report has nothing to say.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 "use strict";
 // Measured against model over time, the residual under it, and the command: three dygraphs that zoom as one.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/study/reference/cvode_integrator.hpp"
 
 #include <cvode/cvode.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One hydraulic axis for scipy's solve_ivp: the equations of docs/physics.md, section 1.
 
 The equations are written once, for floats and for arrays: plain floats are the quickest for one simulation, arrays for many

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A case of hotfire-study, or a challenge case: given/ with the declared model and its records, kept/ with the unseen one."""
 
 import json

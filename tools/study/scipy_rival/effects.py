@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The candidates that the comparison knows: the laws of docs/physics.md, section 5, with their model's keys.
 
 A field is (name, start, lower bound); its value is p["EFFECT.NAME"]. With a lower bound above zero it is searched in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """scipy's least_squares over solve_ivp: one candidate and the declared parameters, on all records."""
 
 import time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sparse regression of the missing term (SINDy: Brunton, Proctor and Kutz 2016, PNAS 113(15), 3932-3937).
 
 Measured motion, smoothed and differentiated, is put into the model's equations; what they leave over is fitted by a library of
