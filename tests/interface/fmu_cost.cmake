@@ -1,0 +1,41 @@
+# Compares the instructions that a row takes through an FMU with those that it takes in `hotfire simulate`, counted by VALGRIND's
+# callgrind over two lengths of the same record, so that what happens once drops out:
+#   cmake -D PROGRAM=... -D VALGRIND=... -D WORK=... -P fmu_cost.cmake
+include(${CMAKE_CURRENT_LIST_DIR}/../model/cost/instructions.cmake)
+if(NOT VALGRIND)
+  message(STATUS "fmu cost: skipped, valgrind is not installed (apt-get install valgrind)")
+  return()
+endif()
+
+set(short 100)
+set(long 400)
+
+# row_of(RESULT TOPOLOGY WAY): instructions of a row.
+function(row_of result topology way)
+  foreach(length short long)
+    count_instructions(counts ${WORK} ${VALGRIND} hotfire_measured_rows ${PROGRAM} count ${topology} ${way} ${${length}})
+    list(LENGTH counts calls)
+    if(NOT calls EQUAL 1)
+      message(FATAL_ERROR "fmu cost: one call was expected, callgrind counted ${calls}")
+    endif()
+    set(count_${length} ${counts})
+  endforeach()
+  math(EXPR row "(${count_long} - ${count_short}) / (${long} - ${short})")
+  set(${result} ${row} PARENT_SCOPE)
+endfunction()
+
+set(failed "")
+foreach(topology simplex direct taos masv)
+  row_of(native ${topology} simulate)
+  foreach(version 2 3)
+    row_of(fmu ${topology} ${version})
+    quotient(ratio ${fmu} ${native})
+    message(STATUS "fmu cost: ${topology}, FMI ${version}: ${fmu} instructions a row, hotfire simulate ${native}, ratio ${ratio}")
+    if(NOT ratio LESS 1.1)
+      string(APPEND failed " ${topology} FMI ${version}: ${ratio};")
+    endif()
+  endforeach()
+endforeach()
+if(failed)
+  message(FATAL_ERROR "fmu cost: a row through an FMU must take less than 1.100 of a row of hotfire simulate:${failed}")
+endif()
