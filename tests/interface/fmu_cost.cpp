@@ -1,5 +1,7 @@
 // Rows of `hotfire simulate` and the same rows through an FMU, for callgrind to count (fmu_cost.cmake) or to be timed here:
-//   fmu_cost count TOPOLOGY simulate|2|3 ROWS
+//   fmu_cost unpack FOLDER                          the FMUs of all topologies in both versions
+//   fmu_cost count TOPOLOGY simulate ROWS
+//   fmu_cost count TOPOLOGY 2|3 ROWS FOLDER
 //   fmu_cost time PAIRS
 
 #include <algorithm>
@@ -25,19 +27,14 @@ namespace hotfire::test {
 namespace {
 
 /// A case with an internal step of a row in every topology, so that a row has one set, one step and one get.
-Case case_of(const std::string& topology, std::size_t rows) {
-  for (Case& own : cases(rows)) {
-    if (own.topology == topology) {
-      if (own.periods_per_row > 1) {
-        own.driven[0] = own.simulated.find("force")->values;
-        own.periods_per_row = 1;
-        own.period = own.simulated.period;
-      }
-      return own;
-    }
+Case rows_of(const std::string& topology, std::size_t rows) {
+  Case own = case_of(topology, rows);
+  if (own.periods_per_row > 1) {
+    own.driven[0] = own.simulated.find("force")->values;
+    own.periods_per_row = 1;
+    own.period = own.simulated.period;
   }
-  std::fprintf(stderr, "%s: no such topology\n", topology.c_str());
-  std::exit(2);
+  return own;
 }
 
 /// The rows by `hotfire simulate`.
@@ -51,9 +48,9 @@ std::function<void()> simulated(const Case& own) {
 /// The rows by an FMU that an importer sets, steps and reads.
 class Stepped {
  public:
-  Stepped(const Scratch& scratch, const Case& own, int version)
+  Stepped(const std::filesystem::path& folder, const Case& own, int version)
       : own_(own),
-        fmu_(scratch, own, version),
+        fmu_(folder, version),
         run_(fmu_, version),
         inputs_(fmu_.references(own.inputs)),
         outputs_(fmu_.references(own.outputs())),
@@ -98,11 +95,11 @@ double seconds_of(const std::function<void()>& rows) {
 
 /// Prints the median ratio of the times of an FMU and of `hotfire simulate`, taken in turns in this process.
 void compare_times(const Scratch& scratch, int pairs) {
-  for (const char* topology : {"simplex", "direct", "taos", "masv"}) {
-    const Case own = case_of(topology, 20'000);
+  for (const char* topology : kTopologies) {
+    const Case own = rows_of(topology, 20'000);
     const std::function<void()> native = simulated(own);
     for (const int version : {2, 3}) {
-      Stepped stepped(scratch, own, version);
+      Stepped stepped(Fmu::unpacked(scratch.path(""), own, version), own, version);
       std::vector<double> ratios;
       for (int pair = 0; pair < pairs; ++pair) {
         const double of_native = seconds_of(native);
@@ -119,23 +116,30 @@ void compare_times(const Scratch& scratch, int pairs) {
 }  // namespace hotfire::test
 
 int main(int argc, char** argv) {
-  using hotfire::test::Case;
-  const hotfire::test::Scratch scratch;
+  using hotfire::test::Fmu;
   const std::vector<std::string> words(argv, argv + argc);
   if (words.size() == 3 && words[1] == "time") {
-    hotfire::test::compare_times(scratch, std::stoi(words[2]));
+    hotfire::test::compare_times(hotfire::test::Scratch{}, std::stoi(words[2]));
     return 0;
   }
-  if (words.size() != 5 || words[1] != "count") {
-    std::fprintf(stderr, "usage: fmu_cost count TOPOLOGY simulate|2|3 ROWS, fmu_cost time PAIRS\n");
+  if (words.size() == 3 && words[1] == "unpack") {
+    for (const char* topology : hotfire::test::kTopologies) {
+      for (const int version : {2, 3}) {
+        Fmu::unpacked(words[2], hotfire::test::rows_of(topology, 20), version);
+      }
+    }
+    return 0;
+  }
+  if (words.size() < 5 || words[1] != "count") {
+    std::fprintf(stderr, "usage: fmu_cost unpack FOLDER, count TOPOLOGY simulate|2|3 ROWS [FOLDER], time PAIRS\n");
     return 2;
   }
-  const Case own = hotfire::test::case_of(words[2], static_cast<std::size_t>(std::stoi(words[4])));
+  const hotfire::test::Case own = hotfire::test::rows_of(words[2], std::stoul(words[4]));
   if (words[3] == "simulate") {
     hotfire_measured_rows(hotfire::test::simulated(own));
   } else {
-    hotfire::test::Stepped stepped(scratch, own, std::stoi(words[3]));
-    hotfire_measured_rows(std::ref(stepped));
+    const std::filesystem::path folder = std::filesystem::path(words.at(5)) / (words[2] + words[3]);
+    hotfire::test::Stepped(folder, own, std::stoi(words[3]))();
   }
   return 0;
 }
