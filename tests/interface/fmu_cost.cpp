@@ -1,6 +1,7 @@
-// Rows of `hotfire simulate` and the same rows through an FMU, for callgrind to count (fmu_cost.cmake) or to be timed here:
+// Rows of a record on a plant in C++ and through an FMU, for callgrind to count (fmu_cost.cmake); an FMU and `hotfire
+// simulate`, timed in turns:
 //   fmu_cost unpack FOLDER                          the FMUs of all topologies in both versions
-//   fmu_cost count TOPOLOGY simulate ROWS
+//   fmu_cost count TOPOLOGY plant ROWS
 //   fmu_cost count TOPOLOGY 2|3 ROWS FOLDER
 //   fmu_cost time PAIRS
 
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,8 @@
 #include "tests/interface/cases.hpp"
 #include "tests/interface/importer.hpp"
 #include "tools/files/model/model_file.hpp"
+#include "tools/interface/plant/plant.hpp"
+#include "tools/library/declared_plant.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 
@@ -43,6 +47,26 @@ std::function<void()> simulated(const Case& own) {
     return [&own, model = parse_model(own.text, "case.toml")] { simulate(model, own.simulated); };
   }
   return [&own, model = parse_vehicle(own.text, "case.toml")] { simulate(model, own.simulated); };
+}
+
+/// The rows on a plant, without any interface: inputs, steps and readings.
+std::function<void()> stepped_in_cpp(const Case& own) {
+  const DeclaredPlant declared = declared_plant(own.text, "case.toml", own.period, 1);
+  const std::shared_ptr<plant::Plant> plant = plant::make_plant(declared.parameters, declared.setup);
+  plant->start(0.0);
+  return [&own, plant] {
+    bool sane = true;
+    for (std::size_t row = 0; row < own.periods(); ++row) {
+      for (std::size_t i = 0; i < own.inputs.size(); ++i) {
+        plant->input_values()[i] = own.driven[i][row];
+      }
+      sane = plant->advance() && sane;
+    }
+    if (!sane) {
+      std::fprintf(stderr, "the plant runs away\n");
+      std::exit(1);
+    }
+  };
 }
 
 /// The rows by an FMU that an importer sets, steps and reads.
@@ -131,12 +155,12 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (words.size() < 5 || words[1] != "count") {
-    std::fprintf(stderr, "usage: fmu_cost unpack FOLDER, count TOPOLOGY simulate|2|3 ROWS [FOLDER], time PAIRS\n");
+    std::fprintf(stderr, "usage: fmu_cost unpack FOLDER, count TOPOLOGY plant|2|3 ROWS [FOLDER], time PAIRS\n");
     return 2;
   }
   const hotfire::test::Case own = hotfire::test::rows_of(words[2], std::stoul(words[4]));
-  if (words[3] == "simulate") {
-    hotfire_measured_rows(hotfire::test::simulated(own));
+  if (words[3] == "plant") {
+    hotfire_measured_rows(hotfire::test::stepped_in_cpp(own));
   } else {
     const std::filesystem::path folder = std::filesystem::path(words.at(5)) / (words[2] + words[3]);
     hotfire::test::Stepped(folder, own, std::stoi(words[3]))();

@@ -210,6 +210,13 @@ Status Slave::reset() noexcept {
   return Status::ok;
 }
 
+Status Slave::refuse_point(double current) noexcept {
+  std::array<char, 160> problem{};
+  std::snprintf(problem.data(), problem.size(),
+                "currentCommunicationPoint = %.17g: allowed: %.17g, where the last step ended", current, time_);
+  return refuse(Status::error, "DoStep", problem.data());
+}
+
 Status Slave::do_step(double current, double step) noexcept {
   if (phase_ != Phase::step) {
     return refuse_phase("DoStep");
@@ -219,17 +226,16 @@ Status Slave::do_step(double current, double step) noexcept {
     return refuse(Status::error, "DoStep", "communicationStepSize; allowed: above 0");
   }
   if (std::abs(current - time_) > kEarly * period) {
-    std::array<char, 160> problem{};
-    std::snprintf(problem.data(), problem.size(),
-                  "currentCommunicationPoint = %.17g: allowed: %.17g, where the last step ended", current, time_);
-    return refuse(Status::error, "DoStep", problem.data());
+    return refuse_point(current);
   }
   const double end = current + step;
   if (stop_defined_ && end > stop_ + kEarly * period) {
     return refuse(Status::error, "DoStep", "the step ends after the stop time of the experiment; allowed: up to it");
   }
-  const double wanted = std::floor((end - start_) / period + kEarly);
-  while (static_cast<double>(periods_) < wanted) {
+  // No run has more periods than a double counts.
+  const auto wanted =
+      static_cast<std::uint64_t>(static_cast<std::int64_t>(std::min((end - start_) / period + kEarly, 0x1p53)));
+  while (periods_ < wanted) {
     if (const hotfire_status status = hotfire_step(model_); status != HOTFIRE_OK) {
       last_successful_ = start_ + static_cast<double>(periods_) * period;
       return refuse(Status::error, "DoStep", hotfire_message(model_));

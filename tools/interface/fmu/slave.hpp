@@ -89,8 +89,10 @@ class Slave {
   Status refuse_phase(const char* function) noexcept;
   Status refuse_model(const char* function, hotfire_status status) noexcept;
   Status start_if_needed(const char* function) noexcept;
-  /// Sets inputs in step mode. False, and nothing is set, if a reference is of no input or a value is outside its bounds.
-  bool set_inputs(std::span<const Reference> references, std::span<const double> values) noexcept;
+  /// What `set` and `get` do beside inputs and outputs in step mode, which are most of the calls.
+  Status set_any(std::span<const Reference> references, std::span<const double> values) noexcept;
+  Status get_any(std::span<const Reference> references, std::span<double> values) noexcept;
+  Status refuse_point(double current) noexcept;
   Status set_of_kind(hotfire_kind kind, std::span<const Reference> references, std::span<const double> values) noexcept;
   void say(Status status, Category category, const char* message) noexcept;
 

@@ -54,28 +54,28 @@ Status Slave::set_of_kind(hotfire_kind kind, std::span<const Reference> referenc
   return status == HOTFIRE_OK ? Status::ok : refuse_model("setting variables", status);
 }
 
-bool Slave::set_inputs(std::span<const Reference> references, std::span<const double> values) noexcept {
+Status Slave::set(std::span<const Reference> references, std::span<const double> values) noexcept {
+  if (phase_ != Phase::step || references.size() != values.size() || is_missing(references) || is_missing(values)) {
+    return set_any(references, values);
+  }
   for (std::size_t i = 0; i < references.size(); ++i) {
     const std::size_t index = references[i] - kFirstInput;
     // A value that is no number is within no bounds.
     if (index >= input_bounds_.size() ||
         !(values[i] >= input_bounds_[index].lower && values[i] <= input_bounds_[index].upper)) {
-      return false;
+      return set_any(references, values);
     }
   }
-  const std::span<double> inputs = model_->plant->input_values();
+  double* const inputs = model_->plant->input_values().data();
   for (std::size_t i = 0; i < references.size(); ++i) {
     inputs[references[i] - kFirstInput] = values[i];
   }
-  return true;
+  return Status::ok;
 }
 
-Status Slave::set(std::span<const Reference> references, std::span<const double> values) noexcept {
+Status Slave::set_any(std::span<const Reference> references, std::span<const double> values) noexcept {
   if (is_missing(references) || is_missing(values)) {
     return refuse(Status::error, "setting variables", kMissing);
-  }
-  if (phase_ == Phase::step && references.size() == values.size() && set_inputs(references, values)) {
-    return Status::ok;
   }
   if (phase_ != Phase::instantiated && phase_ != Phase::initialization && phase_ != Phase::step) {
     return refuse_phase("setting variables");
@@ -94,19 +94,29 @@ Status Slave::set(std::span<const Reference> references, std::span<const double>
 }
 
 Status Slave::get(std::span<const Reference> references, std::span<double> values) noexcept {
+  if (phase_ != Phase::step || references.size() != values.size() || is_missing(references) || is_missing(values)) {
+    return get_any(references, values);
+  }
+  const std::span<const double> outputs = model_->plant->output_values();
+  const std::size_t first = kFirstInput + input_bounds_.size();
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const std::size_t index = references[i] - first;
+    if (index >= outputs.size()) {
+      return get_any(references, values);
+    }
+    values[i] = outputs[index];
+  }
+  return Status::ok;
+}
+
+Status Slave::get_any(std::span<const Reference> references, std::span<double> values) noexcept {
   if (is_missing(references) || is_missing(values)) {
     return refuse(Status::error, "getting variables", kMissing);
   }
   if (references.size() != values.size()) {
     return refuse(Status::error, "getting variables", "as many values as value references are allowed");
   }
-  const std::span<const double> outputs = model_->plant->output_values();
-  const std::size_t first_output = kFirstInput + counts_[HOTFIRE_INPUT];
   for (std::size_t i = 0; i < references.size(); ++i) {
-    if (const std::size_t index = references[i] - first_output; phase_ == Phase::step && index < outputs.size()) {
-      values[i] = outputs[index];
-      continue;
-    }
     if (references[i] == kTime) {
       values[i] = time_;
       continue;
