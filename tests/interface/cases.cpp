@@ -137,10 +137,26 @@ std::vector<std::string> Case::outputs() const {
   return names;
 }
 
+Case case_of(const std::string& topology, std::size_t rows) {
+  if (topology == "simplex") {
+    return simplex(rows);
+  }
+  if (topology == "direct") {
+    return direct(rows);
+  }
+  if (topology == "taos") {
+    return vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"}, rows);
+  }
+  return vehicle("masv", "[effects.valve_deadband]\nhalf_width = 0.004\n" + kGimbal,
+                 {"pitch1", "yaw1", "pitch2", "yaw2", "pitch3", "yaw3", "pitch4", "yaw4"}, rows);
+}
+
 std::vector<Case> cases(std::size_t rows) {
-  return {simplex(rows), direct(rows), vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"}, rows),
-          vehicle("masv", "[effects.valve_deadband]\nhalf_width = 0.004\n" + kGimbal,
-                  {"pitch1", "yaw1", "pitch2", "yaw2", "pitch3", "yaw3", "pitch4", "yaw4"}, rows)};
+  std::vector<Case> all;
+  for (const char* topology : kTopologies) {
+    all.push_back(case_of(topology, rows));
+  }
+  return all;
 }
 
 }  // namespace hotfire::test

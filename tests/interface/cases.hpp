@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct Case {
   std::vector<double> readings_at(std::size_t after) const;
   std::vector<std::string> outputs() const;
 };
+
+inline constexpr std::array<const char*, 4> kTopologies{"simplex", "direct", "taos", "masv"};
+
+/// One of them, over `rows` rows of 1 ms.
+Case case_of(const std::string& topology, std::size_t rows);
 
 /// The four topologies, over `rows` rows of 1 ms.
 std::vector<Case> cases(std::size_t rows);

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -238,48 +237,6 @@ TEST(Fmu, RefusesAForeignTokenAndOtherInterfaces) {
   CHECK(two.function<Instantiate2>("fmi2Instantiate")("one", fmi2CoSimulation, two.token().c_str(), "file:///no/such",
                                                       &kCallbacks, 0, 0) == nullptr);
   STRCMP_CONTAINS("/no/such/plant.txt: cannot be read", last_message.data());
-}
-
-TEST(Fmu, TheDescriptionNamesEveryVariableOnceWithUnitAndMeaning) {
-  for (const Case& own : cases(20)) {
-    for (const int version : kVersions) {
-      const Fmu fmu(scratch, own, version);
-      const std::string& text = fmu.description();
-      const std::regex variable(version == 3 ? "<Float64 [^>]*>" : "<ScalarVariable [^>]*><Real[^>]*>");
-      std::size_t count = 0;
-      for (std::sregex_iterator at(text.begin(), text.end(), variable), end; at != end; ++at) {
-        const std::string line = at->str();
-        STRCMP_CONTAINS(("valueReference=\"" + std::to_string(count++) + "\"").c_str(), line.c_str());
-        CHECK_TEXT(!std::regex_search(line, std::regex("description=\"\"")), line.c_str());
-        std::smatch unit;
-        if (std::regex_search(line, unit, std::regex(" unit=\"([^\"]*)\""))) {
-          const std::string definition = "<Unit name=\"" + unit[1].str() + "\">";
-          CHECK_TEXT(text.find(definition) != std::string::npos || own.topology == "direct", line.c_str());
-        } else {
-          CHECK_TEXT(own.topology == "direct", line.c_str());
-        }
-        const bool calculated = line.find("initial=\"calculated\"") != std::string::npos;
-        const bool independent = line.find("causality=\"independent\"") != std::string::npos;
-        CHECK_TEXT((line.find(" start=") == std::string::npos) == (calculated || independent), line.c_str());
-      }
-      CHECK(count > own.inputs.size() + own.outputs().size());
-    }
-  }
-}
-
-TEST(Fmu, ItsSourcesCompileAloneAndGiveTheSameBits) {
-  const Case own = cases(100)[0];
-  Fmu fmu(scratch, own, 3);
-  fmu.compile();
-  const Run run(fmu, 3);
-  run.enter();
-  run.set(fmu.references(own.inputs), inputs_at(own, 0));
-  LONGS_EQUAL(0, run.call("ExitInitializationMode"));
-  for (std::size_t period = 0; period < own.periods(); ++period) {
-    check_same_bits(own.readings_at(period), run.got(fmu.references(own.outputs())));
-    run.set(fmu.references(own.inputs), inputs_at(own, period));
-    LONGS_EQUAL(0, run.step(1e-3 * static_cast<double>(period), own.period));
-  }
 }
 
 TEST(Fmu, TheSameModelGivesTheSameBytes) {

@@ -33,12 +33,10 @@ inline std::string content_of(const std::filesystem::path& path) {
 /// A small importer: unpacks an FMU, reads names and references from its description, and loads its binary.
 class Fmu {
  public:
-  Fmu(const Scratch& scratch, const Case& own, int version) : version_(version) {
-    const std::string name = own.topology + std::to_string(version);
-    folder_ = scratch.path(name);
-    const std::filesystem::path fmu = scratch.path(name + ".fmu");
-    export_fmu({scratch.write(name + ".toml", own.text), fmu, FMU_MATERIALS, version, own.period, 1});
-    CHECK(std::system(("unzip -q -o " + fmu.string() + " -d " + folder_.string()).c_str()) == 0);
+  Fmu(const Scratch& scratch, const Case& own, int version) : Fmu(unpacked(scratch.path(""), own, version), version) {}
+
+  /// An FMU that is unpacked in a folder of its name.
+  Fmu(const std::filesystem::path& folder, int version) : version_(version), folder_(folder) {
     description_ = content_of(folder_ / "modelDescription.xml");
     const std::regex variable("name=\"([^\"]*)\" valueReference=\"([0-9]+)\"");
     for (std::sregex_iterator at(description_.begin(), description_.end(), variable), end; at != end; ++at) {
@@ -48,21 +46,31 @@ class Fmu {
     CHECK(std::regex_search(description_, token, std::regex("(?:instantiationToken|guid)=\"([^\"]*)\"")));
     token_ = token[1];
     const std::string place = version == 3 ? "binaries/x86_64-linux/" : "binaries/linux64/";
-    load(folder_ / (place + name + ".so"));
+    load(folder_ / (place + folder_.filename().string() + ".so"));
   }
   ~Fmu() { dlclose(library_); }
   Fmu(const Fmu&) = delete;
   Fmu& operator=(const Fmu&) = delete;
 
-  /// Compiles the FMU's own sources as docs/interfaces/fmu.md says, and uses that binary from now on.
-  void compile() {
-    const std::string command = "cd " + (folder_ / "sources").string() +
-                                " && c++ -std=c++20 -O1 -ffp-contract=off -fPIC -shared -I. fmu.cpp -o ../own.so";
-    CHECK(std::system(command.c_str()) == 0);
+  /// Exports a case, and unpacks it into a folder of its name.
+  static std::filesystem::path unpacked(const std::filesystem::path& folder, const Case& own, int version) {
+    const std::filesystem::path place = folder / (own.topology + std::to_string(version));
+    const std::filesystem::path model = place.string() + ".toml";
+    const std::filesystem::path fmu = place.string() + ".fmu";
+    std::filesystem::create_directories(folder);
+    std::ofstream(model) << own.text;
+    export_fmu({model, fmu, FMU_MATERIALS, version, own.period, 1});
+    CHECK(std::system(("unzip -q -o " + fmu.string() + " -d " + place.string()).c_str()) == 0);
+    return place;
+  }
+
+  /// Runs a command in the FMU's folder that builds `binary` from its sources, and uses that from now on.
+  void build(const std::string& command, const std::string& binary) {
+    CHECK(std::system(("cd " + folder_.string() + " && " + command).c_str()) == 0);
     dlclose(library_);
     // The sources have the plant in them.
     std::filesystem::remove(folder_ / "resources/plant.txt");
-    load(folder_ / "own.so");
+    load(folder_ / binary);
   }
 
   template <class Function>
@@ -182,6 +190,23 @@ class Run {
       DOUBLES_EQUAL(current + size, last, 0.0);
     }
     return status;
+  }
+  /// Null pointers for `count` values.
+  int set_nothing(std::size_t count) const {
+    return is_3_ ? set_3_(instance_, nullptr, count, nullptr, count) : set_2_(instance_, nullptr, count, nullptr);
+  }
+  int get_nothing(std::size_t count) const {
+    return is_3_ ? get_3_(instance_, nullptr, count, nullptr, count) : get_2_(instance_, nullptr, count, nullptr);
+  }
+  int differentiate(unsigned unknown, unsigned known, double& slope) const {
+    const double seed = 1.0;
+    if (is_3_) {
+      return fmu_.function<int(void*, const unsigned*, std::size_t, const unsigned*, std::size_t, const double*, std::size_t,
+                               double*, std::size_t)>("fmi3GetDirectionalDerivative")(instance_, &unknown, 1, &known, 1,
+                                                                                      &seed, 1, &slope, 1);
+    }
+    return fmu_.function<int(void*, const unsigned*, std::size_t, const unsigned*, std::size_t, const double*, double*)>(
+        "fmi2GetDirectionalDerivative")(instance_, &unknown, 1, &known, 1, &seed, &slope);
   }
   void* instance() const { return instance_; }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "tools/export/archive.hpp"
+#include "tools/export/documentation.hpp"
 #include "tools/export/model_description.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/interface/plant/parameter_table.hpp"
@@ -65,12 +66,14 @@ std::string literals(const std::string& text) {
 }
 
 /// The one file that a target compiles: the plant's topology, the interface, and the plant itself.
-std::string main_source(std::string_view topology, int version, const std::string& document) {
+std::string main_source(std::string_view topology, const FmuIdentity& identity, const std::string& document) {
+  const int version = identity.version;
   std::string text = fmt::format(
-      "// The sources of this FMU in one file, which includes the others:\n"
-      "//   c++ -std=c++20 -O2 -ffp-contract=off -fPIC -shared -I. fmu.cpp -o model.so\n"
-      "#define HOTFIRE_VERSION \"{}\"\n\n",
-      HOTFIRE_VERSION);
+      "// The sources of this FMU in one file, which includes the others; as a shared library:\n"
+      "//   c++ -std=c++20 -O2 -ffp-contract=off -DFMI{0}_OVERRIDE_FUNCTION_PREFIX -fPIC -shared -I. fmu.cpp -o {1}.so\n"
+      "#define FMI{0}_FUNCTION_PREFIX {1}_\n"
+      "#define HOTFIRE_VERSION \"{2}\"\n\n",
+      version, identity.identifier, HOTFIRE_VERSION);
   for (const char* file : {"firmware/text/text.cpp", "firmware/image/image_entries.cpp", "firmware/image/plant_image.cpp",
                            "tools/interface/plant/plant.cpp"}) {
     text += fmt::format("#include \"{}\"\n", file);
@@ -78,7 +81,7 @@ std::string main_source(std::string_view topology, int version, const std::strin
   text += fmt::format("#include \"tools/interface/plant/{}.cpp\"\n", topology);
   for (const char* file :
        {"tools/interface/c/saved_state.cpp", "tools/interface/c/plant_text.cpp", "tools/interface/c/hotfire.cpp",
-        "tools/interface/fmu/slave.cpp", "tools/interface/fmu/document.cpp"}) {
+        "tools/interface/fmu/slave.cpp", "tools/interface/fmu/slave_values.cpp", "tools/interface/fmu/document.cpp"}) {
     text += fmt::format("#include \"{}\"\n", file);
   }
   text += fmt::format("#include \"tools/interface/fmu/fmi{}.cpp\"\n", version);
@@ -118,9 +121,12 @@ ExportedFmu export_fmu(const FmuOptions& options) {
   files["resources/plant.txt"] = document;
   files[fmt::format("binaries/{}/{}.so", options.version == 3 ? "x86_64-linux" : "linux64", identity.identifier)] =
       content_of(options.materials / fmt::format("fmi{}.so", options.version));
-  files["documentation/licenses/LICENSE.txt"] = content_of(options.materials / "LICENSE.txt");
+  files["documentation/index.html"] = documentation_page(*plant, identity);
+  files["documentation/externalDependencies.txt"] = external_dependencies();
+  files["documentation/licenses/license.txt"] = content_of(options.materials / "LICENSE.txt");
   files["documentation/licenses/third-party.txt"] = content_of(options.materials / "third-party.txt");
-  files["sources/fmu.cpp"] = main_source(plant->topology(), options.version, document);
+  files["sources/fmu.cpp"] = main_source(plant->topology(), identity, document);
+  files["sources/CMakeLists.txt"] = cmake_project(identity);
   if (options.version == 3) {
     files["sources/buildDescription.xml"] = build_description(identity);
   }

@@ -10,34 +10,11 @@
 #include <set>
 
 #include "tools/export/unit_definition.hpp"
+#include "tools/export/xml_text.hpp"
 
 namespace hotfire {
 
 namespace {
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        // A control character has no place in XML 1.0.
-        result += static_cast<unsigned char>(letter) < 0x20 ? ' ' : letter;
-    }
-  }
-  return result;
-}
 
 /// The fewest digits that restore a number.
 std::string number(double value) { return fmt::format("{}", value); }
@@ -220,6 +197,8 @@ std::string build_description(const FmuIdentity& identity) {
   <BuildConfiguration modelIdentifier="{}" description="C++20; one file includes all others; links the C++ standard library">
     <SourceFileSet language="C++20" compilerOptions="-std=c++20 -O2 -ffp-contract=off">
       <SourceFile name="fmu.cpp"/>
+      <PreprocessorDefinition name="FMI3_OVERRIDE_FUNCTION_PREFIX" optional="true"
+        description="For a shared library: the functions have the standard's names. Without it the model identifier stands before them."/>
       <IncludeDirectory name="."/>
     </SourceFileSet>
     <Library name="stdc++" external="true" description="C++ standard library"/>

@@ -3,9 +3,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "tools/interface/fmu/export_names.hpp"
 #include "tools/interface/fmu/fmi2_types.hpp"
+#include "tools/interface/fmu/message.hpp"
 #include "tools/interface/fmu/saved_block.hpp"
 #include "tools/interface/fmu/slave.hpp"
 
@@ -13,8 +15,11 @@
 
 namespace {
 
+using hotfire::fmu::Message;
 using hotfire::fmu::Slave;
 using hotfire::fmu::Status;
+
+constexpr std::string_view kDoubled = "#%";
 
 struct Component {
   std::string name;
@@ -22,26 +27,35 @@ struct Component {
   std::unique_ptr<Slave> slave;
 };
 
-Slave& slave_of(fmi2Component component) { return *static_cast<Component*>(component)->slave; }
-
 fmi2Status said(Status status) { return static_cast<fmi2Status>(status); }
+
+/// The status of a call of an instance's slave. A missing instance is an error that has no one to log it.
+template <class Call>
+fmi2Status with_slave(fmi2Component component, Call&& call) {
+  return component == nullptr ? fmi2Error : said(call(*static_cast<Component*>(component)->slave));
+}
 
 void deliver(void* instance, Status status, const char* category, const char* message) {
   const auto& own = *static_cast<Component*>(instance);
   if (own.callbacks.logger != nullptr) {
-    own.callbacks.logger(own.callbacks.componentEnvironment, own.name.c_str(), said(status), category, "%s", message);
+    own.callbacks.logger(own.callbacks.componentEnvironment, own.name.c_str(), said(status), category,
+                         Message(message, kDoubled).c_str());
   }
 }
 
+fmi2Status refuse(fmi2Component component, Status status, const char* function, const char* problem) {
+  return with_slave(component, [&](Slave& slave) { return slave.refuse(status, function, problem); });
+}
+
 fmi2Status unsupported(fmi2Component component, const char* function) {
-  return said(
-      slave_of(component).refuse(Status::error, function, "is not supported; see the capabilities in modelDescription.xml"));
+  return refuse(component, Status::error, function, "is not supported; see the capabilities in modelDescription.xml");
 }
 
 /// Variables of another type than Real: the FMU has none.
 fmi2Status none(fmi2Component component, const char* function, std::size_t count) {
-  return count == 0 ? fmi2OK
-                    : said(slave_of(component).refuse(Status::error, function, "the FMU has no variable of this type"));
+  return count == 0 && component != nullptr
+             ? fmi2OK
+             : refuse(component, Status::error, function, "the FMU has no variable of this type");
 }
 
 }  // namespace
@@ -53,7 +67,7 @@ HOTFIRE_FMU_API const char* FMI2(fmi2GetVersion)() { return "2.0"; }
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2SetDebugLogging)(fmi2Component component, fmi2Boolean on, std::size_t count,
                                                      const fmi2String categories[]) {
-  return said(slave_of(component).set_logging(on != 0, {categories, count}));
+  return with_slave(component, [&](Slave& slave) { return slave.set_logging(on != 0, {categories, count}); });
 }
 
 HOTFIRE_FMU_API fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
@@ -66,8 +80,8 @@ HOTFIRE_FMU_API fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type ty
   std::string message;
   try {
     component = std::make_unique<Component>(Component{name != nullptr ? name : "", *callbacks, nullptr});
-    if (component->name.empty()) {
-      message = "the name of the instance is empty; allowed: any other name";
+    if (component->name.find_first_not_of(" \t\r\n") == std::string::npos) {
+      message = "the name of the instance is empty; allowed: at least one character that is no space";
     } else if (type != fmi2CoSimulation) {
       message = "the FMU is for co-simulation only; allowed: fmi2CoSimulation";
     } else {
@@ -81,7 +95,7 @@ HOTFIRE_FMU_API fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type ty
   if (component == nullptr || component->slave == nullptr) {
     if (callbacks->logger != nullptr) {
       callbacks->logger(callbacks->componentEnvironment, name != nullptr ? name : "", fmi2Error,
-                        hotfire::fmu::kCategories[0], "fmi2Instantiate: %s", message.c_str());
+                        hotfire::fmu::kCategories[0], Message("fmi2Instantiate: " + message, kDoubled).c_str());
     }
     return nullptr;
   }
@@ -93,25 +107,29 @@ HOTFIRE_FMU_API void FMI2(fmi2FreeInstance)(fmi2Component component) { delete st
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2SetupExperiment)(fmi2Component component, fmi2Boolean, fmi2Real, fmi2Real start,
                                                      fmi2Boolean stop_defined, fmi2Real stop) {
-  return said(slave_of(component).set_up(start, stop_defined != 0, stop));
+  return with_slave(component, [&](Slave& slave) { return slave.set_up(start, stop_defined != 0, stop); });
 }
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2EnterInitializationMode)(fmi2Component component) {
-  return said(slave_of(component).enter_initialization());
+  return with_slave(component, [&](Slave& slave) { return slave.enter_initialization(); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2ExitInitializationMode)(fmi2Component component) {
-  return said(slave_of(component).exit_initialization());
+  return with_slave(component, [&](Slave& slave) { return slave.exit_initialization(); });
 }
-HOTFIRE_FMU_API fmi2Status FMI2(fmi2Terminate)(fmi2Component component) { return said(slave_of(component).terminate()); }
-HOTFIRE_FMU_API fmi2Status FMI2(fmi2Reset)(fmi2Component component) { return said(slave_of(component).reset()); }
+HOTFIRE_FMU_API fmi2Status FMI2(fmi2Terminate)(fmi2Component component) {
+  return with_slave(component, [&](Slave& slave) { return slave.terminate(); });
+}
+HOTFIRE_FMU_API fmi2Status FMI2(fmi2Reset)(fmi2Component component) {
+  return with_slave(component, [&](Slave& slave) { return slave.reset(); });
+}
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetReal)(fmi2Component component, const fmi2ValueReference references[],
                                              std::size_t count, fmi2Real values[]) {
-  return said(slave_of(component).get({references, count}, {values, count}));
+  return with_slave(component, [&](Slave& slave) { return slave.get({references, count}, {values, count}); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2SetReal)(fmi2Component component, const fmi2ValueReference references[],
                                              std::size_t count, const fmi2Real values[]) {
-  return said(slave_of(component).set({references, count}, {values, count}));
+  return with_slave(component, [&](Slave& slave) { return slave.set({references, count}, {values, count}); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetInteger)(fmi2Component component, const fmi2ValueReference[], std::size_t count,
                                                 fmi2Integer[]) {
@@ -139,33 +157,35 @@ HOTFIRE_FMU_API fmi2Status FMI2(fmi2SetString)(fmi2Component component, const fm
 }
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetFMUstate)(fmi2Component component, fmi2FMUstate* state) {
-  return said(hotfire::fmu::get_state(slave_of(component), state));
+  return with_slave(component, [&](Slave& slave) { return hotfire::fmu::get_state(slave, state); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2SetFMUstate)(fmi2Component component, fmi2FMUstate state) {
-  return said(hotfire::fmu::set_state(slave_of(component), state));
+  return with_slave(component, [&](Slave& slave) { return hotfire::fmu::set_state(slave, state); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2FreeFMUstate)(fmi2Component, fmi2FMUstate* state) {
   hotfire::fmu::free_state(state);
   return fmi2OK;
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2SerializedFMUstateSize)(fmi2Component component, fmi2FMUstate state, std::size_t* size) {
-  return said(hotfire::fmu::state_size(slave_of(component), state, size));
+  return with_slave(component, [&](Slave& slave) { return hotfire::fmu::state_size(slave, state, size); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2SerializeFMUstate)(fmi2Component component, fmi2FMUstate state, fmi2Byte bytes[],
                                                        std::size_t size) {
-  return said(hotfire::fmu::serialize(slave_of(component), state, bytes, size));
+  return with_slave(component, [&](Slave& slave) { return hotfire::fmu::serialize(slave, state, bytes, size); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2DeSerializeFMUstate)(fmi2Component component, const fmi2Byte bytes[], std::size_t size,
                                                          fmi2FMUstate* state) {
-  return said(hotfire::fmu::deserialize(slave_of(component), bytes, size, state));
+  return with_slave(component, [&](Slave& slave) { return hotfire::fmu::deserialize(slave, bytes, size, state); });
 }
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetDirectionalDerivative)(fmi2Component component, const fmi2ValueReference unknowns[],
                                                               std::size_t unknown_count, const fmi2ValueReference knowns[],
                                                               std::size_t known_count, const fmi2Real seed[],
                                                               fmi2Real sensitivity[]) {
-  return said(slave_of(component).differentiate({unknowns, unknown_count}, {knowns, known_count}, {seed, known_count},
-                                                {sensitivity, unknown_count}));
+  return with_slave(component, [&](Slave& slave) {
+    return slave.differentiate({unknowns, unknown_count}, {knowns, known_count}, {seed, known_count},
+                               {sensitivity, unknown_count});
+  });
 }
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2SetRealInputDerivatives)(fmi2Component component, const fmi2ValueReference[],
@@ -178,34 +198,44 @@ HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetRealOutputDerivatives)(fmi2Component comp
 }
 
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2DoStep)(fmi2Component component, fmi2Real current, fmi2Real step, fmi2Boolean) {
-  return said(slave_of(component).do_step(current, step));
+  return with_slave(component, [&](Slave& slave) { return slave.do_step(current, step); });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2CancelStep)(fmi2Component component) { return unsupported(component, "fmi2CancelStep"); }
 
 // A step is never pending, so that there is no status of one.
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetStatus)(fmi2Component component, const fmi2StatusKind, fmi2Status*) {
-  return said(slave_of(component).refuse(Status::discard, "fmi2GetStatus", "no step is pending"));
+  return refuse(component, Status::discard, "fmi2GetStatus", "no step is pending");
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetRealStatus)(fmi2Component component, const fmi2StatusKind kind, fmi2Real* value) {
   if (kind != fmi2LastSuccessfulTime) {
-    return said(slave_of(component).refuse(Status::discard, "fmi2GetRealStatus", "allowed: fmi2LastSuccessfulTime"));
+    return refuse(component, Status::discard, "fmi2GetRealStatus", "allowed: fmi2LastSuccessfulTime");
   }
-  *value = slave_of(component).last_successful_time();
-  return fmi2OK;
+  if (value == nullptr) {
+    return refuse(component, Status::error, "fmi2GetRealStatus", "a place for the value is missing");
+  }
+  return with_slave(component, [value](Slave& slave) {
+    *value = slave.last_successful_time();
+    return Status::ok;
+  });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetIntegerStatus)(fmi2Component component, const fmi2StatusKind, fmi2Integer*) {
-  return said(slave_of(component).refuse(Status::discard, "fmi2GetIntegerStatus", "there is no such status"));
+  return refuse(component, Status::discard, "fmi2GetIntegerStatus", "there is no such status");
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetBooleanStatus)(fmi2Component component, const fmi2StatusKind kind,
                                                       fmi2Boolean* value) {
   if (kind != fmi2Terminated) {
-    return said(slave_of(component).refuse(Status::discard, "fmi2GetBooleanStatus", "allowed: fmi2Terminated"));
+    return refuse(component, Status::discard, "fmi2GetBooleanStatus", "allowed: fmi2Terminated");
   }
-  *value = 0;
-  return fmi2OK;
+  if (value == nullptr) {
+    return refuse(component, Status::error, "fmi2GetBooleanStatus", "a place for the value is missing");
+  }
+  return with_slave(component, [value](Slave&) {
+    *value = 0;
+    return Status::ok;
+  });
 }
 HOTFIRE_FMU_API fmi2Status FMI2(fmi2GetStringStatus)(fmi2Component component, const fmi2StatusKind, fmi2String*) {
-  return said(slave_of(component).refuse(Status::discard, "fmi2GetStringStatus", "no step is pending"));
+  return refuse(component, Status::discard, "fmi2GetStringStatus", "no step is pending");
 }
 
 // NOLINTEND(readability-identifier-naming)

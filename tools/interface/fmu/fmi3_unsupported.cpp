@@ -17,7 +17,8 @@ fmi3Status unsupported(fmi3Instance instance, const char* function) {
 
 /// Variables of another type than Float64: the FMU has none.
 fmi3Status none(fmi3Instance instance, const char* function, std::size_t count) {
-  return count == 0 ? fmi3OK : hotfire_fmi3_refuse(instance, function, "the FMU has no variable of this type");
+  return count == 0 && instance != nullptr ? fmi3OK
+                                           : hotfire_fmi3_refuse(instance, function, "the FMU has no variable of this type");
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ namespace hotfire::fmu {
 struct Slave::Saved {
   std::uint32_t phase;
   std::uint32_t current;
-  std::uint64_t stop_defined;
+  std::uint32_t set_up;
+  std::uint32_t stop_defined;
   std::uint64_t periods;
   double start;
   double stop;
@@ -55,6 +56,9 @@ Slave::Slave(hotfire_model* model, Log log, void* instance) : model_(model), log
   values_.resize(variables);
   seeds_.resize(variables);
   sensitivity_.resize(counts_[HOTFIRE_OUTPUT]);
+  for (const plant::Variable& input : model->plant->inputs()) {
+    input_bounds_.push_back({input.lower, input.upper});
+  }
 }
 
 Slave::~Slave() { hotfire_close(model_); }
@@ -97,6 +101,9 @@ Status Slave::refuse_model(const char* function, hotfire_status status) noexcept
 }
 
 Status Slave::set_logging(bool on, std::span<const char* const> categories) noexcept {
+  if (categories.data() == nullptr && !categories.empty()) {
+    return refuse(Status::error, "SetDebugLogging", "the categories are missing");
+  }
   std::array<bool, kCategories.size()> wanted{};
   wanted.fill(on && categories.empty());
   if (!on && categories.empty()) {
@@ -107,8 +114,9 @@ Status Slave::set_logging(bool on, std::span<const char* const> categories) noex
     wanted = logged_;
   }
   for (const char* category : categories) {
-    const auto found = std::find_if(kCategories.begin(), kCategories.end(),
-                                    [category](const char* own) { return std::strcmp(own, category) == 0; });
+    const auto found = std::find_if(kCategories.begin(), kCategories.end(), [category](const char* own) {
+      return category != nullptr && std::strcmp(own, category) == 0;
+    });
     if (found == kCategories.end()) {
       return refuse(Status::error, "SetDebugLogging",
                     "unknown category; allowed: logStatusError, logStatusDiscard, logEvents");
@@ -127,6 +135,7 @@ Status Slave::set_up(double start, bool stop_defined, double stop) noexcept {
     return refuse(Status::error, "setting up the experiment",
                   "start or stop time; allowed: a finite start time, and a stop time after it");
   }
+  set_up_ = true;
   start_ = start;
   time_ = start;
   last_successful_ = start;
@@ -138,6 +147,9 @@ Status Slave::set_up(double start, bool stop_defined, double stop) noexcept {
 Status Slave::enter_initialization() noexcept {
   if (phase_ != Phase::instantiated) {
     return refuse_phase("EnterInitializationMode");
+  }
+  if (!set_up_) {
+    return refuse(Status::error, "EnterInitializationMode", "the start time is unknown; call SetupExperiment first");
   }
   phase_ = Phase::initialization;
   return Status::ok;
@@ -193,115 +205,38 @@ Status Slave::reset() noexcept {
     }
   }
   start_ = time_ = last_successful_ = 0.0;
+  set_up_ = false;
   stop_defined_ = false;
   say(Status::ok, Category::event, "the instance is as it was made");
   return Status::ok;
 }
 
-bool Slave::find(Reference reference, Place& place) const noexcept {
-  if (reference < kFirstInput) {
-    return false;
-  }
-  std::size_t index = reference - kFirstInput;
-  for (const hotfire_kind kind : {HOTFIRE_INPUT, HOTFIRE_OUTPUT, HOTFIRE_PARAMETER}) {
-    if (index < counts_.at(kind)) {
-      place = {kind, index};
-      return true;
-    }
-    index -= counts_.at(kind);
-  }
-  return false;
-}
-
-Status Slave::set_of_kind(hotfire_kind kind, std::span<const Reference> references,
-                          std::span<const double> values) noexcept {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    Place place{};
-    find(references[i], place);
-    if (place.kind == kind) {
-      indices_[count] = place.index;
-      values_[count++] = values[i];
-    }
-  }
-  if (count == 0) {
-    return Status::ok;
-  }
-  if (phase_ == Phase::initialization) {
-    // The start is calculated again with the new values.
-    model_->started = false;
-    current_ = false;
-  }
-  const hotfire_status status = hotfire_set(model_, kind, indices_.data(), values_.data(), count);
-  return status == HOTFIRE_OK ? Status::ok : refuse_model("setting variables", status);
-}
-
-Status Slave::set(std::span<const Reference> references, std::span<const double> values) noexcept {
-  if (phase_ != Phase::instantiated && phase_ != Phase::initialization && phase_ != Phase::step) {
-    return refuse_phase("setting variables");
-  }
-  if (references.size() != values.size() || references.size() > indices_.size()) {
-    return refuse(Status::error, "setting variables", "as many values as value references are allowed, each variable once");
-  }
-  for (const Reference reference : references) {
-    Place place{};
-    if (!find(reference, place) || place.kind == HOTFIRE_OUTPUT) {
-      return refuse_reference("setting variables", reference);
-    }
-  }
-  const Status status = set_of_kind(HOTFIRE_PARAMETER, references, values);
-  return status == Status::ok ? set_of_kind(HOTFIRE_INPUT, references, values) : status;
-}
-
-Status Slave::get(std::span<const Reference> references, std::span<double> values) noexcept {
-  if (references.size() != values.size()) {
-    return refuse(Status::error, "getting variables", "as many values as value references are allowed");
-  }
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    if (references[i] == kTime) {
-      values[i] = time_;
-      continue;
-    }
-    Place place{};
-    if (!find(references[i], place)) {
-      return refuse_reference("getting variables", references[i]);
-    }
-    if (place.kind == HOTFIRE_OUTPUT) {
-      if (phase_ == Phase::instantiated) {
-        return refuse_phase("getting outputs");
-      }
-      if (const Status status = phase_ == Phase::initialization ? start_if_needed("getting outputs") : Status::ok;
-          status != Status::ok) {
-        return status;
-      }
-    }
-    if (const hotfire_status status = hotfire_get(model_, place.kind, &place.index, &values[i], 1); status != HOTFIRE_OK) {
-      return refuse_model("getting variables", status);
-    }
-  }
-  return Status::ok;
+Status Slave::refuse_point(double current) noexcept {
+  std::array<char, 160> problem{};
+  std::snprintf(problem.data(), problem.size(),
+                "currentCommunicationPoint = %.17g: allowed: %.17g, where the last step ended", current, time_);
+  return refuse(Status::error, "DoStep", problem.data());
 }
 
 Status Slave::do_step(double current, double step) noexcept {
   if (phase_ != Phase::step) {
     return refuse_phase("DoStep");
   }
-  const double period = hotfire_period(model_);
+  const double period = model_->plant->period();
   if (!(step > 0.0) || !std::isfinite(current) || !std::isfinite(step)) {
     return refuse(Status::error, "DoStep", "communicationStepSize; allowed: above 0");
   }
   if (std::abs(current - time_) > kEarly * period) {
-    std::array<char, 160> problem{};
-    std::snprintf(problem.data(), problem.size(),
-                  "currentCommunicationPoint = %.17g: allowed: %.17g, where the last step ended", current, time_);
-    return refuse(Status::error, "DoStep", problem.data());
+    return refuse_point(current);
   }
   const double end = current + step;
   if (stop_defined_ && end > stop_ + kEarly * period) {
     return refuse(Status::error, "DoStep", "the step ends after the stop time of the experiment; allowed: up to it");
   }
-  const double wanted = std::floor((end - start_) / period + kEarly);
-  while (static_cast<double>(periods_) < wanted) {
+  // No run has more periods than a double counts.
+  const auto wanted =
+      static_cast<std::uint64_t>(static_cast<std::int64_t>(std::min((end - start_) / period + kEarly, 0x1p53)));
+  while (periods_ < wanted) {
     if (const hotfire_status status = hotfire_step(model_); status != HOTFIRE_OK) {
       last_successful_ = start_ + static_cast<double>(periods_) * period;
       return refuse(Status::error, "DoStep", hotfire_message(model_));
@@ -313,43 +248,6 @@ Status Slave::do_step(double current, double step) noexcept {
   return Status::ok;
 }
 
-Status Slave::differentiate(std::span<const Reference> unknowns, std::span<const Reference> knowns,
-                            std::span<const double> seed, std::span<double> sensitivity) noexcept {
-  constexpr const char* kName = "GetDirectionalDerivative";
-  if (phase_ != Phase::initialization && phase_ != Phase::step) {
-    return refuse_phase(kName);
-  }
-  if (unknowns.size() != sensitivity.size() || knowns.size() != seed.size() || knowns.size() > seeds_.size()) {
-    return refuse(Status::error, kName, "as many seeds as knowns and as many places as unknowns are allowed");
-  }
-  for (std::size_t i = 0; i < knowns.size(); ++i) {
-    Place place{};
-    if (!find(knowns[i], place) || place.kind == HOTFIRE_OUTPUT) {
-      return refuse_reference(kName, knowns[i]);
-    }
-    seeds_[i] = {place.kind, place.index, seed[i]};
-  }
-  for (const Reference unknown : unknowns) {
-    if (Place place{}; !find(unknown, place) || place.kind != HOTFIRE_OUTPUT) {
-      return refuse_reference(kName, unknown);
-    }
-  }
-  if (const Status status = start_if_needed(kName); status != Status::ok) {
-    return status;
-  }
-  if (const hotfire_status status =
-          hotfire_differentiate(model_, seeds_.data(), knowns.size(), sensitivity_.data(), sensitivity_.size());
-      status != HOTFIRE_OK) {
-    return refuse_model(kName, status);
-  }
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    Place place{};
-    find(unknowns[i], place);
-    sensitivity[i] = sensitivity_[place.index];
-  }
-  return Status::ok;
-}
-
 std::size_t Slave::saved_size() const noexcept { return sizeof(Saved) + hotfire_state_size(model_); }
 
 Status Slave::save(std::span<std::byte> bytes) noexcept {
@@ -358,6 +256,7 @@ Status Slave::save(std::span<std::byte> bytes) noexcept {
   }
   const Saved saved{static_cast<std::uint32_t>(phase_),
                     current_ ? 1U : 0U,
+                    set_up_ ? 1U : 0U,
                     stop_defined_ ? 1U : 0U,
                     periods_,
                     start_,
@@ -375,7 +274,8 @@ Status Slave::load(std::span<const std::byte> bytes) noexcept {
     return refuse(Status::error, "setting a state", "too few bytes for a state of this FMU");
   }
   std::memcpy(&saved, bytes.data(), sizeof saved);
-  if (saved.phase > static_cast<std::uint32_t>(Phase::failed) || saved.current > 1 || saved.stop_defined > 1) {
+  if (saved.phase > static_cast<std::uint32_t>(Phase::failed) || saved.current > 1 || saved.set_up > 1 ||
+      saved.stop_defined > 1) {
     return refuse(Status::error, "setting a state", "not a state of this FMU");
   }
   if (hotfire_load(model_, bytes.data() + sizeof saved, bytes.size() - sizeof saved) != HOTFIRE_OK) {
@@ -383,6 +283,7 @@ Status Slave::load(std::span<const std::byte> bytes) noexcept {
   }
   phase_ = static_cast<Phase>(saved.phase);
   current_ = saved.current == 1;
+  set_up_ = saved.set_up == 1;
   stop_defined_ = saved.stop_defined == 1;
   periods_ = saved.periods;
   start_ = saved.start;

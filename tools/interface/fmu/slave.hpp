@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/interface/c/hotfire.h"
+#include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::fmu {
 
@@ -63,6 +64,7 @@ class Slave {
   Status do_step(double current, double step) noexcept;
   double last_successful_time() const noexcept { return last_successful_; }
 
+  /// In initialization mode the derivatives of the outputs at the start, then those of the outputs after one internal step.
   Status differentiate(std::span<const Reference> unknowns, std::span<const Reference> knowns, std::span<const double> seed,
                        std::span<double> sensitivity) noexcept;
 
@@ -88,6 +90,10 @@ class Slave {
   Status refuse_phase(const char* function) noexcept;
   Status refuse_model(const char* function, hotfire_status status) noexcept;
   Status start_if_needed(const char* function) noexcept;
+  /// What `set` and `get` do beside inputs and outputs in step mode, which are most of the calls.
+  Status set_any(std::span<const Reference> references, std::span<const double> values) noexcept;
+  Status get_any(std::span<const Reference> references, std::span<double> values) noexcept;
+  Status refuse_point(double current) noexcept;
   Status set_of_kind(hotfire_kind kind, std::span<const Reference> references, std::span<const double> values) noexcept;
   void say(Status status, Category category, const char* message) noexcept;
 
@@ -98,16 +104,22 @@ class Slave {
   std::array<std::size_t, 3> counts_{};  ///< of the tables
   Phase phase_ = Phase::instantiated;
   bool current_ = false;  ///< the model has been started under the present values
+  bool set_up_ = false;   ///< the start time is known
   double start_ = 0.0;
   bool stop_defined_ = false;
   double stop_ = 0.0;
   double time_ = 0.0;  ///< the communication point that was reached
   double last_successful_ = 0.0;
   std::uint64_t periods_ = 0;
+  struct Bounds {
+    double lower;
+    double upper;
+  };
+  std::vector<Bounds> input_bounds_;
   // Room for the arguments of the C interface.
   std::vector<std::size_t> indices_;
   std::vector<double> values_;
-  std::vector<hotfire_seed> seeds_;
+  std::vector<plant::Seed> seeds_;
   std::vector<double> sensitivity_;
 };
 

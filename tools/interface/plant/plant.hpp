@@ -85,6 +85,9 @@ class Plant {
   /// `sensitivity` has a place for every output. Set-up work, without allocation, in a bounded time.
   virtual void differentiate(std::span<const Seed> seeds, std::span<double> sensitivity) noexcept = 0;
 
+  /// The same of the outputs that `start(time)` reads.
+  virtual void differentiate_start(double time, std::span<const Seed> seeds, std::span<double> sensitivity) noexcept = 0;
+
   /// What a plant is in the middle of a run: inputs, outputs, parameters and the model's state, as bytes of this build for
   /// this machine. `load` is for bytes of `save` of a plant with the same `identity`.
   std::size_t state_size() const noexcept;

@@ -49,6 +49,7 @@ template <template <class> class Adapter>
 class PlantOf final : public Plant {
   using Dual = ceres::Jet<double, 1>;
   using Plain = Adapter<double>;
+  using Moved = Adapter<Dual>;
   using State = typename Plain::State;
   // A state is saved as bytes.
   static_assert(std::is_trivially_destructible_v<State>);
@@ -95,42 +96,22 @@ class PlantOf final : public Plant {
   }
 
   void differentiate(std::span<const Seed> seeds, std::span<double> sensitivity) noexcept override {
-    using Moved = Adapter<Dual>;
-    for (std::size_t i = 0; i < dual_inputs_.size(); ++i) {
-      dual_inputs_[i] = Dual(input_values_[i]);
-    }
-    bool rebuild = !dual_is_current_;
-    for (std::size_t i = 0; !dual_is_current_ && i < dual_.slots().size(); ++i) {
-      *dual_.slots()[i] = Dual(parameter_values_[i]);
-    }
-    for (const Seed& seed : seeds) {
-      if (seed.kind == Seed::Kind::input) {
-        dual_inputs_[seed.index].v[0] += seed.value;
-      } else if (seed.index < dual_.slots().size()) {
-        dual_.slots()[seed.index]->v[0] += seed.value;
-        rebuild = true;
-      }
-    }
-    Moved::smooth(dual_.parameters());
-    if (rebuild) {
-      dual_.build(period(), steps_);
-    }
+    move(seeds);
     copy_state(state_->plant, dual_state_->plant);
     const hal::FlushDenormals flush;
     Moved::begin_reading(*dual_state_, dual_.parameters());
     for (int step = 0; step < steps_; ++step) {
       Moved::step(dual_.model(), *dual_state_, dual_inputs_, dual_.parameters());
     }
-    Moved::read(*dual_state_, period(), dual_outputs_);
-    for (std::size_t i = 0; i < sensitivity.size(); ++i) {
-      sensitivity[i] = dual_outputs_[i].v[0];
-    }
-    dual_is_current_ = true;
-    for (const Seed& seed : seeds) {
-      if (seed.kind == Seed::Kind::parameter) {
-        dual_is_current_ = false;
-      }
-    }
+    read_slopes(sensitivity);
+  }
+
+  void differentiate_start(double time, std::span<const Seed> seeds, std::span<double> sensitivity) noexcept override {
+    move(seeds);
+    Moved::settle(dual_.model(), *dual_state_, dual_inputs_, dual_.parameters(), dual_further_, time);
+    const hal::FlushDenormals flush;
+    Moved::begin_reading(*dual_state_, dual_.parameters());
+    read_slopes(sensitivity);
   }
 
  protected:
@@ -156,6 +137,7 @@ class PlantOf final : public Plant {
     }
     dual_inputs_.resize(inputs_.size());
     dual_outputs_.resize(outputs_.size());
+    dual_further_.resize(parameters_.size() - table.variables().size());
     Fingerprint fingerprint;
     fingerprint.add(Plain::Model::topology);
     fingerprint.add(setup.period);
@@ -163,6 +145,43 @@ class PlantOf final : public Plant {
     fingerprint.add(static_cast<double>(sizeof(State)));
     complete_tables(fingerprint.value() ^ table.fingerprint());
     build();
+  }
+
+  /// Inputs, parameters and model in dual numbers: their values, moved by the seeds.
+  void move(std::span<const Seed> seeds) noexcept {
+    for (std::size_t i = 0; i < dual_inputs_.size(); ++i) {
+      dual_inputs_[i] = Dual(input_values_[i]);
+    }
+    for (std::size_t i = 0; i < dual_further_.size(); ++i) {
+      dual_further_[i] = Dual(further()[i]);
+    }
+    bool rebuild = !dual_is_current_;
+    for (std::size_t i = 0; !dual_is_current_ && i < dual_.slots().size(); ++i) {
+      *dual_.slots()[i] = Dual(parameter_values_[i]);
+    }
+    dual_is_current_ = true;
+    for (const Seed& seed : seeds) {
+      if (seed.kind == Seed::Kind::input) {
+        dual_inputs_[seed.index].v[0] += seed.value;
+      } else if (seed.index < dual_.slots().size()) {
+        dual_.slots()[seed.index]->v[0] += seed.value;
+        rebuild = true;
+        dual_is_current_ = false;
+      } else {
+        dual_further_[seed.index - dual_.slots().size()].v[0] += seed.value;
+      }
+    }
+    Moved::smooth(dual_.parameters());
+    if (rebuild) {
+      dual_.build(period(), steps_);
+    }
+  }
+
+  void read_slopes(std::span<double> sensitivity) noexcept {
+    Moved::read(*dual_state_, period(), dual_outputs_);
+    for (std::size_t i = 0; i < sensitivity.size(); ++i) {
+      sensitivity[i] = dual_outputs_[i].v[0];
+    }
   }
 
   /// Parameters beyond those of the model.
@@ -197,6 +216,7 @@ class PlantOf final : public Plant {
   std::unique_ptr<typename Adapter<Dual>::State> dual_state_;
   std::vector<Dual> dual_inputs_{};
   std::vector<Dual> dual_outputs_{};
+  std::vector<Dual> dual_further_{};
   bool dual_is_current_ = false;  ///< its parameters are those of the plant, without derivatives
 };
 

@@ -1,0 +1,88 @@
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/files/scratch.hpp"
+#include "tests/interface/cases.hpp"
+#include "tests/interface/importer.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+namespace hotfire::test {
+namespace {
+
+/// The FMUs of all topologies in both versions, as words of a command line.
+std::string exported(const Scratch& scratch) {
+  std::string words;
+  for (const Case& own : cases(20)) {
+    for (const int version : {2, 3}) {
+      words += " " + Fmu::unpacked(scratch.path(""), own, version).string() + ".fmu";
+    }
+  }
+  return words;
+}
+
+/// The run of `hotfire simulate`, bit for bit.
+void check_run(const Fmu& fmu, const Case& own, int version) {
+  const Run run(fmu, version);
+  const auto inputs_at = [&own](std::size_t period) {
+    std::vector<double> values;
+    for (const std::vector<double>& input : own.driven) {
+      values.push_back(input[period]);
+    }
+    return values;
+  };
+  run.enter();
+  run.set(fmu.references(own.inputs), inputs_at(0));
+  LONGS_EQUAL(0, run.call("ExitInitializationMode"));
+  for (std::size_t period = 0; period < own.periods(); ++period) {
+    if (own.reads_at(period)) {
+      const std::vector<double> expected = own.readings_at(period);
+      const std::vector<double> actual = run.got(fmu.references(own.outputs()));
+      MEMCMP_EQUAL(expected.data(), actual.data(), expected.size() * sizeof(double));
+    }
+    run.set(fmu.references(own.inputs), inputs_at(period));
+    LONGS_EQUAL(0, run.step(own.period * static_cast<double>(period), own.period));
+  }
+}
+
+}  // namespace
+
+TEST_GROUP(FmuText) { Scratch scratch; };
+
+TEST(FmuText, KeepsTheRulesOfTheStandards) {
+  LONGS_EQUAL(0, std::system(("/usr/bin/python3 " FMU_RULES + exported(scratch)).c_str()));
+}
+
+TEST(FmuText, TheRulesFindADescriptionThatBreaksOne) {
+  LONGS_EQUAL(0, std::system(("/usr/bin/python3 " FMU_RULES " --broken" + exported(scratch)).c_str()));
+}
+
+TEST(FmuText, ItsSourcesCompileAsTheBuildDescriptionSaysAndGiveTheSameBits) {
+  const Case own = case_of("simplex", 100);
+  Fmu fmu(scratch, own, 3);
+  fmu.build(
+      "cd sources && c++ -std=c++20 -O1 -ffp-contract=off -DFMI3_OVERRIDE_FUNCTION_PREFIX -fPIC -shared -I. fmu.cpp -o "
+      "../own.so",
+      "own.so");
+  check_run(fmu, own, 3);
+}
+
+TEST(FmuText, ItsSourcesAreAProjectOfCMakeAndGiveTheSameBits) {
+  const Case own = case_of("direct", 100);
+  Fmu fmu(scratch, own, 2);
+  fmu.build("cmake -S sources -B build -DCMAKE_CXX_FLAGS=-O1 >build.log && cmake --build build >>build.log",
+            "build/direct2.so");
+  check_run(fmu, own, 2);
+}
+
+TEST(FmuText, ItsSourcesHaveThePrefixOfTheModelForStaticLinking) {
+  const Case own = case_of("direct", 20);
+  const std::string folder = Fmu::unpacked(scratch.path(""), own, 2).string();
+  LONGS_EQUAL(0, std::system(("cd " + folder +
+                              "/sources && c++ -std=c++20 -O0 -c -I. fmu.cpp -o ../fmu.o && "
+                              "nm ../fmu.o | grep -q ' T direct2_fmi2DoStep' && ! nm ../fmu.o | grep -q ' T fmi2'")
+                                 .c_str()));
+}
+
+}  // namespace hotfire::test
