@@ -1,8 +1,8 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <string>
+#include <vector>
 
 #include "tests/explain/laws/transformation.hpp"
 
@@ -15,10 +15,17 @@ struct Value {
   std::string unit;
 };
 
+/// An effect as the finder reports it.
+struct Find {
+  std::string name;  ///< "unlisted" of a term without one
+  std::string law;   ///< of a term its form in words
+  std::string site;
+};
+
 /// What the finder says of what it was given.
 struct Answer {
   std::string verdict;
-  std::set<std::string> finds;          ///< "valve_asymmetry at valve", "unlisted gain of angle x angle at engine_torque"
+  std::vector<Find> finds;
   std::map<std::string, Value> values;  ///< "valve_asymmetry.asymmetry", "engine.inertia"
   std::string model;                    ///< as it is written
   double compared = 0.0;                ///< values that fits compare: rows by channels

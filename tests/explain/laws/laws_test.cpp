@@ -38,8 +38,8 @@ TEST(LawsOfTheFinder, TheCasesHaveTheirRightAnswers) {
       LONGS_EQUAL(0, answer.finds.size());
     } else {
       LONGS_EQUAL(1, answer.finds.size());
-      STRCMP_CONTAINS(law_case->found, answer.finds.begin()->c_str());
-      STRCMP_CONTAINS(law_case->site, answer.finds.begin()->c_str());
+      STRCMP_EQUAL(law_case->found, answer.finds.front().name.c_str());
+      STRCMP_EQUAL(law_case->site, answer.finds.front().site.c_str());
     }
     // Else a comparison in standard errors would be of nothing.
     for (const auto& [key, value] : answer.values) {

@@ -208,7 +208,10 @@ Given by_one_thread(Given given) {
 
 double sign_of_key(const std::string& key, const std::string&) { return is_odd(key) ? -1.0 : 1.0; }
 
-double factor_of_unit(const std::string&, const std::string& unit) { return study::factor_of(unit, study::kSmallAndFast); }
+/// The gain of a torque over the product of two angles is reported without its unit.
+double factor_of_unit(const std::string& key, const std::string& unit) {
+  return study::factor_of(key == "term_torque.gain" ? "N.m" : unit, study::kSmallAndFast);
+}
 
 }  // namespace
 
