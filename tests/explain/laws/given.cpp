@@ -47,7 +47,8 @@ Record recorded(const ModelFile& truth, const char* name, double seconds, double
   record.rows = static_cast<std::size_t>(std::lround(seconds / kPeriod));
   Channel command{"command", "rad", {}};
   for (std::size_t row = 0; row < record.rows; ++row) {
-    command.values.push_back(command_at(static_cast<double>(row / kHeldRows * kHeldRows) * kPeriod));
+    const std::size_t held_since = row - row % kHeldRows;
+    command.values.push_back(command_at(static_cast<double>(held_since) * kPeriod));
   }
   record.channels.push_back(std::move(command));
   const Record modelled = simulate(truth, record);

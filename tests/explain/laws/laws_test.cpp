@@ -68,7 +68,10 @@ TEST(LawsOfTheFinder, HalfTheRateTellsTheSameLessSurely) { holds_for_short_cases
 
 TEST(LawsOfTheFinder, TwiceTheNoiseTellsTheSameLessSurely) { holds_for_short_cases(kTwiceTheNoise); }
 
-TEST(LawsOfTheFinder, ASmallAndFastRigHasTheSimilarAnswer) { holds_for_short_cases(kSmallAndFastRig); }
+TEST(LawsOfTheFinder, ASmallAndFastRigHasTheSimilarAnswer) {
+  // A load and a stiffness start at sizes of the rig; what the other cases lack has none.
+  holds(kSmallAndFastRig, {&kListed, &kUnlisted, &kNull, &kSoft});
+}
 
 TEST(LawsOfTheFinder, OneThreadGivesTheBitsOfTwo) { holds_for_short_cases(kOneThread); }
 
