@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string_view>
 
 #include "model/actuator/axis.hpp"
 #include "model/effects.hpp"
+#include "model/numerics/step_size.hpp"
 
 namespace hotfire::model {
 
@@ -18,6 +22,19 @@ class Simplex : public Axis<S, List> {
   using Axis<S, List>::Axis;
   static constexpr std::string_view topology = "simplex";
   static constexpr int kPasses = 2;
+
+  /// The longest step [s] at these parameters: a fifth of a cycle of the piston on its oil and its load spring, 365 Hz on
+  /// the reference axis. What is not linear is held over a step.
+  static double longest_step(const typename Axis<S, List>::Parameters& parameters) noexcept {
+    constexpr double kStepsInCycle = 5.0;
+    constexpr double kShortestStep = 5e-6;  // s: bounds the steps of a real-time period
+    const auto& actuator = parameters.actuator;
+    const double area = value_of(actuator.piston_area);
+    const double oil = 4.0 * value_of(actuator.bulk_modulus) * area * area / value_of(actuator.trapped_volume);
+    const double spring = 1.0 / (1.0 / value_of(actuator.stiffness) + 1.0 / value_of(parameters.structure.stiffness));
+    const double cycle = 2.0 * std::numbers::pi * std::sqrt(value_of(actuator.piston_mass) / (oil + spring));
+    return std::clamp(cycle / kStepsInCycle, kShortestStep, kLongestStep);
+  }
 
   /// The steady state under a constant command [rad]: set-up only.
   State steady(const S& command) const { return this->settled(command, Uncoupled{}); }

@@ -121,8 +121,9 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
         "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command");
   }
   require_channel(inputs, "command", "the model is driven by it");
-  const int steps = model::steps_per_period(inputs.period);
-  const model::Simplex<double> plant(std::get<SimplexParameters>(model.parameters), inputs.period / steps);
+  const auto& parameters = std::get<SimplexParameters>(model.parameters);
+  const int steps = model::steps_per_period<model::Simplex<double>>(parameters, inputs.period);
+  const model::Simplex<double> plant(parameters, inputs.period / steps);
   return run_open_loop(plant, start_of(plant, inputs), inputs, steps);
 }
 

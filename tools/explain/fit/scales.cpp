@@ -2,8 +2,13 @@
 #include "tools/explain/fit/scales.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
+
+#include "tools/files/text/units.hpp"
 
 namespace hotfire::explain {
 
@@ -40,35 +45,39 @@ Scales scales_of(const Dataset& data) {
   return scales;
 }
 
+Scales scales_of(const SimplexParameters& declared) {
+  const SimplexParameters reference;
+  Scales scales;
+  scales.metre = reference.servovalve.position_gain / declared.servovalve.position_gain;
+  scales.second = servo_time(declared) / servo_time(reference);
+  scales.pascal = declared.actuator.supply_pressure / reference.actuator.supply_pressure;
+  return scales;
+}
+
+double servo_time(const SimplexParameters& declared) {
+  return declared.actuator.piston_area / (declared.servovalve.rated_flow * declared.servovalve.position_gain);
+}
+
 double size_of_unit(std::string_view unit, const Scales& scales) {
-  double size = 1.0;
-  double direction = 1.0;
-  while (!unit.empty()) {
-    const std::size_t end = std::min(unit.find_first_of("./"), unit.size());
-    std::string_view word = unit.substr(0, end);
-    double exponent = 1.0;
-    if (const std::size_t hat = word.find('^'); hat != std::string_view::npos) {
-      exponent = static_cast<double>(word[hat + 1] - '0');
-      word = word.substr(0, hat);
-    }
-    double base = 0.0;
-    if (word == "force") {
-      base = scales.force;
-    } else if (word == "position") {
-      base = scales.position;
-    } else if (word == "time") {
-      base = scales.time;
-    } else {
-      return 1.0;
-    }
-    size *= std::pow(base, direction * exponent);
-    if (end == unit.size()) {
-      break;
-    }
-    direction = unit[end] == '/' ? -1.0 : 1.0;
-    unit.remove_prefix(end + 1);
-  }
-  return size;
+  const double newton = scales.pascal * scales.metre * scales.metre;
+  const std::array<std::pair<std::string_view, double>, 10> sizes{
+      {{"force", scales.force},
+       {"position", scales.position},
+       {"time", scales.time},
+       {"m", scales.metre},
+       {"s", scales.second},
+       {"Hz", 1.0 / scales.second},
+       {"Pa", scales.pascal},
+       {"N", newton},
+       {"kg", newton * scales.second * scales.second / scales.metre},
+       {"rad", 1.0}}};
+  return unit_product(
+             unit,
+             [&](std::string_view word) -> std::optional<double> {
+               const auto found = std::ranges::find(sizes, word, [](const auto& size) { return size.first; });
+               return found != sizes.end() ? std::optional(found->second) : word == "1" ? std::optional(1.0) : std::nullopt;
+             })
+      .value_or(1.0);
 }
 
 }  // namespace hotfire::explain

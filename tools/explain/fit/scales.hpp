@@ -7,17 +7,28 @@
 
 namespace hotfire::explain {
 
-/// Sizes of the quantities in a record, by which a field whose unit follows the record's own is scaled.
+/// Sizes by which fields are scaled. Of `direct`, whose units follow the record's own: of the quantities in the record. Of a
+/// hydraulic axis: of the declared rig over those of the reference axis, for which fields have their typical values.
 struct Scales {
   double force = 1.0;
   double position = 1.0;
   double time = 1.0;
+  double metre = 1.0;
+  double second = 1.0;
+  double pascal = 1.0;
 };
 
 /// rms force, rms position about its mean, and rms position over rms velocity, of all experiments together. For `direct`.
 Scales scales_of(const Dataset& data);
 
-/// The size of a unit pattern such as "force.time/position^2"; 1 for any unit that is not made of these three words.
+/// Stroke of full opening 1 / K_e, the time A / (Q_r K_e) in which the servo makes it, and the supply pressure.
+Scales scales_of(const SimplexParameters& declared);
+
+/// Time constant of the position loop [s], A / (Q_r K_e).
+double servo_time(const SimplexParameters& declared);
+
+/// The size of a unit that is a product of powers of force, position, time, m, s, Hz, Pa, N, kg, rad and 1, such as
+/// "force.time/position^2"; 1 for any other.
 double size_of_unit(std::string_view unit, const Scales& scales);
 
 }  // namespace hotfire::explain

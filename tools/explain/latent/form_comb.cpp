@@ -17,6 +17,15 @@ using model::Site;
 constexpr int kCurvePoints = 11;
 /// Share of a quantity's values on either side that its curve's ends leave out.
 constexpr double kEnds = 5e-4;
+/// Ends of the combs of times and frequencies, in time constants of the servo: of the reference axis 0.1, 10 and 1 s, and 1
+/// to 30 Hz.
+constexpr double kLongestDelay = 1.7;
+constexpr double kLongestLag = 170.0;
+constexpr double kLongestWashout = 17.0;
+constexpr double kSlowestCycles = 0.059;
+constexpr double kFastestCycles = 1.77;
+/// Delays are told from their neighbours by an eighth of a period of the fastest that the axis does, 25 Hz.
+constexpr double kDelayStep = 0.085;
 /// Widths of stop operators, over the 99th percentile of the argument.
 constexpr std::array kStopWidths{0.05, 0.15, 0.35, 0.7};
 
@@ -129,17 +138,17 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
     set(form.memory);
     forms.push_back(std::move(form));
   };
-  // A delay is told from its neighbours by an eighth of a period of the fastest that the axis does, 25 Hz.
-  for (double time = 2.0 * period; time < 0.1; time += 5e-3) {
+  const double servo = regression.problem().scales.time;
+  for (double time = 2.0 * period; time < kLongestDelay * servo; time += kDelayStep * servo) {
     add(Memory::delay, [&](auto& memory) { memory.time = time; });
   }
-  for (const double time : comb(2.0 * period, 10.0, 10)) {
+  for (const double time : comb(2.0 * period, kLongestLag * servo, 10)) {
     add(Memory::lag, [&](auto& memory) { memory.time = time; });
   }
-  for (const double time : comb(2.0 * period, 1.0, 7)) {
+  for (const double time : comb(2.0 * period, kLongestWashout * servo, 7)) {
     add(Memory::washout, [&](auto& memory) { memory.time = time; });
   }
-  for (const double frequency : comb(1.0, 30.0, 12)) {
+  for (const double frequency : comb(kSlowestCycles / servo, kFastestCycles / servo, 12)) {
     for (const double damping : {0.15, 0.5}) {
       for (const Memory kind : {Memory::resonance, Memory::band_pass}) {
         add(kind, [&](auto& memory) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "tools/explain/data/measured_load.hpp"
+#include "tools/explain/fit/scales.hpp"
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/search/channel_check.hpp"
 #include "tools/explain/search/finalists.hpp"
@@ -29,6 +30,15 @@ constexpr double kRankingPeriod = 2e-3;
 template <class Family>
 constexpr bool kRankedCoarsely = !std::is_same_v<Family, DirectFamily>;
 
+template <class Family>
+Dataset for_ranking(const Dataset& data, const ModelFile& model) {
+  if constexpr (kRankedCoarsely<Family>) {
+    return thinned(data, kRankingPeriod * servo_time(std::get<PlainParameters<Family>>(model.parameters)));
+  } else {
+    return data;
+  }
+}
+
 /// The state of one search.
 template <class Family>
 class Search {
@@ -37,7 +47,7 @@ class Search {
       : data_(data),
         model_(model),
         options_(options),
-        thin_(kRankedCoarsely<Family> ? thinned(data, kRankingPeriod) : data),
+        thin_(for_ranking<Family>(data, model)),
         fine_(data, Resolution::fine),
         coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine,
                 kRankedCoarsely<Family> ? Resolution::rough : Resolution::fine),
@@ -48,6 +58,8 @@ class Search {
   SearchResult<Family> run() {
     if constexpr (std::is_same_v<Family, DirectFamily>) {
       scales_ = scales_of(data_);
+    } else {
+      scales_ = scales_of(std::get<PlainParameters<Family>>(model_.parameters));
     }
     Fitted<Family> start;
     start.base = std::get<PlainParameters<Family>>(model_.parameters);

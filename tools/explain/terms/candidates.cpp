@@ -63,9 +63,10 @@ void append_ordinates(const Parameters& base, const Candidate& candidate, const 
           parameter.index = index + static_cast<std::size_t>(i);
           parameter.key = "effects." + std::string(E::name) + "." + std::string(field.y_name) + "." + std::to_string(i);
           parameter.unit = field.y_unit;
-          parameter.unit_size = field.y_typical * size_of_unit(field.y_unit, scales);
-          parameter.lower = field.y_lower;
-          parameter.upper = field.y_upper;
+          const double size = size_of_unit(field.y_unit, scales);
+          parameter.unit_size = field.y_typical * size;
+          parameter.lower = field.y_lower * size;
+          parameter.upper = field.y_upper * size;
           parameter.prior_deviation = kOrdinatePrior;
           parameter.is_ordinate = true;
           free.push_back(std::move(parameter));
@@ -192,13 +193,14 @@ std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base
       parameter.index = index;
       parameter.key = "effects." + std::string(key.section) + "." + std::string(field.name);
       parameter.unit = field.unit;
-      parameter.unit_size = field.typical * size_of_unit(field.unit, scales);
-      parameter.lower = field.lower;
-      parameter.upper = field.upper;
+      const double size = size_of_unit(field.unit, scales);
+      parameter.unit_size = field.typical * size;
+      parameter.lower = field.lower * size;
+      parameter.upper = field.upper * size;
       if (model::searched_in_logarithms(field)) {
         parameter.scale = FreeParameter::Scale::logarithmic;
         // A logarithm needs a floor; a millionth of the typical value is neutral to any sensor.
-        parameter.lower = std::max(field.lower, 1e-6 * parameter.unit_size);
+        parameter.lower = std::max(parameter.lower, 1e-6 * parameter.unit_size);
         parameter.prior_center = std::log(parameter.unit_size);
         parameter.prior_deviation = kWeakPrior;
       }

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -146,5 +149,35 @@ double convert_unit(double value, const std::string& unit, const std::string& wa
 }
 
 void require_known_unit(const std::string& unit) { parse(unit); }
+
+std::optional<double> unit_product(std::string_view unit,
+                                   const std::function<std::optional<double>(std::string_view)>& factor_of_word) {
+  double product = 1.0;
+  std::size_t at = 0;
+  bool divides = false;
+  while (at <= unit.size()) {
+    const std::size_t end = std::min(unit.find_first_of("./", at), unit.size());
+    // A power may hold a point, "kg^-0.5": it ends where a letter or a slash follows.
+    std::size_t stop = end;
+    const std::size_t hat = unit.find('^', at);
+    double power = 1.0;
+    if (hat < end) {
+      const auto read = std::from_chars(unit.data() + hat + 1, unit.data() + unit.size(), power);
+      stop = static_cast<std::size_t>(read.ptr - unit.data());
+      stop -= unit[stop - 1] == '.' ? 1 : 0;  // "m^2.s"
+    }
+    const std::optional<double> factor = factor_of_word(unit.substr(at, std::min(hat, end) - at));
+    if (!factor) {
+      return std::nullopt;
+    }
+    product *= std::pow(*factor, divides ? -power : power);
+    if (stop >= unit.size()) {
+      break;
+    }
+    divides = unit[stop] == '/';
+    at = stop + 1;
+  }
+  return product;
+}
 
 }  // namespace hotfire

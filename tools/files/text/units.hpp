@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -45,6 +47,11 @@ class UnitConverter {
 
 /// `value` of `unit` in `wanted`. Throws UnitError.
 double convert_unit(double value, const std::string& unit, const std::string& wanted);
+
+/// The factor of a unit that is a product of powers of words, as the model's keys write it ("m^3/s/Pa", "kg^-0.5"), from the
+/// factors of its words; none where one of its words has none.
+std::optional<double> unit_product(std::string_view unit,
+                                   const std::function<std::optional<double>(std::string_view)>& factor_of_word);
 
 /// Throws UnitError unless UDUNITS-2 knows the unit.
 void require_known_unit(const std::string& unit);

@@ -3,17 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "tools/files/model/model_layout.hpp"
+#include "tools/files/text/units.hpp"
 
 namespace hotfire::study {
 namespace {
 
-double factor_of_base(std::string_view base, std::string_view unit, const Similarity& to) {
+std::optional<double> factor_of_base(std::string_view base, const Similarity& to) {
   const double force = to.pressure * to.length * to.length;
   if (base == "1" || base == "rad") {
     return 1.0;
@@ -36,7 +36,7 @@ double factor_of_base(std::string_view base, std::string_view unit, const Simila
   if (base == "kg") {
     return force * to.time * to.time / to.length;
   }
-  throw std::invalid_argument(fmt::format("unit \"{}\": \"{}\" has no scale", unit, base));
+  return std::nullopt;
 }
 
 void scale_group(const KeyGroup& group, const Similarity& to) {
@@ -56,29 +56,11 @@ void scale_group(const KeyGroup& group, const Similarity& to) {
 }  // namespace
 
 double factor_of(std::string_view unit, const Similarity& similarity) {
-  double factor = 1.0;
-  std::size_t at = 0;
-  bool divides = false;
-  while (at <= unit.size()) {
-    const std::size_t end = std::min(unit.find_first_of("./", at), unit.size());
-    // A power may hold a point, "kg^-0.5": it ends where a letter or a slash follows.
-    std::size_t stop = end;
-    const std::size_t hat = unit.find('^', at);
-    double power = 1.0;
-    if (hat < end) {
-      const auto read = std::from_chars(unit.data() + hat + 1, unit.data() + unit.size(), power);
-      stop = static_cast<std::size_t>(read.ptr - unit.data());
-      stop -= unit[stop - 1] == '.' ? 1 : 0;  // "m^2.s"
-    }
-    const std::string_view base = unit.substr(at, std::min(hat, end) - at);
-    factor *= std::pow(factor_of_base(base, unit, similarity), divides ? -power : power);
-    if (stop >= unit.size()) {
-      break;
-    }
-    divides = unit[stop] == '/';
-    at = stop + 1;
+  const auto factor = unit_product(unit, [&](std::string_view base) { return factor_of_base(base, similarity); });
+  if (!factor) {
+    throw std::invalid_argument(fmt::format("unit \"{}\" has no scale", unit));
   }
-  return factor;
+  return *factor;
 }
 
 ModelFile similar(ModelFile model, const Similarity& similarity) {

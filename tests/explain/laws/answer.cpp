@@ -1,0 +1,106 @@
+#include "tests/explain/laws/answer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <set>
+
+#include "tools/explain/explain.hpp"
+
+namespace hotfire::test {
+
+namespace {
+
+/// Of a two-sided interval of 95 %.
+constexpr double kErrorsInInterval = 2.0 * 1.959964;
+/// Two fits of other noise differ by more than this many standard errors of their difference once in 16,000.
+constexpr double kMostErrors = 4.0;
+/// A fit stops where a step takes less than this share off its cost.
+constexpr double kFitStops = 1e-5;
+
+Value value_of(const nlohmann::json& parameter) {
+  Value value{parameter.at("value").get<double>(), 0.0, parameter.at("unit").get<std::string>()};
+  if (const auto& interval = parameter.at("ci95"); !interval.is_null()) {
+    value.error = (interval[1].get<double>() - interval[0].get<double>()) / kErrorsInInterval;
+  }
+  return value;
+}
+
+/// Names and sites. With other noise or fewer rows a term without a name may be a gain in one answer and a curve in the
+/// other.
+std::set<std::string> finds_of(const Answer& answer, Told told) {
+  std::set<std::string> finds;
+  for (const Find& find : answer.finds) {
+    const bool says_law = told != Told::other || find.name != "unlisted";
+    finds.insert(fmt::format("{} {} at {}", find.name, says_law ? find.law : "", find.site));
+  }
+  return finds;
+}
+
+/// How far two answers may lie apart, in standard errors of both. A fit that stops at a share of its cost beside the best
+/// is off by the square root of twice that: the cost is half a chi-square over the values compared.
+double most_apart(Told told, const Answer& answer) {
+  return told == Told::other ? kMostErrors : std::sqrt(kFitStops * answer.compared);
+}
+
+}  // namespace
+
+Answer answer_of(const Given& given) {
+  explain::ExplainOptions options;
+  options.threads = given.threads;
+  const auto explanation = explain::explain(given.declared, given.records, options);
+  const nlohmann::json& report = explanation.report;
+  Answer answer;
+  answer.verdict = report.at("verdict");
+  answer.model = model_text(explanation.model);
+  for (const Record& record : given.records) {
+    answer.compared += 2.0 * static_cast<double>(record.rows);
+  }
+  for (const auto& effect : report.at("effects")) {
+    const std::string name = effect.at("name");
+    answer.finds.push_back({name, effect.value("law", ""), effect.at("site")});
+    for (const auto& [key, parameter] : effect.at("parameters").items()) {
+      answer.values[effect.value("key", name) + "." + key] = value_of(parameter);
+    }
+  }
+  for (const auto& [key, parameter] : report.at("calibration").items()) {
+    answer.values[key] = value_of(parameter);
+  }
+  return answer;
+}
+
+std::string broken(const Transformation& transformation, const Answer& original, const Answer& transformed) {
+  if (transformation.told == Told::same_bits) {
+    return original.model == transformed.model ? "" : "the explained model has other bits";
+  }
+  const auto finds = finds_of(original, transformation.told);
+  const auto other_finds = finds_of(transformed, transformation.told);
+  if (original.verdict != transformed.verdict || finds != other_finds) {
+    return fmt::format("{} {} became {} {}", original.verdict, finds, transformed.verdict, other_finds);
+  }
+  const bool same_laws = finds_of(original, Told::same) == finds_of(transformed, Told::same);
+  const double most = most_apart(transformation.told, original);
+  std::string text;
+  for (const auto& [key, value] : original.values) {
+    if (!transformed.values.contains(key)) {
+      text += !same_laws ? "" : fmt::format("{} is not there; ", key);
+      continue;
+    }
+    const double factor = transformation.factor == nullptr ? 1.0 : transformation.factor(key, value.unit);
+    const Value& other = transformed.values.at(key);
+    if ((value.error > 0.0) != (other.error > 0.0)) {
+      text += fmt::format("{} is determined in one of the two only; ", key);
+      continue;
+    }
+    const double error = std::hypot(value.error, other.error / factor);
+    const double apart = std::abs(other.value / factor - value.value);
+    if (error > 0.0 && !(apart <= most * error)) {
+      text += fmt::format("{}: {} became {}, {:.2f} standard errors apart, {:.2f} allowed; ", key, value.value,
+                          other.value / factor, apart / error, most);
+    }
+  }
+  return text;
+}
+
+}  // namespace hotfire::test
