@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Compares the instructions that a row takes in the functions of an FMU that set, step and get with those that it takes on the
 # same plant in C++, counted by VALGRIND's callgrind:
 #   cmake -D PROGRAM=... -D VALGRIND=... -D WORK=... -P fmu_cost.cmake

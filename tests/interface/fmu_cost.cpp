@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows of a record on a plant in C++ and through an FMU, for callgrind to count (fmu_cost.cmake); an FMU and `hotfire
 // simulate`, timed in turns:
 //   fmu_cost unpack FOLDER                          the FMUs of all topologies in both versions

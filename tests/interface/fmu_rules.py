@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks FMUs against the text of FMI 2.0.4 and FMI 3.0.2: fmu_rules.py FMU..., or fmu_rules.py --broken FMU...
 
 Prints a line for every broken rule. Exit 1 if there is one. With --broken it breaks each rule in a copy of the description of

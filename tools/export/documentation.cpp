@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/export/documentation.hpp"
 
 #include <fmt/format.h>

@@ -198,7 +198,7 @@ std::string build_description(const FmuIdentity& identity) {
     <SourceFileSet language="C++20" compilerOptions="-std=c++20 -O2 -ffp-contract=off">
       <SourceFile name="fmu.cpp"/>
       <PreprocessorDefinition name="FMI3_OVERRIDE_FUNCTION_PREFIX" optional="true"
-        description="For a shared library: the functions have the standard's names. Without it the model identifier stands before them."/>
+        description="For a shared library: the functions have the standard's names. Without it the model identifier is their prefix."/>
       <IncludeDirectory name="."/>
     </SourceFileSet>
     <Library name="stdc++" external="true" description="C++ standard library"/>

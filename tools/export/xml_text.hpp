@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -5,7 +6,7 @@
 
 namespace hotfire {
 
-/// A text as it stands in an attribute or an element of XML and HTML.
+/// A text, escaped for an attribute or an element of XML and HTML.
 inline std::string escaped(std::string_view text) {
   std::string result;
   for (const char letter : text) {

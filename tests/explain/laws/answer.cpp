@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/explain/laws/answer.hpp"
 
 #include <fmt/format.h>
@@ -29,10 +30,10 @@ Value value_of(const nlohmann::json& parameter) {
 
 /// Names and sites. With other noise or fewer rows a term without a name may be a gain in one answer and a curve in the
 /// other.
-std::set<std::string> finds_of(const Answer& answer, Told told) {
+std::set<std::string> finds_of(const Answer& answer, Agreement agreement) {
   std::set<std::string> finds;
   for (const Find& find : answer.finds) {
-    const bool says_law = told != Told::other || find.name != "unlisted";
+    const bool says_law = agreement != Agreement::other || find.name != "unlisted";
     finds.insert(fmt::format("{} {} at {}", find.name, says_law ? find.law : "", find.site));
   }
   return finds;
@@ -40,8 +41,8 @@ std::set<std::string> finds_of(const Answer& answer, Told told) {
 
 /// How far two answers may lie apart, in standard errors of both. A fit that stops at a share of its cost beside the best
 /// is off by the square root of twice that: the cost is half a chi-square over the values compared.
-double most_apart(Told told, const Answer& answer) {
-  return told == Told::other ? kMostErrors : std::sqrt(kFitStops * answer.compared);
+double most_apart(Agreement agreement, const Answer& answer) {
+  return agreement == Agreement::other ? kMostErrors : std::sqrt(kFitStops * answer.compared);
 }
 
 }  // namespace
@@ -71,16 +72,16 @@ Answer answer_of(const Given& given) {
 }
 
 std::string broken(const Transformation& transformation, const Answer& original, const Answer& transformed) {
-  if (transformation.told == Told::same_bits) {
+  if (transformation.agreement == Agreement::same_bits) {
     return original.model == transformed.model ? "" : "the explained model has other bits";
   }
-  const auto finds = finds_of(original, transformation.told);
-  const auto other_finds = finds_of(transformed, transformation.told);
+  const auto finds = finds_of(original, transformation.agreement);
+  const auto other_finds = finds_of(transformed, transformation.agreement);
   if (original.verdict != transformed.verdict || finds != other_finds) {
     return fmt::format("{} {} became {} {}", original.verdict, finds, transformed.verdict, other_finds);
   }
-  const bool same_laws = finds_of(original, Told::same) == finds_of(transformed, Told::same);
-  const double most = most_apart(transformation.told, original);
+  const bool same_laws = finds_of(original, Agreement::same) == finds_of(transformed, Agreement::same);
+  const double most = most_apart(transformation.agreement, original);
   std::string text;
   for (const auto& [key, value] : original.values) {
     if (!transformed.values.contains(key)) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <CppUTest/TestHarness.h>
 #include <fmt/format.h>
 
@@ -52,9 +53,9 @@ TEST(LawsOfTheFinder, FilesInOtherUnitsGiveTheSameAnswer) { holds_for_short_case
 
 TEST(LawsOfTheFinder, AMirroredRigHasTheMirroredAnswer) { holds_for_short_cases(kMirror); }
 
-TEST(LawsOfTheFinder, TheOrderOfTheRecordsIsOfNoMeaning) { holds_for_short_cases(kOtherOrder); }
+TEST(LawsOfTheFinder, TheOrderOfTheRecordsHasNoEffect) { holds_for_short_cases(kOtherOrder); }
 
-TEST(LawsOfTheFinder, ARecordCutInTwoTellsTheSame) { holds_for_short_cases(kCutInTwo); }
+TEST(LawsOfTheFinder, ARecordCutInTwoGivesTheSameAnswer) { holds_for_short_cases(kCutInTwo); }
 
 TEST(LawsOfTheFinder, AClockThatStartsLaterGivesTheSameAnswer) { holds_for_short_cases(kLater); }
 
@@ -62,14 +63,14 @@ TEST(LawsOfTheFinder, AClockThatCountsSinceTheEpochGivesTheSameAnswer) { holds_f
 
 TEST(LawsOfTheFinder, AChannelThatTheModelDoesNotHaveChangesNoBit) { holds_for_short_cases(kUnusedChannel); }
 
-TEST(LawsOfTheFinder, AChannelOfNoiseAloneTellsNothing) { holds_for_short_cases(kDeafChannel); }
+TEST(LawsOfTheFinder, AChannelOfNoiseAloneChangesNoAnswer) { holds_for_short_cases(kDeafChannel); }
 
-TEST(LawsOfTheFinder, HalfTheRateTellsTheSameLessSurely) { holds_for_short_cases(kHalfTheRate); }
+TEST(LawsOfTheFinder, HalfTheRateGivesTheSameAnswerWithLargerErrors) { holds_for_short_cases(kHalfTheRate); }
 
-TEST(LawsOfTheFinder, TwiceTheNoiseTellsTheSameLessSurely) { holds_for_short_cases(kTwiceTheNoise); }
+TEST(LawsOfTheFinder, TwiceTheNoiseGivesTheSameAnswerWithLargerErrors) { holds_for_short_cases(kTwiceTheNoise); }
 
 TEST(LawsOfTheFinder, ASmallAndFastRigHasTheSimilarAnswer) {
-  // A load and a stiffness start at sizes of the rig; what the other cases lack has none.
+  // A load and a stiffness start at sizes of the rig; the effects of the other cases have none.
   holds(kSmallAndFastRig, {&kListed, &kUnlisted, &kNull, &kSoft});
 }
 

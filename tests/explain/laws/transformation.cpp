@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/explain/laws/transformation.hpp"
 
 #include <fmt/format.h>
@@ -215,17 +216,17 @@ double factor_of_unit(const std::string& key, const std::string& unit) {
 
 }  // namespace
 
-const Transformation kOtherUnits{"other units", in_everyday_units, Told::same, nullptr};
-const Transformation kMirror{"mirror", mirrored, Told::same, sign_of_key};
-const Transformation kOtherOrder{"other order", in_other_order, Told::same, nullptr};
-const Transformation kCutInTwo{"cut in two", cut_in_two, Told::other, nullptr};
-const Transformation kLater{"1000 s later", later, Told::same, nullptr};
-const Transformation kSinceEpoch{"since the epoch", since_epoch, Told::same, nullptr};
-const Transformation kUnusedChannel{"unused channel", with_unused_channel, Told::same_bits, nullptr};
-const Transformation kDeafChannel{"deaf channel", with_deaf_channel, Told::same, nullptr};
-const Transformation kHalfTheRate{"half the rate", at_half_the_rate, Told::other, nullptr};
-const Transformation kTwiceTheNoise{"twice the noise", with_twice_the_noise, Told::other, nullptr};
-const Transformation kSmallAndFastRig{"small and fast", on_small_and_fast_rig, Told::same, factor_of_unit};
-const Transformation kOneThread{"one thread", by_one_thread, Told::same_bits, nullptr};
+const Transformation kOtherUnits{"other units", in_everyday_units, Agreement::same, nullptr};
+const Transformation kMirror{"mirror", mirrored, Agreement::same, sign_of_key};
+const Transformation kOtherOrder{"other order", in_other_order, Agreement::same, nullptr};
+const Transformation kCutInTwo{"cut in two", cut_in_two, Agreement::other, nullptr};
+const Transformation kLater{"1000 s later", later, Agreement::same, nullptr};
+const Transformation kSinceEpoch{"since the epoch", since_epoch, Agreement::same, nullptr};
+const Transformation kUnusedChannel{"unused channel", with_unused_channel, Agreement::same_bits, nullptr};
+const Transformation kDeafChannel{"deaf channel", with_deaf_channel, Agreement::same, nullptr};
+const Transformation kHalfTheRate{"half the rate", at_half_the_rate, Agreement::other, nullptr};
+const Transformation kTwiceTheNoise{"twice the noise", with_twice_the_noise, Agreement::other, nullptr};
+const Transformation kSmallAndFastRig{"small and fast", on_small_and_fast_rig, Agreement::same, factor_of_unit};
+const Transformation kOneThread{"one thread", by_one_thread, Agreement::same_bits, nullptr};
 
 }  // namespace hotfire::test

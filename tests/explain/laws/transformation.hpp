@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -7,8 +8,8 @@
 
 namespace hotfire::test {
 
-/// How much of what the finder is told is the same after a transformation.
-enum class Told {
+/// How closely the answer agrees with the original after a transformation.
+enum class Agreement {
   same_bits,  ///< every bit of it
   same,       ///< all of it, to rounding: two fits of it differ by what a fit leaves when it stops
   other       ///< other noise, or fewer rows: two fits of it differ by their standard errors
@@ -18,7 +19,7 @@ enum class Told {
 struct Transformation {
   const char* name;
   Given (*apply)(Given);
-  Told told;
+  Agreement agreement;
   /// What a parameter of a unit is multiplied by; null: one.
   double (*factor)(const std::string& key, const std::string& unit);
 };

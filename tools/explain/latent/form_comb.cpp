@@ -24,7 +24,7 @@ constexpr double kLongestLag = 170.0;
 constexpr double kLongestWashout = 17.0;
 constexpr double kSlowestCycles = 0.059;
 constexpr double kFastestCycles = 1.77;
-/// Delays are told from their neighbours by an eighth of a period of the fastest that the axis does, 25 Hz.
+/// The record separates two delays that differ by an eighth of a period of the fastest that the axis does, 25 Hz.
 constexpr double kDelayStep = 0.085;
 /// Widths of stop operators, over the 99th percentile of the argument.
 constexpr std::array kStopWidths{0.05, 0.15, 0.35, 0.7};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cstddef>
 
 #include "tools/interface/c/model_handle.hpp"
@@ -7,7 +8,7 @@ namespace hotfire::fmu {
 
 namespace {
 
-constexpr const char* kMissing = "an argument is missing: a null pointer stands for no values";
+constexpr const char* kMissing = "an argument is missing: a null pointer is valid only for no values";
 
 template <class T>
 bool is_missing(std::span<T> values) noexcept {
