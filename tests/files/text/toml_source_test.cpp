@@ -68,6 +68,14 @@ TEST(TomlSource, letter_beyond_ascii_is_refused_but_in_strings_and_comments) {
   STRCMP_EQUAL("", refused("\xef\xbb\xbfx = 1\n").c_str());
 }
 
+TEST(TomlSource, quote_inside_of_a_word_begins_no_string_and_is_refused) {
+  // The parser reads on behind the quote and meets a letter that its table does not have.
+  expect_message(refused("schema = 1\ntopology = 11'1\u033e1'\n"), {"m.toml:2: a quote inside of a key or a number"});
+  expect_message(refused("x = 1\"\u033e\"\n"), {"m.toml:1: a quote inside"});
+  expect_message(refused("a'b' = 1\n"), {"m.toml:1: a quote inside"});
+  STRCMP_EQUAL("", refused("x=['a',\"b\"]\ny={'k'='v'}\na.'b'='c'#'\n").c_str());
+}
+
 TEST(TomlSource, file_of_over_a_megabyte_and_one_without_end_are_refused) {
   expect_message(refused(std::string((1U << 20U) + 1, '\n')), {"m.toml:1: over 1048576 bytes"});
   expect_message(refusal([] { TomlSource("/dev/zero"); }), {"/dev/zero:1: over 1048576 bytes"});

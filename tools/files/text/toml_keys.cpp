@@ -82,6 +82,10 @@ KeyFault key_fault_of(std::string_view text) {
       if (is_foreign(text, at, end)) {
         return fault(KeyFault::Kind::foreign_letter, at);
       }
+      // The parser takes it for a part of the word, and what follows for no string: what is not looked at there.
+      if (end < text.size() && (text[end] == '"' || text[end] == '\'')) {
+        return fault(KeyFault::Kind::quote_in_word, end);
+      }
       at = end;
     }
   }

@@ -15,8 +15,9 @@ inline constexpr std::size_t kMostKeyParts = 16;
 struct KeyFault {
   enum class Kind {
     none,
-    long_key,       ///< a key has more than `kMostKeyParts` parts
-    foreign_letter  ///< a letter beyond ASCII is outside of strings and comments, where TOML 1.0.0 has none
+    long_key,        ///< a key has more than `kMostKeyParts` parts
+    foreign_letter,  ///< a letter beyond ASCII is outside of strings and comments, where TOML 1.0.0 has none
+    quote_in_word    ///< a quote is behind a letter of a key or a number, where TOML 1.0.0 begins no string
   };
   Kind kind = Kind::none;
   std::size_t line = 0;  ///< from 1

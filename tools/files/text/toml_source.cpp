@@ -88,6 +88,18 @@ bool parse_quantity(std::string_view text, Quantity& quantity) {
   return true;
 }
 
+std::string what_is_wrong(KeyFault::Kind kind) {
+  switch (kind) {
+    case KeyFault::Kind::long_key:
+      return fmt::format("a key of more than {} parts; allowed: up to {}, as in limits.command_rate", kMostKeyParts,
+                         kMostKeyParts);
+    case KeyFault::Kind::quote_in_word:
+      return "a quote inside of a key or a number; a string begins behind =, a comma, a bracket or a space";
+    default:
+      return "a letter beyond ASCII outside of a string or a comment; put it in quotes or remove it";
+  }
+}
+
 /// How a wanted unit is called in a message.
 std::string wanted_unit(std::string_view unit) {
   return unit.empty()           ? "a bare number in the record's own units"
@@ -103,11 +115,7 @@ TomlSource::TomlSource(const std::filesystem::path& path) : TomlSource(path, rea
 TomlSource::TomlSource(std::filesystem::path path, std::string content)
     : path_(std::move(path)), content_(std::move(content)), lines_(split_lines(content_)) {
   if (const KeyFault fault = key_fault_of(content_); fault.kind != KeyFault::Kind::none) {
-    refuse_at({static_cast<toml::source_index>(fault.line), 0},
-              fault.kind == KeyFault::Kind::long_key
-                  ? fmt::format("a key of more than {} parts; allowed: up to {}, as in limits.command_rate", kMostKeyParts,
-                                kMostKeyParts)
-                  : std::string("a letter beyond ASCII outside of a string or a comment; put it in quotes or remove it"));
+    refuse_at({static_cast<toml::source_index>(fault.line), 0}, what_is_wrong(fault.kind));
   }
   try {
     root_ = toml::parse(std::string_view{content_}, path_.string());
