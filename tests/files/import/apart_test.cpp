@@ -14,12 +14,12 @@ namespace hotfire {
 
 namespace {
 
-constexpr ApartLimits kLimits{1024, 1, 1 << 20};
+constexpr ApartLimits kLimits{1024, 1, 60, 1 << 20};
 
 /// Why the work gave no result.
-std::string failure(const std::function<std::string()>& work) {
+std::string failure(const std::function<std::string()>& work, const ApartLimits& limits = kLimits) {
   try {
-    run_apart(work, kLimits);
+    run_apart(work, limits);
   } catch (const ApartError& error) {
     return error.what();
   }
@@ -54,6 +54,12 @@ TEST(Apart, work_without_end_and_a_result_too_large_are_ended_at_their_limits) {
                                        i = i ^ 1;
                                      }
                                    }).c_str());
+  const auto wait = []() -> std::string {
+    for (;;) {
+      pause();
+    }
+  };
+  STRCMP_CONTAINS("has not ended after 1 s", failure(wait, {1024, 60, 1, 1}).c_str());
   STRCMP_CONTAINS("more than 1048576 bytes", failure([] { return std::string((1 << 20) + 1, 'x'); }).c_str());
 #ifndef __SANITIZE_ADDRESS__
   STRCMP_CONTAINS("more than 1024 MiB", failure([]() -> std::string {

@@ -76,6 +76,13 @@ TEST(TomlSource, quote_inside_of_a_word_begins_no_string_and_is_refused) {
   STRCMP_EQUAL("", refused("x=['a',\"b\"]\ny={'k'='v'}\na.'b'='c'#'\n").c_str());
 }
 
+TEST(TomlSource, letter_beyond_ascii_behind_a_backslash_is_refused) {
+  expect_message(refused("x = 1\ny = \"\"\"a\\\ufbff\"\"\"\n"), {"m.toml:2: a letter beyond ASCII behind a backslash"});
+  expect_message(refused("y = \"\"\"a\\  \n  \u00e4\"\"\"\n"), {"m.toml:2: a letter beyond ASCII behind a backslash"});
+  expect_message(refused("y = \"a\\\u00e4\"\n"), {"m.toml:1: a letter beyond ASCII behind a backslash"});
+  STRCMP_EQUAL("", refused("x = \"\"\"\\\\\u00e4\\\n  a\u00e4\"\"\"\ny = '\\\u00e4'\n").c_str());
+}
+
 TEST(TomlSource, file_of_over_a_megabyte_and_one_without_end_are_refused) {
   expect_message(refused(std::string((1U << 20U) + 1, '\n')), {"m.toml:1: over 1048576 bytes"});
   expect_message(refusal([] { TomlSource("/dev/zero"); }), {"/dev/zero:1: over 1048576 bytes"});

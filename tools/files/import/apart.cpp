@@ -3,13 +3,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <string_view>
 #include <system_error>
@@ -24,6 +28,16 @@ namespace {
 constexpr char kResult = 'r';
 constexpr char kRefusal = 'f';
 constexpr char kFailure = 'e';
+
+// The address sanitizer maps terabytes, more than any limit on addresses allows: g++ says by a macro that it is there,
+// clang++ by a feature.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kAddressesAreSanitized = true;
+#elif defined(__has_feature)
+constexpr bool kAddressesAreSanitized = __has_feature(address_sanitizer);
+#else
+constexpr bool kAddressesAreSanitized = false;
+#endif
 
 void limit(int resource, std::size_t most) {
   const rlimit both{most, most};
@@ -51,9 +65,9 @@ void say(int pipe, char kind, std::string_view text) {
   dup2(nowhere, STDERR_FILENO);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.processor_seconds);
-#ifndef __SANITIZE_ADDRESS__
-  limit(RLIMIT_AS, limits.memory_mib << 20U);
-#endif
+  if (!kAddressesAreSanitized) {
+    limit(RLIMIT_AS, limits.memory_mib << 20U);
+  }
   try {
     say(pipe, kResult, work());
   } catch (const FileError& error) {
@@ -66,22 +80,29 @@ void say(int pipe, char kind, std::string_view text) {
   _exit(0);
 }
 
-/// All that the child says, up to the limit.
-std::string heard(int pipe, std::size_t most, bool& too_much) {
-  std::string text;
+enum class Ended { said_all, too_much, too_late };
+
+/// All that the child says, up to the limits.
+Ended hear(int pipe, const ApartLimits& limits, std::string& text) {
+  const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(limits.seconds);
   std::array<char, 1 << 16> piece{};
   for (;;) {
-    const ssize_t got = read(pipe, piece.data(), piece.size());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(latest - std::chrono::steady_clock::now());
+    pollfd readable{pipe, POLLIN, 0};
+    const int ready = poll(&readable, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+    if (ready == 0) {
+      return Ended::too_late;
+    }
+    const ssize_t got = ready < 0 ? -1 : read(pipe, piece.data(), piece.size());
     if (got < 0 && errno == EINTR) {
       continue;
     }
     if (got <= 0) {
-      return text;
+      return Ended::said_all;
     }
     text.append(piece.data(), static_cast<std::size_t>(got));
-    too_much = text.size() > most + 1;
-    if (too_much) {
-      return text;
+    if (text.size() > limits.result_bytes + 1) {
+      return Ended::too_much;
     }
   }
 }
@@ -115,16 +136,19 @@ std::string run_apart(const std::function<std::string()>& work, const ApartLimit
     be_the_child(work, limits, pipe[1]);
   }
   close(pipe[1]);
-  bool too_much = false;
-  std::string said = heard(pipe[0], limits.result_bytes, too_much);
+  std::string said;
+  const Ended ended = hear(pipe[0], limits, said);
   close(pipe[0]);
-  if (too_much) {
+  if (ended != Ended::said_all) {
     kill(child, SIGKILL);
   }
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (too_much) {
+  if (ended == Ended::too_late) {
+    throw ApartError(fmt::format("its reader has not ended after {} s", limits.seconds));
+  }
+  if (ended == Ended::too_much) {
     throw ApartError(fmt::format("it holds more than {} bytes", limits.result_bytes));
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || said.empty()) {

@@ -12,6 +12,7 @@ namespace hotfire {
 struct ApartLimits {
   std::size_t memory_mib = 0;         ///< address space
   std::size_t processor_seconds = 0;  ///< user and system together
+  std::size_t seconds = 0;            ///< until all of the result is there: of work that waits and takes no processor
   std::size_t result_bytes = 0;
 };
 

@@ -41,6 +41,21 @@ std::size_t behind_long_string(std::string_view text, std::size_t at) {
   return text.size();
 }
 
+/// Where in a string with escapes a letter beyond ASCII is behind a backslash, at once or behind spaces and ends of lines;
+/// npos: nowhere.
+std::size_t escaped_foreign_letter(std::string_view text, std::size_t at, std::size_t end) {
+  for (; at < end; ++at) {
+    if (text[at] == '\\') {
+      const std::size_t next = std::min(text.find_first_not_of(" \t\r\n", at + 1), end);
+      if (next<end&& static_cast<unsigned char>(text[next])> 127) {
+        return next;
+      }
+      ++at;
+    }
+  }
+  return std::string_view::npos;
+}
+
 }  // namespace
 
 KeyFault key_fault_of(std::string_view text) {
@@ -63,7 +78,12 @@ KeyFault key_fault_of(std::string_view text) {
         return fault(KeyFault::Kind::long_key, at);
       }
       const bool is_long = text.substr(at).starts_with(letter == '"' ? "\"\"\"" : "'''");
-      at = is_long ? behind_long_string(text, at) : behind_string(text, at);
+      const std::size_t end = is_long ? behind_long_string(text, at) : behind_string(text, at);
+      const std::size_t foreign = letter == '"' ? escaped_foreign_letter(text, at, end) : std::string_view::npos;
+      if (foreign != std::string_view::npos) {
+        return fault(KeyFault::Kind::escaped_letter, foreign);
+      }
+      at = end;
     } else if (letter == '#') {
       at = std::min(text.find('\n', at), text.size());
     } else if (letter == '.') {

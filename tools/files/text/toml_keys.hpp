@@ -17,6 +17,7 @@ struct KeyFault {
     none,
     long_key,        ///< a key has more than `kMostKeyParts` parts
     foreign_letter,  ///< a letter beyond ASCII is outside of strings and comments, where TOML 1.0.0 has none
+    escaped_letter,  ///< a letter beyond ASCII is behind a backslash, or first behind a line that ends with one
     quote_in_word    ///< a quote is behind a letter of a key or a number, where TOML 1.0.0 begins no string
   };
   Kind kind = Kind::none;

@@ -95,6 +95,8 @@ std::string what_is_wrong(KeyFault::Kind kind) {
                          kMostKeyParts);
     case KeyFault::Kind::quote_in_word:
       return "a quote inside of a key or a number; a string begins behind =, a comma, a bracket or a space";
+    case KeyFault::Kind::escaped_letter:
+      return "a letter beyond ASCII behind a backslash; remove the backslash, or begin the line with another letter";
     default:
       return "a letter beyond ASCII outside of a string or a comment; put it in quotes or remove it";
   }
