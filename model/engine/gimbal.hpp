@@ -104,7 +104,7 @@ struct BearingFriction {
     };
     const S first = speed_under(torque_at(guess));
     const S second = speed_under(torque_at(first));
-    const Pair<S> torque = torque_at(extrapolated_speed<S>(guess, first, second));
+    Pair<S> torque = torque_at(extrapolated_speed<S>(guess, first, second));
     deflection = power * end;
     return torque;
   }

@@ -35,8 +35,8 @@ double left_of(const Experiment& experiment, const std::vector<std::vector<doubl
 /// The channel itself, by frequency.
 std::vector<Band> signal_by_frequency(const Dataset& data, const Prediction& like, std::size_t channel) {
   Prediction nothing = like;
-  for (std::size_t e = 0; e < nothing.size(); ++e) {
-    std::ranges::fill(nothing[e][channel], 0.0);
+  for (auto& experiment : nothing) {
+    std::ranges::fill(experiment[channel], 0.0);
   }
   return error_by_frequency(data, nothing, channel);
 }

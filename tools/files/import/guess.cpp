@@ -179,24 +179,34 @@ std::string range_of(const Column& column) {
   return fmt::format("{:.4g} to {:.4g}", low, high);
 }
 
-}  // namespace
-
-std::string guessed_map(const std::filesystem::path& source) {
+/// The first lines of a file.
+std::vector<std::string> first_lines(const std::filesystem::path& source) {
   CsvLines reader(source);
   std::vector<std::string> lines;
   for (std::string_view line; lines.size() < kLines && reader.next(line);) {
     lines.emplace_back(line);
   }
+  return lines;
+}
+
+/// The first header that this delimiter gives.
+std::optional<Layout> layout_by(const std::vector<std::string>& lines, char delimiter) {
+  constexpr std::size_t kLatestHeader = 100;
+  for (std::size_t at = 0; at + 1 < std::min(lines.size(), kLatestHeader); ++at) {
+    if (auto layout = layout_below(lines, at, delimiter)) {
+      return layout;
+    }
+  }
+  return std::nullopt;
+}
+
+/// The layout with the most columns of numbers.
+Layout layout_of(const std::vector<std::string>& lines, const std::filesystem::path& source) {
   std::optional<Layout> best;
   for (const char delimiter : {',', ';', '\t'}) {
-    constexpr std::size_t kLatestHeader = 100;
-    for (std::size_t at = 0; at + 1 < std::min(lines.size(), kLatestHeader); ++at) {
-      if (auto layout = layout_below(lines, at, delimiter)) {
-        if (!best || layout->numeric() > best->numeric()) {
-          best = std::move(layout);
-        }
-        break;
-      }
+    auto layout = layout_by(lines, delimiter);
+    if (layout && (!best || layout->numeric() > best->numeric())) {
+      best = std::move(layout);
     }
   }
   if (!best) {
@@ -204,54 +214,90 @@ std::string guessed_map(const std::filesystem::path& source) {
         "{}: no line of names above rows of numbers, cut by \",\", \";\" or a tab; write a map by hand (docs/contract.md)",
         source.string()));
   }
+  return std::move(*best);
+}
+
+std::string time_section(const Column& column) {
+  const std::string unit = column.unit();
+  return fmt::format("[time]\ncolumn = \"{}\"\nunit = \"{}\"{}\n", column.name, unit.empty() ? "s" : unit,
+                     unit.empty() ? "                      # a guess" : "");
+}
+
+/// A section of a channel; a comment, unless the name says which channel and the unit is known.
+std::string channel_section(const Column& column, const std::string& channel) {
+  const std::string unit = column.unit();
+  const char* mark = channel.empty() || unit.empty() ? "# " : "";
+  return fmt::format("{}[channels.{}]\n{}column = \"{}\"              # {}\n{}unit = \"{}\"\n", mark,
+                     channel.empty() ? "NAME" : channel, mark, column.name, range_of(column), mark,
+                     unit.empty() ? "?" : unit);
+}
+
+/// What the columns are: sections of time and of channels.
+struct Sections {
   std::string time;
   std::string channels;
+};
+
+Sections sections_of(const std::vector<Column>& columns) {
+  Sections sections;
   std::vector<std::string> taken;
-  for (const Column& column : best->columns) {
+  for (const Column& column : columns) {
     if (!column.is_numeric()) {
       continue;
     }
     const std::string name = lower(column.name);
     const bool counts = has_word(name, {"sample", "index", "number", "no.", "row"}) || name == "no" || name == "n";
-    if (rises_evenly(column.values) && (counts || time.empty())) {
+    if (rises_evenly(column.values) && (counts || sections.time.empty())) {
       if (!counts) {
-        const std::string unit = column.unit();
-        time = fmt::format("[time]\ncolumn = \"{}\"\nunit = \"{}\"{}\n", column.name, unit.empty() ? "s" : unit,
-                           unit.empty() ? "                      # a guess" : "");
+        sections.time = time_section(column);
       }
       continue;
     }
-    const std::string channel = channel_of(column.name);
-    const bool is_new = !channel.empty() && std::ranges::find(taken, channel) == taken.end();
-    const std::string unit = column.unit();
-    const std::string mark = is_new && !unit.empty() ? "" : "# ";
-    channels += fmt::format("{}[channels.{}]\n{}column = \"{}\"              # {}\n{}unit = \"{}\"\n", mark,
-                            is_new ? channel : "NAME", mark, column.name, range_of(column), mark, unit.empty() ? "?" : unit);
-    if (is_new) {
+    std::string channel = channel_of(column.name);
+    if (std::ranges::find(taken, channel) != taken.end()) {
+      channel.clear();
+    }
+    sections.channels += channel_section(column, channel);
+    if (!channel.empty()) {
       taken.push_back(channel);
     }
   }
+  return sections;
+}
+
+/// How the file is cut, where that is not as by default.
+std::string csv_section(const Layout& layout) {
+  if (layout.delimiter == ',' && layout.header == 0 && !layout.has_events) {
+    return "";
+  }
+  std::string text = "[csv]\n";
+  if (layout.delimiter != ',') {
+    text += fmt::format("delimiter = \"{}\"\n", layout.delimiter == '\t' ? "\\t" : std::string(1, layout.delimiter));
+  }
+  if (layout.header > 0) {
+    text += fmt::format("skip_lines = {}\n", layout.header);
+  }
+  if (layout.has_events) {
+    text += fmt::format("events = \"{}\"\n", layout.columns.back().name);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string guessed_map(const std::filesystem::path& source) {
+  const std::vector<std::string> lines = first_lines(source);
+  const Layout layout = layout_of(lines, source);
+  const Sections sections = sections_of(layout.columns);
   std::string text =
       fmt::format("# A proposal for {}: check every unit, sign and scale, and the zero of every channel.\nschema = 1\n",
                   source.filename().string());
-  if (time.empty()) {
-    text += period_by({lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(best->header)});
+  if (sections.time.empty()) {
+    text += period_by({lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(layout.header)});
   }
-  text += time;
-  if (best->delimiter != ',' || best->header > 0 || best->has_events) {
-    text += "[csv]\n";
-    if (best->delimiter != ',') {
-      text += fmt::format("delimiter = \"{}\"\n", best->delimiter == '\t' ? "\\t" : std::string(1, best->delimiter));
-    }
-    if (best->header > 0) {
-      text += fmt::format("skip_lines = {}\n", best->header);
-    }
-    if (best->has_events) {
-      text += fmt::format("events = \"{}\"\n", best->columns.back().name);
-    }
-  }
+  text += sections.time + csv_section(layout);
   text += "# A channel is one of command, current, piston, engine, load_pressure, torque, force, position.\n";
-  return text + channels;
+  return text + sections.channels;
 }
 
 }  // namespace hotfire

@@ -56,60 +56,90 @@ std::size_t escaped_foreign_letter(std::string_view text, std::size_t at, std::s
   return std::string_view::npos;
 }
 
-}  // namespace
+/// Walks a text by strings, words and breaks, and counts the parts of the key under way.
+class KeyWalk {
+ public:
+  explicit KeyWalk(std::string_view text) : text_(text) {}
 
-KeyFault key_fault_of(std::string_view text) {
-  std::size_t parts = 0;
-  bool joined = false;  // the last thing was a point, which joins what follows to the key
-  const auto part = [&] {
-    parts = joined ? parts + 1 : 1;
-    joined = false;
-    return parts > kMostKeyParts;
-  };
-  const auto fault = [&](KeyFault::Kind kind, std::size_t at) {
-    const auto ends = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    return KeyFault{kind, 1 + static_cast<std::size_t>(ends)};
-  };
-  constexpr std::string_view kBreaks = "=,[]{}\n#\"'. \t";
-  for (std::size_t at = 0; at < text.size();) {
-    const char letter = text[at];
-    if (letter == '"' || letter == '\'') {
-      if (part()) {
-        return fault(KeyFault::Kind::long_key, at);
+  KeyFault first_fault() {
+    constexpr std::string_view kBreaks = "=,[]{}\n#\"'. \t";
+    while (at_ < text_.size() && fault_.kind == KeyFault::Kind::none) {
+      const char letter = text_[at_];
+      if (letter == '"' || letter == '\'') {
+        take_string(letter);
+      } else if (kBreaks.find(letter) == std::string_view::npos) {
+        take_word(std::min(text_.find_first_of(kBreaks, at_), text_.size()));
+      } else {
+        take_break(letter);
       }
-      const bool is_long = text.substr(at).starts_with(letter == '"' ? "\"\"\"" : "'''");
-      const std::size_t end = is_long ? behind_long_string(text, at) : behind_string(text, at);
-      const std::size_t foreign = letter == '"' ? escaped_foreign_letter(text, at, end) : std::string_view::npos;
+    }
+    return fault_;
+  }
+
+ private:
+  void take_string(char quote) {
+    count_part();
+    const bool is_long = text_.substr(at_).starts_with(quote == '"' ? "\"\"\"" : "'''");
+    const std::size_t end = is_long ? behind_long_string(text_, at_) : behind_string(text_, at_);
+    if (quote == '"') {
+      const std::size_t foreign = escaped_foreign_letter(text_, at_, end);
       if (foreign != std::string_view::npos) {
-        return fault(KeyFault::Kind::escaped_letter, foreign);
+        fail(KeyFault::Kind::escaped_letter, foreign);
       }
-      at = end;
-    } else if (letter == '#') {
-      at = std::min(text.find('\n', at), text.size());
-    } else if (letter == '.') {
-      joined = true;
-      ++at;
-    } else if (letter == ' ' || letter == '\t') {
-      ++at;
-    } else if (kBreaks.find(letter) != std::string_view::npos) {
-      joined = false;
-      ++at;
-    } else {
-      if (part()) {
-        return fault(KeyFault::Kind::long_key, at);
-      }
-      const std::size_t end = std::min(text.find_first_of(kBreaks, at), text.size());
-      if (is_foreign(text, at, end)) {
-        return fault(KeyFault::Kind::foreign_letter, at);
-      }
-      // The parser takes it for a part of the word, and what follows for no string: what is not looked at there.
-      if (end < text.size() && (text[end] == '"' || text[end] == '\'')) {
-        return fault(KeyFault::Kind::quote_in_word, end);
-      }
-      at = end;
+    }
+    at_ = end;
+  }
+
+  void take_word(std::size_t end) {
+    count_part();
+    if (is_foreign(text_, at_, end)) {
+      fail(KeyFault::Kind::foreign_letter, at_);
+    }
+    // The parser takes a quote here for a part of the word, and what follows for no string: what is not looked at there.
+    if (end < text_.size() && (text_[end] == '"' || text_[end] == '\'')) {
+      fail(KeyFault::Kind::quote_in_word, end);
+    }
+    at_ = end;
+  }
+
+  void take_break(char letter) {
+    if (letter == '#') {
+      at_ = std::min(text_.find('\n', at_), text_.size());
+      return;
+    }
+    if (letter == '.') {
+      joined_ = true;
+    } else if (letter != ' ' && letter != '\t') {
+      joined_ = false;
+    }
+    ++at_;
+  }
+
+  void count_part() {
+    parts_ = joined_ ? parts_ + 1 : 1;
+    joined_ = false;
+    if (parts_ > kMostKeyParts) {
+      fail(KeyFault::Kind::long_key, at_);
     }
   }
-  return {};
-}
+
+  /// The first fault stays.
+  void fail(KeyFault::Kind kind, std::size_t at) {
+    if (fault_.kind == KeyFault::Kind::none) {
+      const auto ends = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+      fault_ = {kind, 1 + static_cast<std::size_t>(ends)};
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t parts_ = 0;
+  bool joined_ = false;  ///< the last thing was a point, which joins what follows to the key
+  KeyFault fault_;
+};
+
+}  // namespace
+
+KeyFault key_fault_of(std::string_view text) { return KeyWalk(text).first_fault(); }
 
 }  // namespace hotfire

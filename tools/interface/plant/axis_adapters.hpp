@@ -86,8 +86,7 @@ struct SimplexAdapter {
 
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
     const S& arm = model.parameters().actuator.moment_arm;
-    const model::Coupling<S> around{S(0.0), arm, S(-inputs[1])};
-    model.step(state.plant, inputs[0], [&](const S&) { return around; });
+    model.step(state.plant, inputs[0], [&](const S&) { return model::Coupling<S>{S(0.0), arm, S(-inputs[1])}; });
   }
 
   static void smooth(Parameters&) {}

@@ -158,14 +158,17 @@ struct VehicleAdapter {
     state.readings = model::VehicleReadings<V>(parameters.sensors, state.plant);
   }
 
+  /// A number of the noise of readings; dual numbers have none.
+  static S drawn([[maybe_unused]] State& state) noexcept {
+    if constexpr (std::same_as<S, double>) {
+      return state.normal();
+    } else {
+      return S(0.0);
+    }
+  }
+
   static void read(State& state, double period, std::span<S> outputs) noexcept {
-    const auto draw = [&state] {
-      if constexpr (std::same_as<S, double>) {
-        return state.normal();
-      } else {
-        return S(0.0);
-      }
-    };
+    const auto draw = [&] { return drawn(state); };
     state.readings.read_pistons(state.plant, period, draw);
     const auto& measured = V::measured(state.plant);
     for (std::size_t r = 0; r < measured.size(); ++r) {
