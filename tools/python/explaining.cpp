@@ -94,7 +94,7 @@ class Watcher {
 }  // namespace
 
 void add_explaining(py::module_& module) {
-  [[maybe_unused]] const py::class_<ReportSeries> series(module, "ReportSeries");
+  [[maybe_unused]] const py::class_<ReportSeries> series_class(module, "ReportSeries");
   module.def(
       "explain",
       [](const Model& model, const std::vector<Record>& records, const std::vector<Record>& hold_out, unsigned threads,
