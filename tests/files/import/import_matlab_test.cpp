@@ -186,6 +186,41 @@ TEST(ImportMatlab, element_that_goes_beyond_its_file_or_its_matrix_is_refused_wi
   expect_message(refusal([&] { read_matlab_columns(cut, map); }), {"5 bytes are left; the tag of an element has 8"});
 }
 
+TEST(ImportMatlab, doubles_are_read_from_a_file_of_version_4) {
+  expect_read_back<double>(MatlabVersion::v4, "double", {-1.5, 0.1, 1e300});
+}
+
+TEST(ImportMatlab, variable_of_version_4_that_goes_beyond_its_file_is_refused_with_its_byte) {
+  const auto map = load_import_map(
+      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
+  std::ifstream file(written<double>(MatlabVersion::v4, "double", {1.0, 2.0, 3.0}), std::ios::binary);
+  const std::string variable(std::istreambuf_iterator<char>(file), {});
+  constexpr std::size_t kSize = 20 + 2 + 3 * sizeof(double);  // header, name with its end, values
+  UNSIGNED_LONGS_EQUAL(kSize, variable.size());
+  // The second variable is damaged at a byte of its header.
+  const auto refused = [&](std::size_t at, char value) {
+    std::string damaged = variable + variable;
+    damaged[kSize + at] = value;
+    const std::filesystem::path one = scratch.write("damaged.mat", damaged);
+    return refusal([&] { read_matlab_columns(one, map); });
+  };
+  STRCMP_EQUAL("", refused(0, variable[0]).c_str());
+  expect_message(refused(0, 60), {"damaged.mat: byte 46: a variable of type 60"});
+  expect_message(refused(4, 4), {"byte 46: 4 x 1 values of 8 bytes, and 24 are left"});
+  expect_message(refused(12, 1), {"byte 46: 3 x 1 values of 16 bytes, and 24 are left"});
+  expect_message(refused(15, 1), {"byte 46: complex by a flag of 16777216; allowed: 0 and 1"});
+  expect_message(refused(16, 27), {"byte 46: a name of 27 bytes, and 26 are left"});
+  expect_message(refused(16, 0), {"byte 46: a name of 0 bytes"});
+  const std::filesystem::path cut = scratch.write("cut.mat", variable + "12345");
+  expect_message(refusal([&] { read_matlab_columns(cut, map); }),
+                 {"byte 46: 5 bytes are left; the header of a variable has 20"});
+  // In the other byte order: type 1000, 3 x 2^24 values.
+  const std::filesystem::path big_endian =
+      scratch.write("big_endian.mat", variable + std::string("\0\0\x03\xE8\0\0\0\3\1\0\0\0\0\0\0\0\0\0\0\2X", 21) + '\0');
+  expect_message(refusal([&] { read_matlab_columns(big_endian, map); }),
+                 {"byte 46: 3 x 16777216 values of 8 bytes, and 0 are left"});
+}
+
 TEST(ImportMatlab, what_is_no_file_is_refused) {
   const auto map = load_import_map(
       scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));

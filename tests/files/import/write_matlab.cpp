@@ -29,11 +29,16 @@ const std::map<std::string, MatlabClass> kClasses{
     {"int64", {MAT_C_INT64, MAT_T_INT64}},    {"uint64", {MAT_C_UINT64, MAT_T_UINT64}},
     {"char", {MAT_C_CHAR, MAT_T_UINT8}},      {"logical", {MAT_C_UINT8, MAT_T_UINT8, MAT_F_LOGICAL}}};
 
+const std::map<MatlabVersion, mat_ft> kFormats{{MatlabVersion::v4, MAT_FT_MAT4},
+                                               {MatlabVersion::v6, MAT_FT_MAT5},
+                                               {MatlabVersion::v7, MAT_FT_MAT5},
+                                               {MatlabVersion::v7_3, MAT_FT_MAT73}};
+
 }  // namespace
 
 bool write_matlab_class(const std::filesystem::path& path, MatlabVersion version, const std::string& name,
                         const std::string& matlab_class, const void* values, std::size_t rows) {
-  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, version == MatlabVersion::v7_3 ? MAT_FT_MAT73 : MAT_FT_MAT5);
+  mat_t* file = Mat_CreateVer(path.c_str(), nullptr, kFormats.at(version));
   if (file == nullptr) {
     return false;
   }
@@ -41,10 +46,11 @@ bool write_matlab_class(const std::filesystem::path& path, MatlabVersion version
   std::array<std::size_t, 2> size{rows, 1};
   matvar_t* variable = Mat_VarCreate(name.c_str(), one.in_memory, one.in_file, 2, size.data(), const_cast<void*>(values),
                                      one.flags);  // which copies them
-  Mat_VarWrite(file, variable, version == MatlabVersion::v6 ? MAT_COMPRESSION_NONE : MAT_COMPRESSION_ZLIB);
+  const bool is_compressed = version == MatlabVersion::v7 || version == MatlabVersion::v7_3;
+  const int error = Mat_VarWrite(file, variable, is_compressed ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE);
   Mat_VarFree(variable);
   Mat_Close(file);
-  return true;
+  return error == 0;
 }
 
 void write_matlab(const std::filesystem::path& path, const std::vector<MatlabMatrix>& matrices,

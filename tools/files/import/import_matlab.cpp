@@ -1,189 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cstdint>
 #include <cstring>
-#include <limits>
-#include <memory>
-#include <span>
-#include <type_traits>
+#include <string_view>
 
 #include "tools/files/import/apart.hpp"
 #include "tools/files/import/import.hpp"
 #include "tools/files/import/matlab_layout.hpp"
+#include "tools/files/import/matlab_reader.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
 
 namespace {
 
-struct CloseMat {
-  void operator()(mat_t* file) const noexcept { Mat_Close(file); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const noexcept { Mat_VarFree(variable); }
-};
-using MatFile = std::unique_ptr<mat_t, CloseMat>;
-using Variable = std::unique_ptr<matvar_t, FreeVariable>;
-
 /// What reading a file may use. A column of as many rows as a record may have is 80 MB, and matio holds it twice.
 constexpr std::size_t kMemoryMib = 4096;
 constexpr std::size_t kProcessorSeconds = 60;
 constexpr std::size_t kSeconds = 600;  ///< on a machine that has a tenth of a processor for it
-
-/// "data.beta:3": variable "data", field "beta", third column; 0 is a vector.
-struct Place {
-  std::string variable;
-  std::vector<std::string> fields;
-  std::size_t column = 0;
-};
-
-std::string names_in(mat_t* file) {
-  std::size_t count = 0;
-  char* const* names = Mat_GetDir(file, &count);
-  std::string text;
-  for (std::size_t i = 0; names != nullptr && i < count; ++i) {
-    text += fmt::format("{}{}", i == 0 ? "" : ", ", names[i]);
-  }
-  return text.empty() ? "none" : text;
-}
-
-class MatlabReader {
- public:
-  explicit MatlabReader(const std::filesystem::path& path) : path_(path), file_(Mat_Open(path.c_str(), MAT_ACC_RDONLY)) {
-    if (!file_) {
-      throw FileError(fmt::format("{}: is no MATLAB file that can be read; save it with -v7", path.string()));
-    }
-  }
-
-  std::vector<double> read(const ImportColumn& column) const {
-    const Place place = place_of(column);
-    const Variable variable(Mat_VarRead(file_.get(), place.variable.c_str()));
-    matvar_t* inner = variable.get();
-    if (inner == nullptr) {
-      refuse(column, fmt::format("no variable \"{}\"; there are: {}", place.variable, names_in(file_.get())));
-    }
-    for (const std::string& field : place.fields) {
-      inner = inner->class_type == MAT_C_STRUCT ? Mat_VarGetStructFieldByName(inner, field.c_str(), 0) : nullptr;
-      if (inner == nullptr) {
-        refuse(column, fmt::format("no field \"{}\"", field));
-      }
-    }
-    return values_of(*inner, place, column);
-  }
-
- private:
-  [[noreturn]] void refuse(const ImportColumn& column, const std::string& problem) const {
-    throw FileError(fmt::format("{}: {} for {}: {}", path_.string(), column.column, column.channel, problem));
-  }
-
-  Place place_of(const ImportColumn& column) const {
-    Place place;
-    std::string_view text = column.column;
-    if (const std::size_t colon = text.find(':'); colon != std::string_view::npos) {
-      const std::string_view digits = text.substr(colon + 1);
-      const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), place.column);
-      if (error != std::errc{} || end != digits.data() + digits.size() || place.column == 0) {
-        refuse(column, "the number after the colon is the column of a matrix, from 1 on");
-      }
-      text = text.substr(0, colon);
-    }
-    for (bool first = true; !text.empty(); first = false) {
-      const std::size_t dot = text.find('.');
-      (first ? place.variable : place.fields.emplace_back()) = std::string(text.substr(0, dot));
-      text.remove_prefix(dot == std::string_view::npos ? text.size() : dot + 1);
-    }
-    return place;
-  }
-
-  std::vector<double> values_of(const matvar_t& variable, const Place& place, const ImportColumn& column) const {
-    if (variable.rank != 2 || variable.isComplex != 0 || variable.data == nullptr) {
-      refuse(column, "is no real vector or matrix");
-    }
-    const std::size_t rows = variable.dims[0];
-    const std::size_t columns = variable.dims[1];
-    const bool is_vector = rows == 1 || columns == 1;
-    if (place.column == 0 && !is_vector) {
-      refuse(column,
-             fmt::format("is a matrix of {} x {}; write \"{}:1\" for its first column", rows, columns, column.column));
-    }
-    if (rows > kMostRows || columns > kMostRows) {
-      refuse(column, fmt::format("{} x {}; allowed: up to {} rows", rows, columns, kMostRows));
-    }
-    if (place.column > columns) {
-      refuse(column, fmt::format("has {} columns", columns));
-    }
-    const std::size_t first = place.column == 0 ? 0 : (place.column - 1) * rows;
-    const std::size_t count = place.column == 0 ? rows * columns : rows;
-    if (count > kMostRows) {
-      refuse(column, fmt::format("{} values; allowed: up to {}", count, kMostRows));
-    }
-    const auto copy = [&]<class T>(const T* data) {
-      if (variable.nbytes / sizeof(T) / std::max<std::size_t>(rows, 1) < columns) {
-        refuse(column, fmt::format("{} x {} values, and bytes for fewer: the file is damaged", rows, columns));
-      }
-      require_exact(std::span(data + first, count), column);
-      return std::vector<double>(data + first, data + first + count);
-    };
-    switch (variable.class_type) {
-      case MAT_C_DOUBLE:
-        return copy(static_cast<const double*>(variable.data));
-      case MAT_C_SINGLE:
-        return copy(static_cast<const float*>(variable.data));
-      case MAT_C_INT64:
-        return copy(static_cast<const std::int64_t*>(variable.data));
-      case MAT_C_UINT64:
-        return copy(static_cast<const std::uint64_t*>(variable.data));
-      case MAT_C_INT32:
-        return copy(static_cast<const std::int32_t*>(variable.data));
-      case MAT_C_UINT32:
-        return copy(static_cast<const std::uint32_t*>(variable.data));
-      case MAT_C_INT16:
-        return copy(static_cast<const std::int16_t*>(variable.data));
-      case MAT_C_UINT16:
-        return copy(static_cast<const std::uint16_t*>(variable.data));
-      case MAT_C_INT8:
-        return copy(static_cast<const std::int8_t*>(variable.data));
-      case MAT_C_UINT8:  // and logical
-        return copy(static_cast<const std::uint8_t*>(variable.data));
-      default:
-        refuse(column, "holds no numbers; allowed: double, single, int8 to int64, uint8 to uint64, logical");
-    }
-  }
-
-  /// A double has every integer up to 2^53 alone.
-  template <class T>
-  void require_exact(std::span<const T> values, const ImportColumn& column) const {
-    if constexpr (std::is_integral_v<T> && sizeof(T) == sizeof(std::int64_t)) {
-      constexpr T kLargest = T{1} << std::numeric_limits<double>::digits;
-      const auto found = std::find_if(values.begin(), values.end(), [](T value) {
-        return value > kLargest || (std::is_signed_v<T> && value < T{0} - kLargest);
-      });
-      if (found != values.end()) {
-        refuse(column, fmt::format("row {}: {} does not fit a double; allowed: integers of at most 2^53 = {}",
-                                   found - values.begin() + 1, *found, kLargest));
-      }
-    }
-  }
-
-  std::filesystem::path path_;
-  MatFile file_;
-};
-
-/// The columns as bytes: of each its number of rows, then its values.
-std::string columns_text(const std::filesystem::path& path, const ImportMap& map) {
-  const MatlabReader reader(path);
-  std::string text;
-  for (const ImportColumn& column : map.columns) {
-    const std::vector<double> values = reader.read(column);
-    const std::uint64_t rows = values.size();
-    text.append(reinterpret_cast<const char*>(&rows), sizeof rows);
-    text.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
-  }
-  return text;
-}
 
 std::vector<std::vector<double>> columns_of(std::string_view text) {
   std::vector<std::vector<double>> columns;
@@ -212,7 +48,7 @@ std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path
   std::vector<std::vector<double>> values;
   try {
     values = columns_of(
-        run_apart([&] { return columns_text(path, map); }, {kMemoryMib, kProcessorSeconds, kSeconds, most_bytes}));
+        run_apart([&] { return matlab_columns_text(path, map); }, {kMemoryMib, kProcessorSeconds, kSeconds, most_bytes}));
   } catch (const ApartError& error) {
     throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {}; it is damaged: save it again with -v7",
                                 path.string(), error.what()));

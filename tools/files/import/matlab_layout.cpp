@@ -18,34 +18,47 @@ namespace hotfire {
 namespace {
 
 constexpr std::size_t kHeader = 128;  // [B] with version and byte order in its last four
-constexpr std::size_t kTag = 8;       // [B]
+// The version as a number of 16 bits, then the letters "MI" as one.
+static_assert(std::endian::native == std::endian::little);
+constexpr std::uint32_t kVersion5 = 0x4D490100;
+constexpr std::uint32_t kVersion7_3 = 0x4D490200;
+constexpr std::size_t kTag = 8;  // [B]
 constexpr std::uint32_t kMatrix = 14;
 constexpr std::uint32_t kCompressed = 15;
 constexpr std::uint32_t kLastType = 18;  // UTF-32
 // A table inside a structure inside a cell needs three.
 constexpr int kDeepest = 8;
 
+// A variable of MATLAB 4: a header of five words, the name, the values (MathWorks, MAT-File Format, 2019, appendix A).
+constexpr std::size_t kHeader4 = 20;        // [B] type, rows, columns, is complex, length of the name
+constexpr std::uint32_t kMostType4 = 4052;  // decimal digits: machine, 0, precision, kind
+constexpr std::array<std::size_t, 6> kPrecisions4{8, 4, 4, 2, 2, 1};  // [B] double, single, int32, int16, uint16, uint8
+
 std::uint32_t swapped(std::uint32_t word) {
   return (word >> 24) | ((word >> 8) & 0xff00U) | ((word << 8) & 0xff0000U) | (word << 24);
 }
 
+/// A version in a file of the other byte order: each of its two numbers is swapped.
+constexpr std::uint32_t in_other_order(std::uint32_t version) {
+  return ((version >> 8) & 0x00ff00ffU) | ((version << 8) & 0xff00ff00U);
+}
+
 /// Follows the tags of one file.
-class MatlabElements {
+class MatlabLayout {
  public:
-  explicit MatlabElements(const std::filesystem::path& path)
+  explicit MatlabLayout(const std::filesystem::path& path)
       : path_(path), file_(path, std::ios::binary), end_(std::filesystem::file_size(path)) {}
 
   void check() {
-    // Files of MATLAB 4 have no header, those of 7.3 another one.
-    if (end_ < kHeader) {
-      return;
+    const std::uint32_t version = end_ < kHeader ? 0 : word(kHeader - sizeof version);
+    if (version == kVersion7_3 || version == in_other_order(kVersion7_3)) {
+      return;  // HDF5, whose library checks it
     }
-    // Version 1.0 as a number of 16 bits, then the letters "MI" as one; in a file of the other byte order both are turned.
-    static_assert(std::endian::native == std::endian::little);
-    const std::uint32_t version = word(kHeader - sizeof version);
-    other_order_ = version == 0x494D0001;
-    if (version == 0x4D490100 || other_order_) {
+    other_order_ = version == in_other_order(kVersion5);
+    if (version == kVersion5 || other_order_) {
       elements(kHeader, end_, 0);
+    } else {
+      variables_of_matlab_4();
     }
   }
 
@@ -112,6 +125,61 @@ class MatlabElements {
     }
   }
 
+  void variables_of_matlab_4() {
+    if (end_ == 0) {
+      refuse_format();
+    }
+    for (std::size_t at = 0; at < end_;) {
+      at = end_of_matlab_4_variable(at);
+    }
+  }
+
+  std::size_t end_of_matlab_4_variable(std::size_t at) {
+    if (end_ - at < kHeader4) {
+      refuse_variable(at, fmt::format("{} bytes are left; the header of a variable has {}", end_ - at, kHeader4));
+    }
+    other_order_ = false;
+    std::uint32_t type = word(at);
+    if (type > kMostType4) {
+      other_order_ = true;
+      type = word(at);
+    }
+    const std::uint32_t machine = type / 1000;
+    const std::uint32_t precision = type / 10 % 10;
+    const std::uint32_t kind = type % 10;
+    if (machine != (other_order_ ? 1U : 0U) || type / 100 % 10 != 0 || precision >= kPrecisions4.size() || kind > 2) {
+      refuse_variable(at, fmt::format("a variable of type {}", type));
+    }
+    const std::array<std::uint32_t, 4> sizes{word(at + 4), word(at + 8), word(at + 12), word(at + 16)};
+    const auto [rows, columns, is_complex, name] = sizes;
+    const std::size_t left = end_ - at - kHeader4;
+    if (is_complex > 1) {
+      refuse_variable(at, fmt::format("complex by a flag of {}; allowed: 0 and 1", is_complex));
+    }
+    if (name == 0 || name > left) {
+      refuse_variable(at, fmt::format("a name of {} bytes, and {} are left", name, left));
+    }
+    // The product of two words fits in 64 bits.
+    const std::size_t values = std::size_t{rows} * columns;
+    const std::size_t each = kPrecisions4[precision] * (is_complex + 1);
+    if (values > (left - name) / each) {
+      refuse_variable(at, fmt::format("{} x {} values of {} bytes, and {} are left", rows, columns, each, left - name));
+    }
+    return at + kHeader4 + name + values * each;
+  }
+
+  /// A file that does not begin with a variable of MATLAB 4 is no MATLAB file.
+  [[noreturn]] void refuse_variable(std::size_t at, const std::string& problem) const {
+    if (at == 0) {
+      refuse_format();
+    }
+    refuse(at, problem);
+  }
+
+  [[noreturn]] void refuse_format() const {
+    throw FileError(fmt::format("{}: is no MATLAB file that can be read; save it with -v7", path_.string()));
+  }
+
   const std::filesystem::path& path_;
   std::ifstream file_;
   std::size_t end_;
@@ -120,6 +188,6 @@ class MatlabElements {
 
 }  // namespace
 
-void require_matlab_layout(const std::filesystem::path& path) { MatlabElements(path).check(); }
+void require_matlab_layout(const std::filesystem::path& path) { MatlabLayout(path).check(); }
 
 }  // namespace hotfire
