@@ -3,10 +3,15 @@
 //
 // The product reads each file in a process of its own, and the fork takes longer than the reading. The harness checks the
 // layout of each input in this process. It collects the inputs whose layout is accepted and reads a batch of them in one
-// process. If that process does not end well, each input of the batch is read again as the product reads it.
+// process. That process may crash, or go beyond a limit. Then the input that it was reading is read again as the product
+// reads it, and another process reads the rest.
+
+#include <sys/mman.h>
 
 #include <array>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <string>
 #include <string_view>
@@ -24,7 +29,14 @@ using namespace hotfire;
 
 class Batch {
  public:
-  Batch() = default;
+  Batch() {
+    void* shared = mmap(nullptr, sizeof *next_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) {
+      std::perror("mmap");
+      std::exit(1);
+    }
+    next_ = new (shared) std::size_t{0};
+  }
   Batch(const Batch&) = delete;
   Batch& operator=(const Batch&) = delete;
   Batch(Batch&&) = delete;
@@ -58,10 +70,11 @@ class Batch {
   }
 
   void read() {
-    try {
-      run_apart([this] { return read_all_here(); }, kLimits);
-    } catch (const ApartError&) {
-      for (const Input& input : inputs_) {
+    for (*next_ = 0; *next_ < inputs_.size(); ++*next_) {
+      try {
+        run_apart([this] { return read_rest_here(); }, kLimits);
+      } catch (const ApartError&) {
+        const Input& input = inputs_.at(*next_);
         const std::string& path = file_.holding(input.content);
         fuzz::read_or_refuse([&] { read_matlab_columns(path, map_of(input.wanted)); });
       }
@@ -69,8 +82,9 @@ class Batch {
     inputs_.clear();
   }
 
-  std::string read_all_here() {
-    for (const Input& input : inputs_) {
+  std::string read_rest_here() {
+    for (; *next_ < inputs_.size(); ++*next_) {
+      const Input& input = inputs_[*next_];
       try {
         const std::string& path = file_.holding(input.content);
         fuzz::read_or_refuse([&] { matlab_columns_text(path, map_of(input.wanted)); });
@@ -83,6 +97,7 @@ class Batch {
 
   fuzz::InputFile file_{"matlab"};
   std::vector<Input> inputs_;
+  std::size_t* next_ = nullptr;  ///< index of the input that is read now, shared with the process that reads
 };
 
 }  // namespace

@@ -42,6 +42,11 @@ std::string_view nearest_word(std::string_view word, const std::vector<std::stri
   std::string_view nearest;
   std::size_t smallest = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string_view candidate : known) {
+    // The distance is at least the difference of the lengths. Without this bound a long wrong word takes most of the time
+    // that its file takes.
+    if (std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size()) >= smallest) {
+      continue;
+    }
     const std::size_t distance = edit_distance(word, candidate);
     if (distance < smallest && distance < candidate.size()) {
       smallest = distance;
