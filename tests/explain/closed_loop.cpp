@@ -49,14 +49,14 @@ bool explain_case(const std::string& archive, const std::filesystem::path& folde
   const auto truth = nlohmann::json::parse(std::ifstream(root / "kept/truth.json"));
   const std::set<std::string> wanted = truth["effects"];
   std::set<std::string> found;
-  for (const auto& effect : result.report["effects"]) {
-    found.insert(effect["name"].get<std::string>());
+  for (const auto& effect : result.result.effects) {
+    found.insert(effect.name);
   }
   const hotfire::Record unseen = hotfire::load_record(root / "kept/score_noisefree.csv");
   const hotfire::Record modelled = hotfire::simulate(result.model, unseen);
   bool below_noise = true;
   std::printf("wanted %s, found %s (%s)\n", joined(wanted).c_str(), joined(found).c_str(),
-              result.report["verdict"].get<std::string>().c_str());
+              std::string(hotfire::explain::name_of(result.result.verdict)).c_str());
   for (const char* channel : {"piston", "engine"}) {
     const double noise = declared.noise.at(channel);
     const double error = rms_difference(unseen.find(channel)->values, modelled.find(channel)->values) / noise;

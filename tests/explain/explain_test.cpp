@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/explain/oscillator.hpp"
+#include "tools/explain/report/report_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 
@@ -41,13 +42,15 @@ TEST(Explain, ARecordHeldOutWholeChangesNothingOfWhatIsFoundAndIsJudgedWithTheMo
   const auto alone = explained(record);
   const auto beside = explained(record, options);
   STRCMP_EQUAL(model_text(alone.model).c_str(), model_text(beside.model).c_str());
-  CHECK(!alone.report.contains("held_out_records"));
-  const auto& judged = beside.report.at("held_out_records").at(0);
-  STRCMP_EQUAL("kept_back.csv", text_of(judged, "path").c_str());
-  const auto& position = judged.at("channels").at("position");
+  CHECK(alone.result.held_out_records.empty());
+  CHECK(!explain::report_json(alone.result).contains("held_out_records"));
+  const explain::HeldOutRecord& judged = beside.result.held_out_records.at(0);
+  STRCMP_EQUAL("kept_back.csv", judged.path.c_str());
+  const explain::ChannelErrors& position = judged.channels.at(0);
+  STRCMP_EQUAL("position", position.name.c_str());
   // The cubic force is there in both, so that the written model leaves what its sensor adds; the declared one does not.
-  DOUBLES_EQUAL(2.0 * kNoise, position.at("after").at("rms").get<double>(), 0.1 * kNoise);
-  CHECK(position.at("before").at("rms").get<double>() > 2.0 * position.at("after").at("rms").get<double>());
+  DOUBLES_EQUAL(2.0 * kNoise, position.explained.rms, 0.1 * kNoise);
+  CHECK(position.declared.rms > 2.0 * position.explained.rms);
   // It is what `simulate` says of that model, but for the start, which both take from the record.
   const Record simulated = simulate(beside.model, kept_back);
   double square = 0.0;
@@ -55,7 +58,7 @@ TEST(Explain, ARecordHeldOutWholeChangesNothingOfWhatIsFoundAndIsJudgedWithTheMo
     const double error = simulated.find("position")->values[row] - kept_back.find("position")->values[row];
     square += error * error / static_cast<double>(kept_back.rows);
   }
-  DOUBLES_EQUAL(std::sqrt(square), position.at("after").at("rms").get<double>(), 0.1 * kNoise);
+  DOUBLES_EQUAL(std::sqrt(square), position.explained.rms, 0.1 * kNoise);
 }
 
 TEST(Explain, InterruptedAtAnyMomentItSaysThatItIsUndecidedAndWhatItKnowsByThen) {
@@ -64,7 +67,7 @@ TEST(Explain, InterruptedAtAnyMomentItSaysThatItIsUndecidedAndWhatItKnowsByThen)
     explain::ExplainOptions options;
     auto asked = std::make_shared<std::atomic<int>>(0);
     options.watch.interrupted = [asked, calls] { return ++*asked > calls; };
-    return explained(record, options).report;
+    return explain::report_json(explained(record, options).result);
   };
   // How often the whole search asks is not fixed: a moment before its first round, one within and one at its end.
   const auto at_once = interrupted_after(0);
@@ -96,13 +99,13 @@ TEST(Explain, AMassThatMovesAgainstItsForceIsRefusedForItsSign) {
 TEST(Explain, AskedForNoEffectItDoesNotSayThatNoneFits) {
   explain::ExplainOptions options;
   options.most_effects = 0;
-  const auto report = explained(oscillator(400.0, kNoise), options).report;
+  const auto report = explain::report_json(explained(oscillator(400.0, kNoise), options).result);
   STRCMP_EQUAL("undecided", text_of(report, "verdict").c_str());
   CHECK(text_of(report, "sentence").find("no effect was searched for") != std::string::npos);
 }
 
 TEST(Explain, OfATermThatNobodyListedItSaysWhatItLooksLikeWithinWhichBoundsAndWhatItIsNot) {
-  const auto report = explained(oscillator(0.0, kNoise, 2.0)).report;
+  const auto report = explain::report_json(explained(oscillator(0.0, kNoise, 2.0)).result);
   STRCMP_EQUAL("unlisted-effect", text_of(report, "verdict").c_str());
   const auto& effect = report.at("effects").at(0);
   CHECK(text_of(effect, "looks_like").find("Beyond these bounds the value at the end holds") != std::string::npos);

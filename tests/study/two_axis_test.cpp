@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CppUTest/TestHarness.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "tests/files/expect.hpp"
 #include "tests/files/scratch.hpp"
 #include "tools/explain/explain.hpp"
+#include "tools/explain/report/report_json.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/study/cases/case.hpp"
 #include "tools/study/draws/random.hpp"
@@ -100,17 +103,18 @@ TEST(TwoAxes, TorqueFromTheOtherAxisIsFoundOnTheAxisThatFeelsIt) {
   options.threads = 2;
   const auto found = explain::explain(declared, {recorded(axes, 1, 1.0)}, options);
 
-  LONGS_EQUAL(1, found.report.at("effects").size());
-  const auto& effect = found.report.at("effects").at(0);
-  STRCMP_EQUAL("cross_axis", effect.at("name").get<std::string>().c_str());
-  STRCMP_EQUAL("yaw", effect.at("axis").get<std::string>().c_str());
-  STRCMP_EQUAL("explained", found.report.at("verdict").get<std::string>().c_str());
+  LONGS_EQUAL(1, found.result.effects.size());
+  const explain::FoundEffect& effect = found.result.effects.front();
+  STRCMP_EQUAL("cross_axis", effect.name.c_str());
+  STRCMP_EQUAL("yaw", effect.axis.c_str());
+  CHECK_TRUE(found.result.verdict == explain::Verdict::explained);
   // Four standard deviations and a little are two 95 % intervals.
-  const auto& stiffness = effect.at("parameters").at("stiffness");
-  const double half = stiffness.at("ci95").at(1).get<double>() - stiffness.at("value").get<double>();
-  DOUBLES_EQUAL(6e5, stiffness.at("value").get<double>(), 2.0 * half);
-  CHECK_TRUE(found.report.at("calibration").contains("servovalve.yaw.position_gain"));
-  CHECK_TRUE(found.report.at("channels").contains("engine.yaw"));
+  const auto stiffness = std::ranges::find(effect.parameters, "stiffness", &explain::EffectParameter::name);
+  const double half = stiffness->interval.value().second - stiffness->value;
+  DOUBLES_EQUAL(6e5, stiffness->value, 2.0 * half);
+  const nlohmann::json report = explain::report_json(found.result);
+  CHECK_TRUE(report.at("calibration").contains("servovalve.yaw.position_gain"));
+  CHECK_TRUE(report.at("channels").contains("engine.yaw"));
 
   // Its text is what the next tool reads; on commands that it has not seen it is closer to the truth than the sensors.
   const VehicleFile written = load_vehicle(scratch.write("explained.toml", vehicle_text(found.model)));
@@ -125,15 +129,17 @@ TEST(TwoAxes, NothingIsFoundWhereNothingIsMissing) {
   explain::ExplainOptions options;
   options.kept_back = {recorded(axes, 2, 0.0)};
   const auto found = explain::explain(declared, {recorded(axes, 3, 1.0)}, options);
-  STRCMP_EQUAL("nothing-missing", found.report.at("verdict").get<std::string>().c_str());
-  LONGS_EQUAL(0, found.report.at("effects").size());
+  CHECK_TRUE(found.result.verdict == explain::Verdict::nothing_missing);
+  LONGS_EQUAL(0, found.result.effects.size());
   // On a record without noise that was held out whole the model of both axes is closer to the truth than the sensors.
-  const auto& channels = found.report.at("held_out_records").at(0).at("channels");
-  for (const char* channel : {"piston.pitch", "engine.pitch", "piston.yaw", "engine.yaw"}) {
-    const auto& judged = channels.at(channel);
-    CHECK_TRUE(judged.at("after").at("rms").get<double>() < judged.at("noise").get<double>());
-    CHECK_TRUE(judged.at("after").at("rms").get<double>() < judged.at("before").at("rms").get<double>());
+  const std::vector<explain::ChannelErrors>& channels = found.result.held_out_records.at(0).channels;
+  std::set<std::string> names;
+  for (const explain::ChannelErrors& judged : channels) {
+    names.insert(judged.name);
+    CHECK_TRUE(judged.explained.rms < judged.noise);
+    CHECK_TRUE(judged.explained.rms < judged.declared.rms);
   }
+  CHECK_TRUE(names == (std::set<std::string>{"piston.pitch", "engine.pitch", "piston.yaw", "engine.yaw"}));
 }
 
 TEST(TwoAxes, WhatExplainDoesNotTakeIsRefusedWithTheMend) {

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/baseline.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "tools/explain/inference/residual_statistics.hpp"
-#include "tools/explain/report/errors_json.hpp"
 #include "tools/explain/words/conclusions.hpp"
 
 namespace hotfire::explain {
 
 namespace {
-
-using nlohmann::json;
 
 /// Two errors that differ by less than this share are the same.
 constexpr double kSame = 0.02;
@@ -65,18 +63,18 @@ std::string where(const Dataset& data, const Prediction& worse, const Prediction
 
 }  // namespace
 
-json baseline_json(const BlackBox& box, const Dataset& data, const Prediction& explained) {
+std::optional<Baseline> baseline_of(const BlackBox& box, const Dataset& data, const Prediction& explained) {
   if (!box.is_there()) {
-    return nullptr;
+    return std::nullopt;
   }
   const Dataset thin = for_black_box(data);
   const Prediction by_box = simulated(box, thin);
   const Prediction by_model = of_rows(explained, data, thin);
   const Goodness of_box = goodness(thin, by_box);
   const Goodness of_model = goodness(thin, by_model);
-  json baseline{{"kind", "linear"}, {"period", box.period}, {"channels", json::object()}};
+  Baseline baseline;
+  baseline.period = box.period;
   std::string text;
-  bool is_better = false;
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     if (!box.channels[c]) {
       continue;
@@ -84,23 +82,19 @@ json baseline_json(const BlackBox& box, const Dataset& data, const Prediction& e
     const LinearModel& model = *box.channels[c];
     const double left = of_box.held_out[c].rms;
     const double explained_left = of_model.held_out[c].rms;
-    json& channel = baseline["channels"][data.channels[c]];
-    channel = errors_of(of_box.held_out[c]);
-    channel["order"] = model.order();
-    channel["delay"] = static_cast<double>(model.delay) * box.period;
-    text += " " + words::baseline_channel(data.channels[c], static_cast<std::size_t>(model.order()),
-                                          static_cast<double>(model.delay) * box.period, left, explained_left);
+    const BaselineChannel& channel = baseline.channels.emplace_back(
+        BaselineChannel{data.channels[c], of_box.held_out[c], model.order(), static_cast<double>(model.delay) * box.period});
+    text += " " + words::baseline_channel(channel.name, channel.order, channel.delay, left, explained_left);
     if (left < (1.0 - kSame) * explained_left) {
-      is_better = true;
+      baseline.is_better = true;
       text += " " + where(thin, by_model, by_box, c);
     }
   }
-  baseline["better_than_explained"] = is_better;
-  baseline["sentence"] = words::baseline(is_better) + text;
+  baseline.sentence = words::baseline(baseline.is_better) + text;
   return baseline;
 }
 
-void add_baseline(const BlackBox& box, const Dataset& record, json& channels) {
+void add_baseline(const BlackBox& box, const Dataset& record, std::vector<ChannelErrors>& channels) {
   const Dataset thin = for_black_box(record);
   constexpr double kSamePeriod = 1e-6;
   if (!box.is_there() || std::abs(thin.experiments.front().period - box.period) > kSamePeriod * box.period) {
@@ -108,8 +102,9 @@ void add_baseline(const BlackBox& box, const Dataset& record, json& channels) {
   }
   const Goodness reached = goodness(thin, simulated(box, thin));
   for (std::size_t c = 0; c < record.channels.size(); ++c) {
-    if (box.channels[c] && record.used[c]) {
-      channels[record.channels[c]]["black_box"] = errors_of(reached.fitted[c]);
+    const auto own = std::ranges::find(channels, record.channels[c], &ChannelErrors::name);
+    if (box.channels[c] && own != channels.end()) {
+      own->black_box = reached.fitted[c];
     }
   }
 }

@@ -7,8 +7,8 @@
 #include "tools/explain/baseline.hpp"
 #include "tools/explain/held_out_records.hpp"
 #include "tools/explain/inference/common_bias.hpp"
-#include "tools/explain/report/conclusion.hpp"
-#include "tools/explain/report/report_json.hpp"
+#include "tools/explain/result/conclusion.hpp"
+#include "tools/explain/result/result_of.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/refusals.hpp"
@@ -40,7 +40,7 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
       text += " " + words::weak_profile(next.words, next.separation, limits);
     }
   }
-  explanation.report["residual"]["next_experiment"] = text;
+  explanation.result.residual.next_experiment = text;
 }
 
 /// Refuses records in which a mass moves against its force. A servo is held to its declared model before the search
@@ -71,8 +71,8 @@ void add_common_bias(const Dataset& data, const SearchResult<SimplexFamily>& fou
   auto& plant = std::get<PlainParameters<SimplexFamily>>(explanation.model.parameters);
   if (const auto bias = common_valve_bias(data, found.explained.zeros, plant)) {
     plant = with_valve_bias(plant, *bias);
-    explanation.report["valve_bias"] = *bias;
-    explanation.report["warnings"].push_back(words::common_bias(*bias));
+    explanation.result.valve_bias = *bias;
+    explanation.result.warnings.push_back(words::common_bias(*bias));
   }
 }
 
@@ -91,20 +91,16 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
     options.watch.progress("fitting what was found to all rows");
     fit_to_all_rows(data, options.threads, found);
   }
-  Explanation explanation{report_json(model, records, data, found), series_of(records, data, found), model, {}};
-  if (const nlohmann::json baseline = baseline_json(box, data, found.explained.prediction); !baseline.is_null()) {
-    explanation.report["baseline"] = baseline;
-    if (baseline["better_than_explained"]) {
-      std::string& sentence = explanation.report["sentence"].get_ref<std::string&>();
-      sentence += " " + words::black_box_is_better();
-    }
+  Explanation explanation{result_of(model, records, data, found), series_of(records, data, found), model, {}};
+  Result& result = explanation.result;
+  result.baseline = baseline_of(box, data, found.explained.prediction);
+  if (result.baseline && result.baseline->is_better) {
+    result.sentence += " " + words::black_box_is_better();
   }
-  if (!kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_records_json(options, kept_back, found);
-    for (std::size_t i = 0; i < kept_back.size(); ++i) {
-      add_baseline(box, kept_back[i], explanation.report["held_out_records"][i]["channels"]);
-      warn_of_rows(kept_back[i], explanation.report["warnings"]);
-    }
+  result.held_out_records = held_out_records(options, kept_back, found);
+  for (std::size_t i = 0; i < kept_back.size(); ++i) {
+    add_baseline(box, kept_back[i], result.held_out_records[i].channels);
+    warn_of_rows(kept_back[i], result.warnings);
   }
   if (found.rival) {
     add_next_experiment(data, *found.rival, found.explained.model, options, explanation);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/explain/experiment/next_experiment.hpp"
+#include "tools/explain/result/result.hpp"
 #include "tools/explain/search/screening.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/record/record.hpp"
@@ -17,9 +17,9 @@ namespace hotfire::explain {
 
 /// What the finder hands out.
 struct Explanation {
-  nlohmann::json report;  ///< report.json, docs/report.md
-  ReportSeries series;    ///< what the page draws
-  ModelFile model;        ///< the explained model without faults of the records: what the rig runs next
+  Result result;        ///< `report_json` writes it as report.json
+  ReportSeries series;  ///< what the page draws
+  ModelFile model;      ///< the explained model without faults of the records: what the rig runs next
   /// The test that would best separate a kept effect from its rival, if they explain these records equally well.
   std::optional<NextExperiment> next_experiment;
 };
@@ -40,7 +40,7 @@ Explanation explain(const ModelFile& model, const std::vector<Record>& records, 
 
 /// What the finder hands out for a model of one engine with two axes.
 struct TaosExplanation {
-  nlohmann::json report;
+  Result result;
   ReportSeries series;
   VehicleFile model;
 };

@@ -5,9 +5,9 @@
 #include "tools/explain/explain.hpp"
 #include "tools/explain/fit/two_axes.hpp"
 #include "tools/explain/held_out_records.hpp"
-#include "tools/explain/report/conclusion.hpp"
-#include "tools/explain/report/report_json.hpp"
-#include "tools/explain/report/two_axis_report.hpp"
+#include "tools/explain/result/conclusion.hpp"
+#include "tools/explain/result/result_of.hpp"
+#include "tools/explain/result/two_axes_result.hpp"
 #include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
@@ -97,29 +97,29 @@ std::vector<TwoAxes> held_out_axes(const VehicleFile& vehicle, const ExplainOpti
   return kept_back;
 }
 
-/// How both axes together do on the records that were kept back, as `held_out_records_json`, channels by their axis.
-nlohmann::json held_out_together(const TaosParameters& declared, unsigned threads, const std::vector<TwoAxes>& kept_back,
-                                 const FoundAxes& found) {
-  nlohmann::json records = nlohmann::json::array();
+/// How both axes together do on the records that were kept back, as `held_out_records`, channels by their axis.
+std::vector<HeldOutRecord> held_out_together(const TaosParameters& declared, unsigned threads,
+                                             const std::vector<TwoAxes>& kept_back, const FoundAxes& found) {
+  constexpr std::array<Stage, 3> kStages{&Found::declared, &Found::calibrated, &Found::explained};
+  std::vector<HeldOutRecord> records;
   for (const TwoAxes& axes : kept_back) {
-    std::array<std::vector<std::pair<const char*, Prediction>>, 2> stages;
-    for (const auto& [name, stage] : {std::pair("before", &Found::declared), std::pair("calibrated", &Found::calibrated),
-                                      std::pair("after", &Found::explained)}) {
-      const auto run = run_coupled(together(declared, found, stage), axes, threads);
+    std::array<StagePredictions, 2> stages;
+    for (std::size_t s = 0; s < kStages.size(); ++s) {
+      const auto run = run_coupled(together(declared, found, kStages[s]), axes, threads);
       if (!run) {
         throw FileError(words::diverges_held_out(axes.front().records.front().path.string()));
       }
       for (std::size_t i = 0; i < axes.size(); ++i) {
-        stages[i].emplace_back(name, run->prediction[i]);
+        stages[i][s] = run->prediction[i];
       }
     }
-    std::vector<AxisReport> reports;
+    std::vector<AxisHeldOut> judged;
     for (std::size_t i = 0; i < axes.size(); ++i) {
       if (axes[i].measured) {
-        reports.push_back({axes[i].name, held_out_record_json(axes[i].records.front(), axes[i].data, stages[i])});
+        judged.push_back({axes[i].name, held_out_record(axes[i].records.front(), axes[i].data, stages[i])});
       }
     }
-    records.push_back(joined_channels(reports));
+    records.push_back(joined_record(judged));
   }
   return records;
 }
@@ -151,7 +151,7 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
   judge_together(declared, options.threads, axes, found, &Found::explained);
 
   TaosExplanation explanation{{}, {}, vehicle};
-  std::vector<AxisReport> reports;
+  std::vector<AxisResult> results;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (!found[i]) {
       continue;
@@ -160,19 +160,17 @@ TaosExplanation explain(const VehicleFile& vehicle, const std::vector<Record>& r
       options.watch.progress(axes[i].name + ": fitting what was found to all rows");
       fit_to_all_rows(axes[i].data, options.threads, *found[i]);
     }
-    reports.push_back({axes[i].name, report_json(axes[i].model, axes[i].records, axes[i].data, *found[i])});
+    results.push_back({axes[i].name, result_of(axes[i].model, axes[i].records, axes[i].data, *found[i])});
     if (found[i]->rival) {
-      reports.back().report["residual"]["next_experiment"] =
+      results.back().result.residual.next_experiment =
           words::explain_equally(label(found[i]->rival->kept), label(found[i]->rival->other));
     }
     append_series(axes[i].name, series_of(axes[i].records, axes[i].data, *found[i]), explanation.series);
   }
-  explanation.report = joined_report(reports);
-  if (!options.kept_back.empty()) {
-    explanation.report["held_out_records"] = held_out_together(declared, options.threads, kept_back, found);
-    for (const TwoAxes& record : kept_back) {
-      warn_of_rows(record[record[0].measured ? 0 : 1].data, explanation.report["warnings"]);
-    }
+  explanation.result = joined_result(results);
+  explanation.result.held_out_records = held_out_together(declared, options.threads, kept_back, found);
+  for (const TwoAxes& record : kept_back) {
+    warn_of_rows(record[record[0].measured ? 0 : 1].data, explanation.result.warnings);
   }
   TaosParameters plant = together(declared, found, &Found::explained);
   for (std::size_t i = 0; i < axes.size(); ++i) {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/held_out_records.hpp"
 
-#include <utility>
-
-#include "tools/explain/report/errors_json.hpp"
 #include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
 
@@ -31,20 +28,25 @@ Prediction prediction_of(Fitted<Family> model, const Dataset& data, unsigned thr
 
 }  // namespace
 
-nlohmann::json held_out_record_json(const Record& record, const Dataset& data,
-                                    const std::vector<std::pair<const char*, Prediction>>& stages) {
-  nlohmann::json channels = nlohmann::json::object();
-  for (const auto& [stage, prediction] : stages) {
-    const Goodness reached = goodness(data, prediction);
-    for (std::size_t c = 0; c < data.channels.size(); ++c) {
-      if (data.used[c]) {
-        channels[data.channels[c]]["unit"] = record.find(data.channels[c])->unit;
-        channels[data.channels[c]]["noise"] = data.noise[c];
-        channels[data.channels[c]][stage] = errors_of(reached.fitted[c]);
-      }
+HeldOutRecord held_out_record(const Record& record, const Dataset& data, const StagePredictions& stages) {
+  const auto& [declared, calibrated, explained] = stages;
+  const Goodness of_declared = goodness(data, declared);
+  const Goodness of_calibrated = goodness(data, calibrated);
+  const Goodness of_explained = goodness(data, explained);
+  HeldOutRecord result{record.path.string(), record.rows, record.period, {}};
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.used[c]) {
+      result.channels.push_back({.name = data.channels[c],
+                                 .unit = record.find(data.channels[c])->unit,
+                                 .noise = data.noise[c],
+                                 .noise_source = {},
+                                 .declared = of_declared.fitted[c],
+                                 .calibrated = of_calibrated.fitted[c],
+                                 .explained = of_explained.fitted[c],
+                                 .black_box = {}});
     }
   }
-  return {{"path", record.path.string()}, {"rows", record.rows}, {"period", record.period}, {"channels", channels}};
+  return result;
 }
 
 std::vector<Dataset> held_out_data(const ModelFile& model, const ExplainOptions& options) {
@@ -58,24 +60,23 @@ std::vector<Dataset> held_out_data(const ModelFile& model, const ExplainOptions&
 }
 
 template <class Family>
-nlohmann::json held_out_records_json(const ExplainOptions& options, const std::vector<Dataset>& data,
-                                     const SearchResult<Family>& found) {
-  nlohmann::json records = nlohmann::json::array();
+std::vector<HeldOutRecord> held_out_records(const ExplainOptions& options, const std::vector<Dataset>& data,
+                                            const SearchResult<Family>& found) {
+  std::vector<HeldOutRecord> records;
+  records.reserve(data.size());
   for (std::size_t i = 0; i < data.size(); ++i) {
     const auto predicted = [&](const Assessed<Family>& stage) {
       return prediction_of(stage.model, data[i], options.threads);
     };
-    records.push_back(held_out_record_json(options.kept_back[i], data[i],
-                                           {{"before", predicted(found.declared)},
-                                            {"calibrated", predicted(found.calibrated)},
-                                            {"after", predicted(found.explained)}}));
+    records.push_back(held_out_record(options.kept_back[i], data[i],
+                                      {predicted(found.declared), predicted(found.calibrated), predicted(found.explained)}));
   }
   return records;
 }
 
-template nlohmann::json held_out_records_json(const ExplainOptions&, const std::vector<Dataset>&,
-                                              const SearchResult<SimplexFamily>&);
-template nlohmann::json held_out_records_json(const ExplainOptions&, const std::vector<Dataset>&,
-                                              const SearchResult<DirectFamily>&);
+template std::vector<HeldOutRecord> held_out_records(const ExplainOptions&, const std::vector<Dataset>&,
+                                                     const SearchResult<SimplexFamily>&);
+template std::vector<HeldOutRecord> held_out_records(const ExplainOptions&, const std::vector<Dataset>&,
+                                                     const SearchResult<DirectFamily>&);
 
 }  // namespace hotfire::explain

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tools/explain/explain.hpp"
+#include "tools/explain/report/report_json.hpp"
 #include "tools/files/text/sha256.hpp"
 #include "tools/python/models.hpp"
 
@@ -25,7 +26,7 @@ namespace {
 
 /// What a run leaves behind, of a model of one axis or of two.
 struct Found {
-  nlohmann::json report;
+  explain::Result result;
   ReportSeries series;
   Model model;
   std::optional<explain::NextExperiment> next_experiment;
@@ -34,10 +35,10 @@ struct Found {
 Found find(const Model& model, const std::vector<Record>& records, const explain::ExplainOptions& options) {
   if (const auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
     explain::TaosExplanation found = explain::explain(*vehicle, records, options);
-    return {std::move(found.report), std::move(found.series), {std::move(found.model)}, std::nullopt};
+    return {std::move(found.result), std::move(found.series), {std::move(found.model)}, std::nullopt};
   }
   explain::Explanation found = explain::explain(std::get<ModelFile>(model.file), records, options);
-  return {std::move(found.report), std::move(found.series), {std::move(found.model)}, std::move(found.next_experiment)};
+  return {std::move(found.result), std::move(found.series), {std::move(found.model)}, std::move(found.next_experiment)};
 }
 
 /// Lets Python watch a run that works without its lock: hands on what is looked at, and ends the run at Ctrl-C or at an
@@ -115,7 +116,8 @@ void add_explaining(py::module_& module) {
         const py::object raised = watcher.exception() ? watcher.exception()->value() : py::object(py::none());
         const py::object next =
             found.next_experiment ? py::cast(std::move(found.next_experiment->command)) : py::object(py::none());
-        return py::make_tuple(found.report.dump(), std::move(found.series), std::move(found.model), next, raised);
+        return py::make_tuple(explain::report_json(found.result).dump(), std::move(found.series), std::move(found.model),
+                              next, raised);
       },
       py::arg("model"), py::arg("records"), py::arg("hold_out"), py::arg("threads"), py::arg("most_effects"),
       py::arg("exclude"), py::arg("progress"));

@@ -38,7 +38,8 @@ room(tools/explain latent "an unknown signal at each place: where the missing te
 room(tools/explain terms "candidates: listed effects, and terms of unknown law with their tables" inference fit data words)
 room(tools/explain experiment "the next experiment that separates two candidates" terms inference fit data words)
 room(tools/explain search "screening, joint fits and the decision about each term" latent experiment terms inference fit data words)
-room(tools/explain report "the result as JSON, sentences and curves" search latent experiment terms inference fit data words)
+room(tools/explain result "the result of a search as types: verdict, effects, estimates, residual, curves" search latent experiment terms inference fit data words)
+room(tools/explain report "the result as JSON" result inference fit data words)
 
 room(tools/files text "TOML with line and column, CSV lines, units, error messages")
 room(tools/files model "model files" text)

@@ -20,12 +20,8 @@ constexpr double kMostErrors = 4.0;
 /// A fit stops where a step takes less than this share off its cost.
 constexpr double kFitStops = 1e-5;
 
-Value value_of(const nlohmann::json& parameter) {
-  Value value{parameter.at("value").get<double>(), 0.0, parameter.at("unit").get<std::string>()};
-  if (const auto& interval = parameter.at("ci95"); !interval.is_null()) {
-    value.error = (interval[1].get<double>() - interval[0].get<double>()) / kErrorsInInterval;
-  }
-  return value;
+Value value_of(double value, const std::string& unit, const std::optional<explain::Interval95>& interval) {
+  return {value, interval ? (interval->second - interval->first) / kErrorsInInterval : 0.0, unit};
 }
 
 /// Names and sites. With other noise or fewer rows a term without a name may be a gain in one answer and a curve in the
@@ -51,22 +47,21 @@ Answer answer_of(const Given& given) {
   explain::ExplainOptions options;
   options.threads = given.threads;
   const auto explanation = explain::explain(given.declared, given.records, options);
-  const nlohmann::json& report = explanation.report;
+  const explain::Result& result = explanation.result;
   Answer answer;
-  answer.verdict = report.at("verdict");
+  answer.verdict = explain::name_of(result.verdict);
   answer.model = model_text(explanation.model);
   for (const Record& record : given.records) {
     answer.compared += 2.0 * static_cast<double>(record.rows);
   }
-  for (const auto& effect : report.at("effects")) {
-    const std::string name = effect.at("name");
-    answer.finds.push_back({name, effect.value("law", ""), effect.at("site")});
-    for (const auto& [key, parameter] : effect.at("parameters").items()) {
-      answer.values[effect.value("key", name) + "." + key] = value_of(parameter);
+  for (const explain::FoundEffect& effect : result.effects) {
+    answer.finds.push_back({effect.name, effect.law, effect.site});
+    for (const explain::EffectParameter& parameter : effect.parameters) {
+      answer.values[effect.key + "." + parameter.name] = value_of(parameter.value, parameter.unit, parameter.interval);
     }
   }
-  for (const auto& [key, parameter] : report.at("calibration").items()) {
-    answer.values[key] = value_of(parameter);
+  for (const explain::CalibratedParameter& parameter : result.calibration) {
+    answer.values[parameter.key] = value_of(parameter.value, parameter.unit, parameter.interval);
   }
   return answer;
 }

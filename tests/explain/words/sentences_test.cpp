@@ -7,8 +7,8 @@
 #include "tests/explain/words/sentence_check.hpp"
 #include "tools/explain/experiment/test_profiles.hpp"
 #include "tools/explain/latent/form.hpp"
-#include "tools/explain/report/trace.hpp"
-#include "tools/explain/report/verdict.hpp"
+#include "tools/explain/result/trace.hpp"
+#include "tools/explain/result/verdict.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 #include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/reasons.hpp"
@@ -126,7 +126,7 @@ class EverySentence {
         place.sites = {site};
         place.is_likely = true;
         found.located.places.push_back(place);
-        check_.add(sentence_of("unlisted-effect", found, true));
+        check_.add(sentence_of(Verdict::unlisted_effect, found, true));
       }
     }
   }
@@ -134,17 +134,17 @@ class EverySentence {
   void of_verdicts_without_effects() {
     for (const bool noise_is_known : {true, false}) {
       SearchResult<SimplexFamily> found = result_with<SimplexFamily>({});
-      for (const char* verdict : {"nothing-missing", "unlisted-effect", "undecided"}) {
+      for (const Verdict verdict : {Verdict::nothing_missing, Verdict::unlisted_effect, Verdict::undecided}) {
         check_.add(sentence_of(verdict, found, noise_is_known));
       }
       found.searched = false;
-      check_.add(sentence_of("undecided", found, noise_is_known));
+      check_.add(sentence_of(Verdict::undecided, found, noise_is_known));
       found.searched = true;
       for (const bool refined : {true, false}) {
         Trial trial = tried({0, 0, "gimbal_friction", "lugre", "engine_torque"});
         trial.refined = refined;
         found.trials = {trial};
-        check_.add(sentence_of("undecided", found, noise_is_known));
+        check_.add(sentence_of(Verdict::undecided, found, noise_is_known));
       }
     }
     check_.add(words::wrong_declaration(1.02, "servovalve.position_gain", 4.3));
@@ -263,8 +263,8 @@ class EverySentence {
   void of_verdicts(const std::vector<Candidate>& kept) {
     const SearchResult<Family> found = result_with<Family>(kept);
     for (const bool noise_is_known : {true, false}) {
-      check_.add(sentence_of("explained", found, noise_is_known));
-      check_.add(sentence_of("partly-explained", found, noise_is_known));
+      check_.add(sentence_of(Verdict::explained, found, noise_is_known));
+      check_.add(sentence_of(Verdict::partly_explained, found, noise_is_known));
     }
   }
 
@@ -274,7 +274,7 @@ class EverySentence {
     const Candidate listed{0, 0, "gimbal_friction", "lugre", "engine_torque"};
     SearchResult<Family> found = result_with<Family>({term});
     for (const bool noise_is_known : {true, false}) {
-      check_.add(sentence_of("unlisted-effect", found, noise_is_known));
+      check_.add(sentence_of(Verdict::unlisted_effect, found, noise_is_known));
     }
     check_.add(what_it_is_not(found));
     Trial other = tried(term, "dropped");
@@ -282,7 +282,7 @@ class EverySentence {
     found.trials = {tried(listed, "dropped"), other};
     check_.add(what_it_is_not(found));
     found.kept.push_back({tried(listed), {}});
-    check_.add(sentence_of("unlisted-effect", found, true));
+    check_.add(sentence_of(Verdict::unlisted_effect, found, true));
     if (const std::string law = law_in_words(term); !law.empty()) {
       check_.add(law);
     }

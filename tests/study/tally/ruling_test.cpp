@@ -9,7 +9,7 @@
 namespace hotfire::study {
 namespace {
 
-Judgement judged(std::vector<std::string> wanted, const std::vector<nlohmann::json>& effects, double after = 1.0) {
+Judgement judged(std::vector<std::string> wanted, const std::vector<explain::FoundEffect>& effects, double after = 1.0) {
   Judgement judgement;
   judgement.wanted = std::move(wanted);
   judgement.is_wild = true;
@@ -23,25 +23,22 @@ Judgement judged(std::vector<std::string> wanted, const std::vector<nlohmann::js
   return judgement;
 }
 
-nlohmann::json named(const char* name, const char* site) { return {{"name", name}, {"site", site}}; }
-
-nlohmann::json among(const std::vector<std::string>& sites) {
-  nlohmann::json effect = nlohmann::json::object();
-  effect["sites"] = sites;
+explain::FoundEffect named(const char* name, const char* site) {
+  explain::FoundEffect effect;
+  effect.name = name;
+  effect.site = site;
   return effect;
 }
 
-nlohmann::json without_name(const char* site) {
-  nlohmann::json effect = nlohmann::json::object();
-  effect["site"] = site;
+explain::FoundEffect among(const std::vector<std::string>& sites) {
+  explain::FoundEffect effect;
+  effect.sites = sites;
   return effect;
 }
 
-nlohmann::json residual() {
-  nlohmann::json effect = nlohmann::json::object();
-  effect["name"] = "residual";
-  return effect;
-}
+explain::FoundEffect without_name(const char* site) { return named("", site); }
+
+explain::FoundEffect residual() { return named("residual", ""); }
 
 const std::string kValve = "unlisted@valve_command|valve|flow";
 

@@ -21,6 +21,7 @@
 
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/explain/report/report_json.hpp"
 #include "tools/files/rig/profile_file.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/sha256.hpp"
@@ -75,62 +76,63 @@ class Progress {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-std::string number(const nlohmann::json& value) { return fmt::format("{:.4g}", value.get<double>()); }
-
 /// A line for each channel: its rms error under the three models.
-std::string error_rows(const nlohmann::json& channels) {
+std::string error_rows(const std::vector<explain::ChannelErrors>& channels) {
   std::string text;
-  for (const auto& [name, channel] : channels.items()) {
-    text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   noise {}{}\n", name, channel["unit"].get<std::string>(),
-                        number(channel["before"]["rms"]), number(channel["calibrated"]["rms"]),
-                        number(channel["after"]["rms"]), number(channel["noise"]),
-                        channel.contains("black_box") ? ", linear black box " + number(channel["black_box"]["rms"]) : "");
+  for (const explain::ChannelErrors& channel : channels) {
+    text += fmt::format("{:<14} {:<6} {:>12.4g} {:>12.4g} {:>12.4g}   noise {:.4g}{}\n", channel.name, channel.unit,
+                        channel.declared.rms, channel.calibrated.rms, channel.explained.rms, channel.noise,
+                        channel.black_box ? fmt::format(", linear black box {:.4g}", channel.black_box->rms) : "");
+  }
+  return text;
+}
+
+std::string effect_rows(const explain::FoundEffect& effect) {
+  std::string text = fmt::format("\n{} at {}{}{}\n", effect.name, effect.site,
+                                 effect.axis.empty() ? "" : " of the " + effect.axis + " axis",
+                                 effect.law.empty() ? "" : ", " + effect.law);
+  for (const std::string& words : {effect.looks_like, effect.is_not}) {
+    if (!words.empty()) {
+      text += "  " + words + "\n";
+    }
+  }
+  for (const explain::EffectParameter& parameter : effect.parameters) {
+    const std::string interval =
+        parameter.interval ? fmt::format("95 % {:.4g} .. {:.4g}", parameter.interval->first, parameter.interval->second)
+                           : "not determined by the data";
+    text += fmt::format("  {:<20} {:>12.4g} {:<10} {}\n", parameter.name, parameter.value, parameter.unit, interval);
   }
   return text;
 }
 
 /// What a person wants to read first, in a dozen lines.
-std::string summary(const nlohmann::json& report, const std::filesystem::path& out) {
-  std::string text = report["verdict"].get<std::string>() + ": " + report["sentence"].get<std::string>() + "\n\n";
+std::string summary(const explain::Result& result, const std::filesystem::path& out) {
+  std::string text = fmt::format("{}: {}\n\n", explain::name_of(result.verdict), result.sentence);
   text += fmt::format("{:<14} {:<6} {:>12} {:>12} {:>12}   (rms error on held-out data)\n", "channel", "unit", "declared",
                       "calibrated", "explained");
-  text += error_rows(report["channels"]);
-  for (const auto& record : report.value("held_out_records", nlohmann::json::array())) {
-    text += fmt::format("\n{}, held out\n", record["path"].get<std::string>());
-    text += error_rows(record["channels"]);
+  text += error_rows(result.channels);
+  for (const explain::HeldOutRecord& record : result.held_out_records) {
+    text += fmt::format("\n{}, held out\n", record.path);
+    text += error_rows(record.channels);
   }
-  if (report.contains("baseline")) {
-    text += "\n" + report["baseline"]["sentence"].get<std::string>() + "\n";
+  if (result.baseline) {
+    text += "\n" + result.baseline->sentence + "\n";
   }
-  for (const auto& effect : report["effects"]) {
-    text += fmt::format("\n{} at {}{}{}\n", effect["name"].get<std::string>(), effect["site"].get<std::string>(),
-                        effect.contains("axis") ? " of the " + effect["axis"].get<std::string>() + " axis" : "",
-                        effect.contains("law") ? ", " + effect["law"].get<std::string>() : "");
-    for (const char* words : {"looks_like", "is_not"}) {
-      if (const std::string told = effect.value(words, ""); !told.empty()) {
-        text += "  " + told + "\n";
-      }
-    }
-    for (const auto& [name, parameter] : effect["parameters"].items()) {
-      const auto& interval = parameter["ci95"];
-      text +=
-          fmt::format("  {:<20} {:>12} {:<10} {}\n", name, number(parameter["value"]), parameter["unit"].get<std::string>(),
-                      interval.is_null() ? "not determined by the data"
-                                         : fmt::format("95 % {} .. {}", number(interval[0]), number(interval[1])));
-    }
+  for (const explain::FoundEffect& effect : result.effects) {
+    text += effect_rows(effect);
   }
-  if (report["residual"].contains("next_experiment")) {
-    text += "\nnext experiment: " + report["residual"]["next_experiment"].get<std::string>() + "\n";
+  if (!result.residual.next_experiment.empty()) {
+    text += "\nnext experiment: " + result.residual.next_experiment + "\n";
   }
-  for (const auto& warning : report["warnings"]) {
-    text += "\nwarning: " + warning.get<std::string>();
+  for (const std::string& warning : result.warnings) {
+    text += "\nwarning: " + warning;
   }
   return text + fmt::format("\n{}: explained.toml, report.json, report.html\n", out.string());
 }
 
 /// What a run leaves behind, of a model of one axis or of two.
 struct Outcome {
-  nlohmann::json report;
+  explain::Result result;
   ReportSeries series;
   std::string model;
   std::optional<explain::NextExperiment> next_experiment;
@@ -145,10 +147,10 @@ AnyModel load_any(const std::filesystem::path& path) {
 Outcome outcome_of(const AnyModel& model, const std::vector<Record>& records, const explain::ExplainOptions& options) {
   if (const auto* vehicle = std::get_if<VehicleFile>(&model)) {
     explain::TaosExplanation found = explain::explain(*vehicle, records, options);
-    return {std::move(found.report), std::move(found.series), vehicle_text(found.model), std::nullopt};
+    return {std::move(found.result), std::move(found.series), vehicle_text(found.model), std::nullopt};
   }
   explain::Explanation found = explain::explain(std::get<ModelFile>(model), records, options);
-  return {std::move(found.report), std::move(found.series), model_text(found.model), std::move(found.next_experiment)};
+  return {std::move(found.result), std::move(found.series), model_text(found.model), std::move(found.next_experiment)};
 }
 
 std::string file_name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -231,16 +233,17 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   options.watch.interrupted = [&] {
     return interrupted != 0 || (arguments.seconds && progress.seconds() > *arguments.seconds);
   };
-  Outcome outcome = outcome_of(model, records, options);
-  outcome.report["hotfire"] = HOTFIRE_VERSION;
-  outcome.report["model_sha256"] = model_digest;
-  put_digests(record_digests, outcome.report["records"]);
+  const Outcome outcome = outcome_of(model, records, options);
+  nlohmann::json report = explain::report_json(outcome.result);
+  report["hotfire"] = HOTFIRE_VERSION;
+  report["model_sha256"] = model_digest;
+  put_digests(record_digests, report["records"]);
   if (!held_out_digests.empty()) {
-    put_digests(held_out_digests, outcome.report["held_out_records"]);
+    put_digests(held_out_digests, report["held_out_records"]);
   }
-  outcome.report["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
-  outcome.report["command_line"] = command_line;
-  outcome.report["seconds"] = progress.seconds();
+  report["date"] = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
+  report["command_line"] = command_line;
+  report["seconds"] = progress.seconds();
 
   write_whole_file(out / "explained.toml", outcome.model);
   // One of an earlier run would be taken for this one's.
@@ -252,9 +255,9 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
       write_whole_file(out / kNextProfile, profile_with_parts(arguments.lab, outcome.next_experiment->parts));
     }
   }
-  write_whole_file(out / "report.json", outcome.report.dump(1) + "\n");
-  write_whole_file(out / "report.html", report_page(outcome.report, outcome.series));
-  std::cout << (arguments.json ? outcome.report.dump(1) + "\n" : summary(outcome.report, out));
+  write_whole_file(out / "report.json", report.dump(1) + "\n");
+  write_whole_file(out / "report.html", report_page(report, outcome.series));
+  std::cout << (arguments.json ? report.dump(1) + "\n" : summary(outcome.result, out));
   if (interrupted != 0) {
     throw CLI::RuntimeError(130);
   }

@@ -2,21 +2,7 @@
 #include "tools/explain/report/report_json.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-
-#include "tools/explain/data/statistics.hpp"
-#include "tools/explain/inference/identifiability.hpp"
-#include "tools/explain/inference/uncertainty.hpp"
-#include "tools/explain/report/curve.hpp"
-#include "tools/explain/report/errors_json.hpp"
-#include "tools/explain/report/located_json.hpp"
-#include "tools/explain/report/report_evidence.hpp"
-#include "tools/explain/report/report_residual.hpp"
-#include "tools/explain/report/trace.hpp"
-#include "tools/explain/report/verdict.hpp"
-#include "tools/explain/terms/unlisted.hpp"
-#include "tools/explain/words/warnings.hpp"
+#include <iterator>
 
 namespace hotfire::explain {
 
@@ -24,297 +10,264 @@ namespace {
 
 using nlohmann::json;
 
-json interval_of(const Estimate& estimate) {
-  return estimate.interval ? json{estimate.interval->first, estimate.interval->second} : json(nullptr);
+/// The schema of report.json: another number where a key changes its meaning.
+constexpr int kSchema = 1;
+
+json errors_json(const ChannelFit& fit) {
+  return {{"rms", fit.rms}, {"max", fit.max}, {"bias", fit.bias}, {"fit_percent", fit.fit_percent}};
 }
 
-/// Where an interval comes from; null where there is none.
-json source_of(const Estimate& estimate) {
-  return !estimate.interval ? json(nullptr) : json(estimate.from_profile ? "profile" : "curvature");
-}
-
-bool noise_is_known(const Dataset& data) {
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (data.used[c] && !data.noise_is_known(c)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-const char* source_of(NoiseSource source) {
+const char* name_of(NoiseSource source) {
   return source == NoiseSource::declared ? "declared" : source == NoiseSource::estimated ? "estimated" : "floor";
 }
 
-template <class Family>
-std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
-  const Fitted<Family>& model = found.explained.model;
-  std::vector<Estimate> estimated = estimates(model.free, model.u, model.normal);
-  for (std::size_t k = 0; k < estimated.size(); ++k) {
-    if (const auto profile = found.profiles.find(model.free[k].key); profile != found.profiles.end()) {
-      estimated[k].interval = profile->second;
-      estimated[k].from_profile = true;
-    }
-  }
-  return estimated;
+json interval_json(const std::optional<Interval95>& interval) {
+  return interval ? json{interval->first, interval->second} : json(nullptr);
 }
 
-template <class Family>
-json channels_json(const Dataset& data, const std::vector<Record>& records, const SearchResult<Family>& found) {
+template <class Row, class ToJson>
+json list_of(const std::vector<Row>& rows, ToJson&& to_json) {
+  json list = json::array();
+  std::transform(rows.begin(), rows.end(), std::back_inserter(list), to_json);
+  return list;
+}
+
+json channels_json(const std::vector<ChannelErrors>& channels) {
+  json all = json::object();
+  for (const ChannelErrors& channel : channels) {
+    json& own = all[channel.name];
+    own = {{"unit", channel.unit},
+           {"noise", channel.noise},
+           {"before", errors_json(channel.declared)},
+           {"calibrated", errors_json(channel.calibrated)},
+           {"after", errors_json(channel.explained)}};
+    if (channel.noise_source) {
+      own["noise_source"] = name_of(*channel.noise_source);
+    }
+    if (channel.black_box) {
+      own["black_box"] = errors_json(*channel.black_box);
+    }
+  }
+  return all;
+}
+
+json record_json(const RecordResult& record) {
   json channels = json::object();
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (!data.used[c]) {
-      continue;
+  for (const RecordChannel& channel : record.channels) {
+    channels[channel.name] = {{"noise", channel.noise}};
+    if (channel.zero) {
+      channels[channel.name]["zero"] = *channel.zero;
     }
-    std::string unit;
-    for (const Record& record : records) {
-      if (const Channel* channel = record.find(data.channels[c])) {
-        unit = channel->unit;
-      }
-    }
-    channels[data.channels[c]] = {{"unit", unit},
-                                  {"noise", data.noise[c]},
-                                  {"noise_source", source_of(data.noise_source[c])},
-                                  {"before", errors_of(found.declared.goodness.held_out[c])},
-                                  {"calibrated", errors_of(found.calibrated.goodness.held_out[c])},
-                                  {"after", errors_of(found.explained.goodness.held_out[c])}};
   }
-  return channels;
+  return {{"path", record.path}, {"rows", record.rows}, {"period", record.period}, {"channels", channels}};
 }
 
-/// Meaning of a field by the key that a free parameter carries.
-template <class Family>
-std::map<std::string, std::string> meanings() {
-  std::map<std::string, std::string> result;
-  const PlainParameters<Family> neutral;
-  model::visit_parameters(neutral, [&](const model::Key& key, const auto& field, const double&) {
-    result[(key.is_effect ? "effects." : "") + std::string(key.section) + "." + std::string(field.name)] = field.meaning;
+json held_out_json(const HeldOutRecord& record) {
+  return {
+      {"path", record.path}, {"rows", record.rows}, {"period", record.period}, {"channels", channels_json(record.channels)}};
+}
+
+json calibration_json(const std::vector<CalibratedParameter>& calibration) {
+  json all = json::object();
+  for (const CalibratedParameter& parameter : calibration) {
+    all[parameter.key] = {
+        {"declared", parameter.declared},   {"value", parameter.value}, {"ci95", interval_json(parameter.interval)},
+        {"tolerance", parameter.tolerance}, {"unit", parameter.unit},   {"pressed", parameter.pressed}};
+  }
+  return all;
+}
+
+json axes_json(const Axes& axes) {
+  return {{"x_label", axes.x_label}, {"x_unit", axes.x_unit}, {"y_label", axes.y_label}, {"y_unit", axes.y_unit}};
+}
+
+json curve_json(const Curve& curve) {
+  json result = axes_json(curve.axes);
+  result["series"] = list_of(curve.series, [](const CurveSeries& one) {
+    return json{{"name", one.name}, {"x", one.x}, {"y", one.y}};
   });
   return result;
 }
 
-/// A table's ordinate means what its table does; its place in it is the number that ends its key.
-std::string meaning_of(const std::map<std::string, std::string>& meanings, const FreeParameter& free) {
-  const auto known = meanings.find(free.key);
-  return known != meanings.end() ? known->second : "point " + free.key.substr(free.key.rfind('.') + 1) + " of the table";
-}
-
-template <class Family>
-json effects_json(const Dataset& data, const SearchResult<Family>& found, const std::vector<Estimate>& estimated) {
-  json effects = json::array();
-  const auto parameters =
-      Evaluator<Family>::with_values(found.explained.model.base, found.explained.model.free, found.explained.model.u);
-  const Reach reach = reach_of(data, parameters);
-  const auto meaning = meanings<Family>();
-  for (const Kept& kept : found.kept) {
-    const Candidate& candidate = kept.trial.candidate;
-    const bool unlisted = is_unlisted<Family>(candidate);
-    json effect{{"name", unlisted ? "unlisted" : candidate.name}, {"site", candidate.site}, {"parameters", json::object()}};
-    if (unlisted) {
-      effect["key"] = candidate.name;
-      effect["sites"] = sites_of(kept);
-    }
-    if (!candidate.option_name.empty()) {
-      effect["law"] = candidate.option_name;
-    }
-    const std::string prefix = "effects." + candidate.name + ".";
-    for (std::size_t k = 0; k < estimated.size(); ++k) {
-      const FreeParameter& free = found.explained.model.free[k];
-      if (free.key.starts_with(prefix)) {
-        effect["parameters"][free.key.substr(prefix.size())] = {{"value", estimated[k].value},
-                                                                {"unit", free.unit},
-                                                                {"ci95", interval_of(estimated[k])},
-                                                                {"identified", estimated[k].interval.has_value()},
-                                                                {"interval_from", source_of(estimated[k])},
-                                                                {"meaning", meaning_of(meaning, free)}};
-      }
-    }
-    effect["evidence"] = {{"held_out_error_drop_percent", 100.0 * (1.0 - kept.trial.held_out_ratio)},
-                          {"delta_bic", kept.trial.delta_criterion}};
-    effect["alternatives"] = json::array();
-    for (const Trial& other : kept.alternatives) {
-      if (other.refined && other.delta_criterion < 0.0) {
-        json alternative{{"name", other.candidate.name},
-                         {"delta_bic", other.delta_criterion - kept.trial.delta_criterion},
-                         {"held_out_error_drop_percent", 100.0 * (1.0 - other.held_out_ratio)}};
-        if (!other.candidate.option_name.empty()) {
-          alternative["law"] = other.candidate.option_name;
-        }
-        effect["alternatives"].push_back(alternative);
-      }
-    }
-    if (unlisted) {
-      effect["is_not"] = what_it_is_not(found);
-    }
-    if (const auto table = unlisted ? table_of<Family>(parameters, candidate) : std::nullopt) {
-      effect["looks_like"] = in_words(*table);
-      effect["curve"] = {{"x_label", table->x_name},
-                         {"x_unit", table->x_unit},
-                         {"y_label", table->meaning},
-                         {"y_unit", table->y_unit},
-                         {"series", {{{"name", "as found"}, {"x", table->x}, {"y", table->y}}}}};
-    } else if (unlisted) {
-      effect["looks_like"] = law_in_words(candidate);
-    } else {
-      effect["curve"] = curve_of<Family>(parameters, candidate.effect, reach);
-    }
-    effects.push_back(std::move(effect));
+json parameters_json(const std::vector<EffectParameter>& parameters) {
+  json all = json::object();
+  for (const EffectParameter& parameter : parameters) {
+    const char* source = parameter.interval_is_of_profile ? "profile" : "curvature";
+    all[parameter.name] = {{"value", parameter.value},
+                           {"unit", parameter.unit},
+                           {"ci95", interval_json(parameter.interval)},
+                           {"identified", parameter.interval.has_value()},
+                           {"interval_from", parameter.interval ? json(source) : json(nullptr)},
+                           {"meaning", parameter.meaning}};
   }
-  return effects;
+  return all;
 }
 
-template <class Family>
-json calibration_json(const SearchResult<Family>& found, const std::vector<Estimate>& estimated) {
-  json calibration = json::object();
-  for (std::size_t k = 0; k < estimated.size(); ++k) {
-    const FreeParameter& free = found.explained.model.free[k];
-    if (free.is_declared()) {
-      calibration[free.key] = {
-          {"declared", free.declared},   {"value", estimated[k].value}, {"ci95", interval_of(estimated[k])},
-          {"tolerance", free.tolerance}, {"unit", free.unit},           {"pressed", estimated[k].pressed}};
-    }
-  }
-  return calibration;
-}
-
-/// Effects that are no fault of the plant.
-void warn_of_channels(const std::vector<Kept>& found, json& warnings) {
-  for (const Kept& kept : found) {
-    if (is_of_record_time(kept.trial.candidate)) {
-      warnings.push_back(words::drifts(kept.trial.candidate.name, kept.trial.candidate.site));
-    }
-    const std::string& name = kept.trial.candidate.name;
-    if (is_fault_of_record(kept.trial.candidate)) {
-      const std::string& channel = kept.trial.candidate.option_name;
-      warnings.push_back(words::fault_of_record(name, channel.empty() ? "command" : channel));
-    }
+void put_law(const std::string& law, json& row) {
+  if (!law.empty()) {
+    row["law"] = law;
   }
 }
 
-template <class Family>
-json warnings_of(const ModelFile& model, const Dataset& data, const SearchResult<Family>& found,
-                 const std::vector<Estimate>& estimated) {
-  json warnings = json::array();
-  if (found.interrupted) {
-    warnings.push_back(words::ended_early());
+void put_axis(const std::string& axis, json& row) {
+  if (!axis.empty()) {
+    row["axis"] = axis;
   }
-  warn_of_rows(data, warnings);
-  warn_of_channels(found.kept, warnings);
-  for (const std::string& key : model.left_out) {
-    warnings.push_back(words::left_out(key));
+}
+
+json alternative_json(const Alternative& alternative) {
+  json row{{"name", alternative.name},
+           {"delta_bic", alternative.delta_criterion},
+           {"held_out_error_drop_percent", alternative.held_out_drop}};
+  put_law(alternative.law, row);
+  return row;
+}
+
+json effect_json(const FoundEffect& effect) {
+  json row{{"name", effect.name},
+           {"site", effect.site},
+           {"parameters", parameters_json(effect.parameters)},
+           {"evidence", {{"held_out_error_drop_percent", effect.held_out_drop}, {"delta_bic", effect.delta_criterion}}},
+           {"alternatives", list_of(effect.alternatives, alternative_json)}};
+  put_axis(effect.axis, row);
+  put_law(effect.law, row);
+  if (effect.is_unlisted()) {
+    row["key"] = effect.key;
+    row["sites"] = effect.sites;
+    row["looks_like"] = effect.looks_like;
+    row["is_not"] = effect.is_not;
   }
-  if (found.explained.model.free.empty() || !found.explained.model.free.front().is_declared()) {
-    warnings.push_back(words::no_tolerance());
+  if (effect.curve) {
+    row["curve"] = curve_json(*effect.curve);
   }
-  for (std::size_t k = 0; k < estimated.size(); ++k) {
-    const FreeParameter& free = found.explained.model.free[k];
-    if (free.is_initial_state()) {
-      continue;
-    }
-    if (estimated[k].pressed) {
-      warnings.push_back(free.is_declared() ? words::moved_far(free.key, std::abs(found.explained.model.u[k]))
-                                            : words::at_a_bound(free.key));
-    } else if (!estimated[k].interval && !free.is_declared()) {
-      warnings.push_back(words::undetermined(free.key));
-    }
+  return row;
+}
+
+json search_json(const SearchRow& row) {
+  json result{{"round", row.round},     {"candidate", row.candidate}, {"delta_bic", row.delta_criterion},
+              {"seconds", row.seconds}, {"decision", row.decision},   {"reason", row.reason}};
+  put_axis(row.axis, result);
+  put_law(row.law, result);
+  if (row.held_out_ratio) {
+    result["held_out_rms_ratio"] = *row.held_out_ratio;
   }
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (!data.used[c] || !data.noise_declared(c)) {
-      continue;
+  return result;
+}
+
+json located_json(const LocatedResult& located) {
+  const auto place_json = [](const LocatedPlace& place) {
+    json row{{"sites", place.sites}, {"log_likelihood_gain", place.log_likelihood_gain}, {"likely", place.is_likely}};
+    for (const auto& [channel, value] : place.mean_square_over_noise) {
+      row["mean_square_over_noise"][channel] = value;
     }
-    std::vector<double> residual;
-    for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-      const std::vector<double> part = scored_residual(data.experiments[e], found.explained.prediction[e], c);
-      residual.insert(residual.end(), part.begin(), part.end());
-    }
-    const double seen = noise_from_differences(residual);
-    if (seen > 1.5 * data.noise[c] || seen < data.noise[c] / 1.5) {
-      warnings.push_back(words::noise_differs(data.channels[c], data.noise[c], seen));
-    }
+    return row;
+  };
+  return {{"sites", located.sites}, {"single", located.is_single}, {"places", list_of(located.places, place_json)}};
+}
+
+json trace_json(const TraceResult& trace) {
+  json points = axes_json(trace.axes);
+  points["x"] = trace.x;
+  points["y"] = trace.y;
+  return {{"site", trace.site}, {"text", trace.text}, {"points", points}};
+}
+
+json correlation_json(const BeforeAndAfter<Correlation>& both) {
+  return {{"lag_s", both.after.lags},
+          {"before", both.before.values},
+          {"after", both.after.values},
+          {"bound99", both.after.bound99}};
+}
+
+/// One list for each member of the rows.
+template <class Row>
+json column(const std::vector<Row>& rows, double Row::*member) {
+  return list_of(rows, [&](const Row& row) { return row.*member; });
+}
+
+json frequency_json(const BeforeAndAfter<std::vector<Band>>& both) {
+  return {{"from_hz", column(both.after, &Band::from)},
+          {"to_hz", column(both.after, &Band::to)},
+          {"before", column(both.before, &Band::rms)},
+          {"after", column(both.after, &Band::rms)},
+          {"noise", column(both.after, &Band::noise)}};
+}
+
+json amplitude_json(const BeforeAndAfter<std::vector<AmplitudeRange>>& both) {
+  return {{"from", column(both.after, &AmplitudeRange::from)},
+          {"to", column(both.after, &AmplitudeRange::to)},
+          {"before", column(both.before, &AmplitudeRange::rms)},
+          {"after", column(both.after, &AmplitudeRange::rms)},
+          {"seconds", column(both.after, &AmplitudeRange::seconds)}};
+}
+
+json residual_json(const ResidualResult& residual) {
+  json result{{"white", residual.is_white},        {"unexplained_percent", residual.unexplained},
+              {"autocorrelation", json::object()}, {"input_correlation", json::object()},
+              {"by_frequency", json::object()},    {"by_amplitude", json::object()}};
+  if (!residual.next_experiment.empty()) {
+    result["next_experiment"] = residual.next_experiment;
   }
-  return warnings;
+  for (const ChannelResidual& own : residual.channels) {
+    result["autocorrelation"][own.channel] = correlation_json(own.autocorrelation);
+    json& with_input = result["input_correlation"][own.channel] = correlation_json(own.input_correlation);
+    with_input["independent"] = own.input_correlation.after.is_none();
+    result["by_frequency"][own.channel] = frequency_json(own.by_frequency);
+    result["by_amplitude"][own.channel] = amplitude_json(own.by_amplitude);
+  }
+  return result;
+}
+
+json baseline_json(const Baseline& baseline) {
+  json channels = json::object();
+  for (const BaselineChannel& channel : baseline.channels) {
+    json& own = channels[channel.name] = errors_json(channel.errors);
+    own["order"] = channel.order;
+    own["delay"] = channel.delay;
+  }
+  return {{"kind", "linear"},
+          {"period", baseline.period},
+          {"channels", channels},
+          {"better_than_explained", baseline.is_better},
+          {"sentence", baseline.sentence}};
 }
 
 }  // namespace
 
-json record_channels_json(const Dataset& data, std::size_t experiment, const Zeros& zeros) {
-  const Experiment& record = data.experiments[experiment];
-  json channels = json::object();
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (!record.measured[c].empty()) {
-      channels[data.channels[c]] = {{"noise", record.noise[c]}};
-      if (record.zero_deviation[c] > 0.0) {
-        channels[data.channels[c]]["zero"] = zeros[experiment][c];
-      }
-    }
+json report_json(const Result& result) {
+  json report{{"schema", kSchema},
+              {"model", result.model},
+              {"name", result.name},
+              {"verdict", name_of(result.verdict)},
+              {"sentence", result.sentence},
+              {"records", list_of(result.records, record_json)},
+              {"held_out", result.held_out},
+              {"warnings", result.warnings},
+              {"channels", channels_json(result.channels)},
+              {"calibration", calibration_json(result.calibration)},
+              {"effects", list_of(result.effects, effect_json)},
+              {"identifiability", list_of(result.identifiability,
+                                          [](const std::string& text) {
+                                            return json{{"text", text}};
+                                          })},
+              {"residual", residual_json(result.residual)},
+              {"search", list_of(result.search, search_json)}};
+  if (!result.held_out_records.empty()) {
+    report["held_out_records"] = list_of(result.held_out_records, held_out_json);
   }
-  return channels;
-}
-
-void warn_of_rows(const Dataset& data, json& warnings) {
-  for (const Experiment& experiment : data.experiments) {
-    for (const std::string& channel : experiment.unused) {
-      warnings.push_back(words::unused_channel(experiment.name, channel, data.channels));
-    }
+  if (result.located) {
+    report["located"] = located_json(*result.located);
   }
-  for (const Experiment& experiment : data.experiments) {
-    if (experiment.first_scored > 0) {
-      warnings.push_back(
-          words::not_at_rest(experiment.name, static_cast<double>(experiment.first_scored) * experiment.period));
-    }
+  if (result.trace) {
+    report["trace"] = trace_json(*result.trace);
   }
-  for (const Experiment& experiment : data.experiments) {
-    for (const Block& block : experiment.excluded) {
-      warnings.push_back(words::excluded(experiment.name, experiment.time_of(block.first), experiment.time_of(block.last)));
-    }
-    if (experiment.input_is_held) {
-      warnings.push_back(words::input_held(experiment.name));
-    }
+  if (result.baseline) {
+    report["baseline"] = baseline_json(*result.baseline);
   }
-}
-
-template <class Family>
-json report_json(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
-                 const SearchResult<Family>& found) {
-  const std::vector<Estimate> estimated = estimates_of(found);
-  const std::string verdict = verdict_of(data, found);
-  const auto calibrated =
-      Evaluator<Family>::with_values(found.calibrated.model.base, found.calibrated.model.free, found.calibrated.model.u);
-  json report{{"schema", 1},
-              {"model", model.path.string()},
-              {"name", model.name},
-              {"verdict", verdict},
-              {"sentence", sentence_of(verdict, found, noise_is_known(data))},
-              {"records", json::array()},
-              {"held_out", held_out_names(data)},
-              {"warnings", warnings_of(model, data, found, estimated)},
-              {"channels", channels_json(data, records, found)},
-              {"calibration", calibration_json(found, estimated)},
-              {"effects", effects_json(data, found, estimated)},
-              {"identifiability", json::array()},
-              {"residual", residual_json(data, found.declared.prediction, found.explained.prediction)},
-              {"search", search_json(found.trials)}};
-  if (!found.located.places.empty()) {
-    report["located"] = located_json(data, found.located);
-  }
-  for (const std::string& sentence : not_told_apart(found.explained.model)) {
-    report["identifiability"].push_back({{"text", sentence}});
-  }
-  for (std::size_t e = 0; e < records.size(); ++e) {
-    report["records"].push_back({{"path", records[e].path.string()},
-                                 {"rows", records[e].rows},
-                                 {"period", records[e].period},
-                                 {"channels", record_channels_json(data, e, found.explained.zeros)}});
-  }
-  // What the calibrated model lacks: against the declared one a wrong value would show as well.
-  if (const json trace = trace_json(reconstruct(without_zeros(data, found.calibrated.zeros), calibrated), found.kept);
-      !trace.is_null()) {
-    report["trace"] = trace;
+  if (result.valve_bias) {
+    report["valve_bias"] = *result.valve_bias;
   }
   return report;
 }
-
-template json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&, const SearchResult<SimplexFamily>&);
-template json report_json(const ModelFile&, const std::vector<Record>&, const Dataset&, const SearchResult<DirectFamily>&);
 
 }  // namespace hotfire::explain

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 #include "tools/explain/explain.hpp"
 #include "tools/explain/search/stopwatch.hpp"
@@ -34,11 +36,9 @@ std::vector<Record> share_of(const std::vector<Record>& records, double share) {
   return part;
 }
 
-std::string names_in(const nlohmann::json& effects) {
+std::string names_of(const std::vector<explain::FoundEffect>& effects) {
   std::vector<std::string> names;
-  for (const auto& effect : effects) {
-    names.push_back(effect.at("name"));
-  }
+  std::transform(effects.begin(), effects.end(), std::back_inserter(names), std::mem_fn(&explain::FoundEffect::name));
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, " + "));
 }
 
@@ -79,7 +79,7 @@ std::vector<CostPoint> cost_by_length(const std::filesystem::path& folder, unsig
     const explain::Stopwatch stopwatch;
     const auto explanation = explain::explain(model, part, options);
     point.processor_seconds = stopwatch.processor_seconds();
-    point.found = names_in(explanation.report.at("effects"));
+    point.found = names_of(explanation.result.effects);
     points.push_back(point);
   }
   return points;

@@ -136,12 +136,16 @@ void explain_case(const Model& declared, const std::vector<Record>& records, con
       options.exclusions.push_back(explain::exclusion_from(text));
     }
     const auto explanation = explain::explain(declared, records, options);
-    judgement.verdict = explanation.report.at("verdict");
-    for (const auto& effect : explanation.report.at("effects")) {
+    const explain::Result& result = explanation.result;
+    judgement.verdict = explain::name_of(result.verdict);
+    for (const explain::FoundEffect& effect : result.effects) {
       add_find(effect, judgement);
     }
-    if (judgement.found.empty() && explanation.report.contains("located")) {
-      add_find({{"name", "residual"}, {"sites", explanation.report.at("located").at("sites")}}, judgement);
+    if (judgement.found.empty() && result.located) {
+      explain::FoundEffect residual;
+      residual.name = "residual";
+      residual.sites = result.located->sites;
+      add_find(residual, judgement);
     }
     judgement.after = scored_errors(explanation.model, unseen, noise_of(declared));
   } catch (const std::exception& error) {

@@ -83,20 +83,19 @@ void rule_on_unlisted(const std::set<std::string>& may_name, Judgement& judgemen
   judgement.halved = judgement.left().value_or(1.0) < 0.5;
 }
 
-void add_find(const nlohmann::json& effect, Judgement& judgement) {
-  const std::string axis = effect.contains("axis") ? fmt::format(".{}", effect.at("axis").get<std::string>()) : "";
-  std::vector<std::string> sites = effect.value("sites", std::vector<std::string>{});
-  if (sites.empty() && effect.contains("site")) {
-    sites.push_back(effect.at("site"));
+void add_find(const explain::FoundEffect& effect, Judgement& judgement) {
+  const std::string axis = effect.axis.empty() ? "" : "." + effect.axis;
+  std::vector<std::string> sites = effect.sites;
+  if (sites.empty() && !effect.site.empty()) {
+    sites.push_back(effect.site);
   }
   for (std::string& site : sites) {
     site += axis;
   }
-  const std::string name = effect.value("name", "unlisted");
+  const bool is_named = !effect.name.empty() && effect.name != "unlisted" && effect.name != "residual";
   judgement.found_sites.push_back(fmt::format("{}", fmt::join(sites, "|")));
-  judgement.found.push_back(name == "unlisted" || name == "residual" ? std::string(kUnlisted) + judgement.found_sites.back()
-                                                                     : name + axis);
-  judgement.found_laws.push_back(effect.value("law", ""));
+  judgement.found.push_back(is_named ? effect.name + axis : std::string(kUnlisted) + judgement.found_sites.back());
+  judgement.found_laws.push_back(effect.law);
 }
 
 }  // namespace hotfire::study

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/report/verdict.hpp"
+#include "tools/explain/result/verdict.hpp"
 
 #include <CppUTest/TestHarness.h>
 
@@ -31,7 +31,7 @@ std::string sentence_with(const std::vector<Candidate>& kept) {
   for (const Candidate& candidate : kept) {
     found.kept.push_back({tried(candidate), {}});
   }
-  return sentence_of("explained", found);
+  return sentence_of(Verdict::explained, found);
 }
 
 const Candidate kLeakage{0, 0, "leakage", "laminar", "flow"};
@@ -63,13 +63,13 @@ TEST(Verdict, AnInterruptedSearchNamesWhatPromisedMostByThen) {
   fitted.held_out_ratio = 0.25;
   found.trials = {screened};
   STRCMP_CONTAINS("on held-out data is 4.0 times the noise. In screening, leakage (laminar) at flow ranked first.",
-                  sentence_of("undecided", found).c_str());
+                  sentence_of(Verdict::undecided, found).c_str());
   found.trials = {screened, fitted};
   STRCMP_CONTAINS("Of the candidates fitted before, backlash at load_spring leaves the least: 25 % of that error.",
-                  sentence_of("undecided", found).c_str());
+                  sentence_of(Verdict::undecided, found).c_str());
   found.trials.clear();
-  STRCMP_CONTAINS("on held-out data is 4.0 times the noise.", sentence_of("undecided", found).c_str());
-  CHECK(sentence_of("undecided", found).ends_with("the noise."));
+  STRCMP_CONTAINS("on held-out data is 4.0 times the noise.", sentence_of(Verdict::undecided, found).c_str());
+  CHECK(sentence_of(Verdict::undecided, found).ends_with("the noise."));
 }
 
 TEST(Verdict, TimesTheNoiseIsNotSaidWhereAFloorReplacesIt) {
@@ -78,7 +78,7 @@ TEST(Verdict, TimesTheNoiseIsNotSaidWhereAFloorReplacesIt) {
   found.calibrated = leaving(4.0);
   found.explained = leaving(1.0);
   found.kept.push_back({tried(kLeakage), {}});
-  const std::string sentence = sentence_of("partly-explained", found, false);
+  const std::string sentence = sentence_of(Verdict::partly_explained, found, false);
   STRCMP_CONTAINS("falls to 12.5 % of the declared model's error", sentence.c_str());
   CHECK(sentence.find("times the noise") == std::string::npos);
 }

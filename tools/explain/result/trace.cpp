@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/report/trace.hpp"
+#include "tools/explain/result/trace.hpp"
 
 #include <algorithm>
 #include <cmath>

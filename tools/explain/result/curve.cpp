@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/report/curve.hpp"
+#include "tools/explain/result/curve.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,6 @@ namespace hotfire::explain {
 namespace {
 
 using model::Site;
-using nlohmann::json;
 
 constexpr int kPoints = 400;
 constexpr double kStep = 1e-3;
@@ -35,29 +34,14 @@ double largest_rate(const std::vector<double>& values, double period) {
   return most;
 }
 
-struct Drawn {
-  std::string name;
-  std::vector<double> x;
-  std::vector<double> y;
-};
-
-json curve(const std::string& x_label, const std::string& x_unit, const std::string& y_label, const std::string& y_unit,
-           const std::vector<Drawn>& series) {
-  json result{{"x_label", x_label}, {"x_unit", x_unit}, {"y_label", y_label}, {"y_unit", y_unit}, {"series", json::array()}};
-  for (const Drawn& drawn : series) {
-    result["series"].push_back({{"name", drawn.name}, {"x", drawn.x}, {"y", drawn.y}});
-  }
-  return result;
-}
-
 /// A force over one settled cycle of a sine of given position and rate amplitudes, against the rate or the position.
 template <class E, class Params>
-Drawn cycle(const Params& params, double position, double rate, bool against_rate) {
+CurveSeries cycle(const Params& params, double position, double rate, bool against_rate) {
   const double w = rate / position;
   const double period = 2.0 * std::numbers::pi / w;
   const double h = period / kPoints;
   typename E::template State<double> state{};
-  Drawn drawn;
+  CurveSeries drawn;
   for (int i = 0; i < 3 * kPoints; ++i) {
     const double phase = w * h * (i + 0.5);
     const double v = rate * std::cos(phase);
@@ -81,10 +65,10 @@ bool depends_on_rate(const Params& params, double position, double rate) {
 }
 
 template <class E, class Params>
-json motion_curve(const Params& params, double position, double rate, const std::string& mover,
-                  const std::string& angle_unit, const std::string& force, const std::string& force_unit) {
+Curve motion_curve(const Params& params, double position, double rate, const std::string& mover,
+                   const std::string& angle_unit, const std::string& force, const std::string& force_unit) {
   const bool against_rate = depends_on_rate<E>(params, position, rate);
-  std::vector<Drawn> series;
+  std::vector<CurveSeries> series;
   for (const double part : {1.0, 0.2}) {
     series.push_back(cycle<E>(params, part * position, part * rate, against_rate));
     series.back().name = fmt::format("sine at {:.0f} % of the largest motion", 100.0 * part);
@@ -93,15 +77,16 @@ json motion_curve(const Params& params, double position, double rate, const std:
       break;
     }
   }
-  return curve(against_rate ? mover + " rate" : mover + (angle_unit == "rad" ? " angle" : " position"),
-               against_rate ? angle_unit + "/s" : angle_unit, force, force_unit, series);
+  return {{against_rate ? mover + " rate" : mover + (angle_unit == "rad" ? " angle" : " position"),
+           against_rate ? angle_unit + "/s" : angle_unit, force, force_unit},
+          series};
 }
 
 /// Output against input of a stateless or hysteretic signal effect over a slow cycle, or its step response.
 template <class E, class Params>
-json signal_curve(const Params& params, double reach, const std::string& what, const std::string& unit) {
+Curve signal_curve(const Params& params, double reach, const std::string& what, const std::string& unit) {
   typename E::template State<double> state{};
-  Drawn drawn{"as found", {}, {}};
+  CurveSeries drawn{"as found", {}, {}};
   if constexpr (E::site == Site::command || std::string_view(E::name) == "sensor_lag") {
     if constexpr (requires { E::settle(params, state, model::Signal<double>{0.0, kStep}); }) {
       E::settle(params, state, model::Signal<double>{0.0, kStep});
@@ -110,7 +95,7 @@ json signal_curve(const Params& params, double reach, const std::string& what, c
       drawn.x.push_back(i * kStep);
       drawn.y.push_back(E::step(params, state, model::Signal<double>{reach, kStep}));
     }
-    return curve("time after a step", "s", what, unit, {drawn});
+    return {{"time after a step", "s", what, unit}, {drawn}};
   } else {
     for (int i = 0; i < 2 * kPoints; ++i) {
       const double x = reach * std::sin(2.0 * std::numbers::pi * i / kPoints);
@@ -120,16 +105,16 @@ json signal_curve(const Params& params, double reach, const std::string& what, c
         drawn.y.push_back(E::site == Site::sensor ? y - x : y);
       }
     }
-    return curve(what, unit, E::site == Site::sensor ? "error of the reading" : what + " after the effect", unit, {drawn});
+    return {{what, unit, E::site == Site::sensor ? "error of the reading" : what + " after the effect", unit}, {drawn}};
   }
 }
 
 template <class E, class Params>
-json spring_curve(const SimplexParameters& p, const Params& params, const Reach& reach) {
+Curve spring_curve(const SimplexParameters& p, const Params& params, const Reach& reach) {
   const double stiffness = 1.0 / (1.0 / p.actuator.stiffness + 1.0 / p.structure.stiffness);
   typename E::template State<double> state{};
-  Drawn found{"with the effect", {}, {}};
-  Drawn declared{"declared", {}, {}};
+  CurveSeries found{"with the effect", {}, {}};
+  CurveSeries declared{"declared", {}, {}};
   if constexpr (std::string_view(E::name) == "variable_moment_arm") {
     for (int i = 0; i <= kPoints; ++i) {
       const double angle = reach.angle * (2.0 * i / kPoints - 1.0);
@@ -139,7 +124,7 @@ json spring_curve(const SimplexParameters& p, const Params& params, const Reach&
       found.x.push_back(angle);
       found.y.push_back(out.arm);
     }
-    return curve("engine angle", "rad", "moment arm", "m", {found});
+    return {{"engine angle", "rad", "moment arm", "m"}, {found}};
   } else {
     for (int i = 0; i <= kPoints; ++i) {
       const double deflection = reach.deflection * (2.0 * i / kPoints - 1.0);
@@ -159,26 +144,26 @@ json spring_curve(const SimplexParameters& p, const Params& params, const Reach&
       declared.x.push_back(deflection);
       declared.y.push_back(stiffness * deflection);
     }
-    return curve("deflection of actuator and load", "m", "force", "N", {found, declared});
+    return {{"deflection of actuator and load", "m", "force", "N"}, {found, declared}};
   }
 }
 
 template <class E, class Params>
-json structure_curve(const Params& params) {
+Curve structure_curve(const Params& params) {
   typename E::template State<double> state{};
-  Drawn drawn{"as found", {}, {}};
+  CurveSeries drawn{"as found", {}, {}};
   for (int i = 0; i < 2000; ++i) {
     drawn.x.push_back(i * kStep);
     drawn.y.push_back(E::step(params, state, model::AttachPoint<double>{1.0, kStep}));
   }
-  return curve("time after a step of 1 N", "s", "motion of the attach point", "m", {drawn});
+  return {{"time after a step of 1 N", "s", "motion of the attach point", "m"}, {drawn}};
 }
 
 /// Torque from the other axis over one cycle of a sine of its largest motion.
 template <class E, class Params>
-json other_axis_curve(const Params& params, const Reach& reach) {
+Curve other_axis_curve(const Params& params, const Reach& reach) {
   typename E::template State<double> state{};
-  Drawn drawn{"sine at the largest motion of the other axis", {}, {}};
+  CurveSeries drawn{"sine at the largest motion of the other axis", {}, {}};
   for (int i = 0; i <= kPoints; ++i) {
     const double phase = 2.0 * std::numbers::pi * i / kPoints;
     model::Motion<double> motion{0.0, 0.0, 0.0, 1e-30, kStep};
@@ -187,11 +172,11 @@ json other_axis_curve(const Params& params, const Reach& reach) {
     drawn.x.push_back(motion.other_angle);
     drawn.y.push_back(E::step(params, state, motion));
   }
-  return curve("engine angle about the other axis", "rad", "torque against the motion", "N.m", {drawn});
+  return {{"engine angle about the other axis", "rad", "torque against the motion", "N.m"}, {drawn}};
 }
 
 template <class E, class Params>
-json effect_curve(const SimplexParameters& p, const Params& params, const Reach& reach) {
+Curve effect_curve(const SimplexParameters& p, const Params& params, const Reach& reach) {
   if constexpr (model::needs_other_axis<E>()) {
     return other_axis_curve<E>(params, reach);
   } else if constexpr (E::site == Site::engine_torque) {
@@ -204,13 +189,13 @@ json effect_curve(const SimplexParameters& p, const Params& params, const Reach&
     return structure_curve<E>(params);
   } else if constexpr (E::site == Site::flow) {
     typename E::template State<double> state{};
-    Drawn drawn{"as found", {}, {}};
+    CurveSeries drawn{"as found", {}, {}};
     for (int i = 0; i <= kPoints; ++i) {
       const double pressure = reach.pressure * (2.0 * i / kPoints - 1.0);
       drawn.x.push_back(pressure);
       drawn.y.push_back(E::step(params, state, model::Hydraulics<double>{pressure, 0.0, p.actuator.supply_pressure, kStep}));
     }
-    return curve("load pressure", "Pa", "flow into the extend chamber", "m^3/s", {drawn});
+    return {{"load pressure", "Pa", "flow into the extend chamber", "m^3/s"}, {drawn}};
   } else if constexpr (E::site == Site::command) {
     return signal_curve<E>(params, p.actuator.moment_arm * reach.input, "commanded piston position", "m");
   } else if constexpr (E::site == Site::sensor) {
@@ -223,7 +208,7 @@ json effect_curve(const SimplexParameters& p, const Params& params, const Reach&
 }
 
 template <class E, class Params>
-json effect_curve(const DirectParameters&, const Params& params, const Reach& reach) {
+Curve effect_curve(const DirectParameters&, const Params& params, const Reach& reach) {
   return motion_curve<E>(params, reach.position, reach.position_rate, "mass", "position", "force against the motion",
                          "force");
 }
@@ -272,8 +257,8 @@ Reach reach_of(const Dataset& data, const DirectParameters&) {
 }
 
 template <class Family>
-json curve_of(const PlainParameters<Family>& parameters, std::size_t effect, const Reach& reach) {
-  json result;
+Curve curve_of(const PlainParameters<Family>& parameters, std::size_t effect, const Reach& reach) {
+  Curve result;
   model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
     if constexpr (requires { E::is_unlisted; }) {
       return;
@@ -284,7 +269,7 @@ json curve_of(const PlainParameters<Family>& parameters, std::size_t effect, con
   return result;
 }
 
-template json curve_of<SimplexFamily>(const SimplexParameters&, std::size_t, const Reach&);
-template json curve_of<DirectFamily>(const DirectParameters&, std::size_t, const Reach&);
+template Curve curve_of<SimplexFamily>(const SimplexParameters&, std::size_t, const Reach&);
+template Curve curve_of<DirectFamily>(const DirectParameters&, std::size_t, const Reach&);
 
 }  // namespace hotfire::explain

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/report/verdict.hpp"
+#include "tools/explain/result/verdict.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 
 #include "tools/explain/terms/unlisted.hpp"
 #include "tools/explain/words/conclusions.hpp"
@@ -71,6 +72,12 @@ std::string place_in_words(const Located& located) {
 
 }  // namespace
 
+std::string_view name_of(Verdict verdict) {
+  constexpr std::array<std::string_view, 5> kNames{"undecided", "unlisted-effect", "partly-explained", "explained",
+                                                   "nothing-missing"};
+  return kNames.at(static_cast<std::size_t>(verdict));
+}
+
 bool is_fault_of_record(const Candidate& candidate) {
   return candidate.name == model::SensorScale::name || candidate.name == model::SensorDelay::name ||
          candidate.name == model::CommandScale::name;
@@ -83,37 +90,37 @@ bool is_of_record_time(const Candidate& candidate) {
 }
 
 template <class Family>
-std::string verdict_of(const Dataset& data, const SearchResult<Family>& found) {
+Verdict verdict_of(const Dataset& data, const SearchResult<Family>& found) {
   if (first_unlisted(found) != nullptr) {
-    return "unlisted-effect";
+    return Verdict::unlisted_effect;
   }
   if (reaches_noise(data, found.explained)) {
-    return found.kept.empty() ? "nothing-missing" : "explained";
+    return found.kept.empty() ? Verdict::nothing_missing : Verdict::explained;
   }
   if (!found.kept.empty()) {
-    return "partly-explained";
+    return Verdict::partly_explained;
   }
-  return found.interrupted || !found.searched ? "undecided" : "unlisted-effect";
+  return found.interrupted || !found.searched ? Verdict::undecided : Verdict::unlisted_effect;
 }
 
 template <class Family>
-std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found, bool noise_is_known) {
+std::string sentence_of(Verdict verdict, const SearchResult<Family>& found, bool noise_is_known) {
   const words::HeldOutError error{Goodness::combined(found.declared.goodness.held_out),
                                   Goodness::combined(found.explained.goodness.held_out), noise_is_known};
-  if (verdict == "nothing-missing" && !is_within_tolerances(found.explained.model)) {
+  if (verdict == Verdict::nothing_missing && !is_within_tolerances(found.explained.model)) {
     const Moved farthest = farthest_from_declared(found.explained.model);
     return words::wrong_declaration(error.model, farthest.key, farthest.tolerances);
   }
-  if (verdict == "nothing-missing") {
+  if (verdict == Verdict::nothing_missing) {
     return words::nothing_missing(error.model);
   }
-  if (verdict == "unlisted-effect" && !found.kept.empty()) {
+  if (verdict == Verdict::unlisted_effect && !found.kept.empty()) {
     return words::unlisted_term(terms_in_words(found), error);
   }
-  if (verdict == "unlisted-effect") {
+  if (verdict == Verdict::unlisted_effect) {
     return words::unlisted_unexplained(error) + (found.located.places.empty() ? "" : " " + place_in_words(found.located));
   }
-  if (verdict == "undecided") {
+  if (verdict == Verdict::undecided) {
     return words::undecided(found.searched, error) + promising(found.trials);
   }
   std::vector<std::string> missing;
@@ -128,7 +135,7 @@ std::string sentence_of(const std::string& verdict, const SearchResult<Family>& 
   if (!faults.empty()) {
     text += words::faults_of_records(faults) + " ";
   }
-  return text + words::error_falls(found.kept.size() == 1, error, verdict == "explained");
+  return text + words::error_falls(found.kept.size() == 1, error, verdict == Verdict::explained);
 }
 
 template <class Family>
@@ -151,9 +158,9 @@ std::string what_it_is_not(const SearchResult<Family>& found) {
   return text;
 }
 
-#define HOTFIRE_INSTANTIATE(Family)                                                                \
-  template std::string verdict_of<Family>(const Dataset&, const SearchResult<Family>&);            \
-  template std::string sentence_of<Family>(const std::string&, const SearchResult<Family>&, bool); \
+#define HOTFIRE_INSTANTIATE(Family)                                                     \
+  template Verdict verdict_of<Family>(const Dataset&, const SearchResult<Family>&);     \
+  template std::string sentence_of<Family>(Verdict, const SearchResult<Family>&, bool); \
   template std::string what_it_is_not<Family>(const SearchResult<Family>&);
 
 HOTFIRE_INSTANTIATE(SimplexFamily)

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "tools/explain/result/result.hpp"
 #include "tools/explain/search/search.hpp"
 
 namespace hotfire::explain {
@@ -13,14 +14,14 @@ bool is_fault_of_record(const Candidate& candidate);
 /// True for a term over the time of the record: it says what drifted, and means nothing in another run.
 bool is_of_record_time(const Candidate& candidate);
 
-/// `explained`, `nothing-missing`, `partly-explained`, `unlisted-effect`, or `undecided`: nothing is kept, more than noise
-/// is left, and the search was interrupted or not asked for. docs/report.md
+/// The verdict of a search (docs/report.md). It is undecided if nothing is kept, more than noise is left, and the search was
+/// interrupted or not asked for.
 template <class Family>
-std::string verdict_of(const Dataset& data, const SearchResult<Family>& found);
+Verdict verdict_of(const Dataset& data, const SearchResult<Family>& found);
 
 /// What was found, in one sentence or two. Errors are in times of the noise where that is known of every channel.
 template <class Family>
-std::string sentence_of(const std::string& verdict, const SearchResult<Family>& found, bool noise_is_known = true);
+std::string sentence_of(Verdict verdict, const SearchResult<Family>& found, bool noise_is_known = true);
 
 /// What the term of unknown law that was kept is not: the listed effect and the other such terms that came closest, and what
 /// they leave.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "tools/explain/data/dataset.hpp"
 #include "tools/explain/data/plants.hpp"
+#include "tools/explain/result/result.hpp"
 
 namespace hotfire::explain {
 
@@ -28,9 +27,9 @@ Reach reach_of(const Dataset& data, const DirectParameters& parameters);
 /// against input, force against deflection, or a response in time where the effect remembers. Evaluated by the effect
 /// itself.
 template <class Family>
-nlohmann::json curve_of(const PlainParameters<Family>& parameters, std::size_t effect, const Reach& reach);
+Curve curve_of(const PlainParameters<Family>& parameters, std::size_t effect, const Reach& reach);
 
-extern template nlohmann::json curve_of<SimplexFamily>(const SimplexParameters&, std::size_t, const Reach&);
-extern template nlohmann::json curve_of<DirectFamily>(const DirectParameters&, std::size_t, const Reach&);
+extern template Curve curve_of<SimplexFamily>(const SimplexParameters&, std::size_t, const Reach&);
+extern template Curve curve_of<DirectFamily>(const DirectParameters&, std::size_t, const Reach&);
 
 }  // namespace hotfire::explain

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "tools/explain/inference/profile.hpp"
-#include "tools/explain/report/verdict.hpp"
+#include "tools/explain/result/verdict.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/terms/table_points.hpp"
 #include "tools/report/report_page.hpp"

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/explain/result/found_effects.hpp"
+
+#include <map>
+#include <string>
+
+#include "tools/explain/result/curve.hpp"
+#include "tools/explain/result/verdict.hpp"
+#include "tools/explain/terms/unlisted.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+/// Meaning of a field by the key that a free parameter carries.
+template <class Family>
+std::map<std::string, std::string> meanings() {
+  std::map<std::string, std::string> result;
+  const PlainParameters<Family> neutral;
+  model::visit_parameters(neutral, [&](const model::Key& key, const auto& field, const double&) {
+    result[(key.is_effect ? "effects." : "") + std::string(key.section) + "." + std::string(field.name)] = field.meaning;
+  });
+  return result;
+}
+
+/// A table's ordinate means what its table does; its place in it is the number that ends its key.
+std::string meaning_of(const std::map<std::string, std::string>& meanings, const FreeParameter& free) {
+  const auto known = meanings.find(free.key);
+  return known != meanings.end() ? known->second : "point " + free.key.substr(free.key.rfind('.') + 1) + " of the table";
+}
+
+double percent_taken_off(double ratio) { return 100.0 * (1.0 - ratio); }
+
+template <class Family>
+std::vector<EffectParameter> parameters_of(const Candidate& candidate, const Fitted<Family>& model,
+                                           const std::vector<Estimate>& estimated) {
+  const auto meaning = meanings<Family>();
+  const std::string prefix = "effects." + candidate.name + ".";
+  std::vector<EffectParameter> parameters;
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    const FreeParameter& free = model.free[k];
+    if (free.key.starts_with(prefix)) {
+      parameters.push_back({free.key.substr(prefix.size()), free.unit, meaning_of(meaning, free), estimated[k].value,
+                            estimated[k].interval, estimated[k].from_profile});
+    }
+  }
+  return parameters;
+}
+
+std::vector<Alternative> alternatives_of(const Kept& kept) {
+  std::vector<Alternative> alternatives;
+  for (const Trial& other : kept.alternatives) {
+    if (other.refined && other.delta_criterion < 0.0) {
+      alternatives.push_back({other.candidate.name, other.candidate.option_name,
+                              other.delta_criterion - kept.trial.delta_criterion, percent_taken_off(other.held_out_ratio)});
+    }
+  }
+  return alternatives;
+}
+
+/// A term of unknown law: what it looks like and what it is not.
+template <class Family>
+void describe_unlisted(const PlainParameters<Family>& parameters, const SearchResult<Family>& found, const Kept& kept,
+                       FoundEffect& effect) {
+  const Candidate& candidate = kept.trial.candidate;
+  effect.name = "unlisted";
+  effect.sites = sites_of(kept);
+  effect.is_not = what_it_is_not(found);
+  const auto table = table_of<Family>(parameters, candidate);
+  if (!table) {
+    effect.looks_like = law_in_words(candidate);
+    return;
+  }
+  effect.looks_like = in_words(*table);
+  effect.curve = Curve{{table->x_name, table->x_unit, table->meaning, table->y_unit}, {{"as found", table->x, table->y}}};
+}
+
+}  // namespace
+
+template <class Family>
+std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
+  const Fitted<Family>& model = found.explained.model;
+  std::vector<Estimate> estimated = estimates(model.free, model.u, model.normal);
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    if (const auto profile = found.profiles.find(model.free[k].key); profile != found.profiles.end()) {
+      estimated[k].interval = profile->second;
+      estimated[k].from_profile = true;
+    }
+  }
+  return estimated;
+}
+
+template <class Family>
+std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult<Family>& found,
+                                       const std::vector<Estimate>& estimated) {
+  const Fitted<Family>& model = found.explained.model;
+  const auto parameters = Evaluator<Family>::with_values(model.base, model.free, model.u);
+  const Reach reach = reach_of(data, parameters);
+  std::vector<FoundEffect> effects;
+  for (const Kept& kept : found.kept) {
+    const Candidate& candidate = kept.trial.candidate;
+    FoundEffect& effect = effects.emplace_back();
+    effect.name = effect.key = candidate.name;
+    effect.site = candidate.site;
+    effect.law = candidate.option_name;
+    effect.parameters = parameters_of(candidate, model, estimated);
+    effect.held_out_drop = percent_taken_off(kept.trial.held_out_ratio);
+    effect.delta_criterion = kept.trial.delta_criterion;
+    effect.alternatives = alternatives_of(kept);
+    if (is_unlisted<Family>(candidate)) {
+      describe_unlisted(parameters, found, kept, effect);
+    } else {
+      effect.curve = curve_of<Family>(parameters, candidate.effect, reach);
+    }
+  }
+  return effects;
+}
+
+#define HOTFIRE_INSTANTIATE(Family)                                         \
+  template std::vector<Estimate> estimates_of(const SearchResult<Family>&); \
+  template std::vector<FoundEffect> found_effects(const Dataset&, const SearchResult<Family>&, const std::vector<Estimate>&);
+
+HOTFIRE_INSTANTIATE(SimplexFamily)
+HOTFIRE_INSTANTIATE(DirectFamily)
+#undef HOTFIRE_INSTANTIATE
+
+}  // namespace hotfire::explain
