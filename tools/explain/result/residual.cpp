@@ -13,7 +13,8 @@ ResidualResult residual_result(const Dataset& data, const Prediction& before, co
       continue;
     }
     const auto of_both = [&](auto&& statistic) {
-      return BeforeAndAfter{statistic(data, before, c), statistic(data, after, c)};
+      using Statistic = decltype(statistic(data, before, c));
+      return BeforeAndAfter<Statistic>{statistic(data, before, c), statistic(data, after, c)};
     };
     ChannelResidual channel{data.channels[c], of_both(residual_autocorrelation), of_both(input_correlation),
                             of_both(error_by_frequency), of_both(error_by_amplitude)};
