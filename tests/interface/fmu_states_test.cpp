@@ -161,6 +161,9 @@ TEST(FmuStates, EveryArgumentIsChecked) {
     refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, 0.0); });
     refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, -1e-3); });
     refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, std::nan("")); });
+    refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, infinite); });
+    refused(kError, "currentCommunicationPoint = nan", [&](const Run& run) { return run.step(std::nan(""), 1e-3); });
+    refused(kError, "currentCommunicationPoint = inf", [&](const Run& run) { return run.step(infinite, 1e-3); });
     refused(kError, "value reference", [&](const Run& run) {
       double slope = 0.0;
       return run.differentiate(command[0], command[0], slope);
