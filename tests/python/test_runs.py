@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulation has the bits of the command, batches those of single runs, gradients those of differences."""
 
+import sys
 import threading
 import time
 
@@ -158,6 +159,15 @@ def test_a_gradient_of_several_axes_is_the_limit_of_differences(topology, still,
     assert np.array_equal(alone[f"engine.{first}"][:, 0], slopes[f"engine.{first}"][:, 0])
 
 
+def test_the_gradient_of_an_engine_that_rests_is_a_number():
+    friction = {"thrust": "1.86 MN", "friction": {"law": "lugre", "coulomb_torque": "20 kN.m"}}
+    model = hotfire.Model({"topology": "masv", "gimbal": friction})
+    record = hotfire.Record({"command.pitch1": 0.01 * np.sin(0.02 * np.arange(200))}, period=1e-3)
+    slopes = hotfire.gradients(model, record, ["pitch1.engine.inertia", "yaw3.engine.inertia"])
+    assert all(np.all(np.isfinite(values)) for values in slopes.slopes.values())
+    assert np.std(slopes["engine.pitch1"][:, 0]) > 0.0
+
+
 def test_a_sweep_has_the_notch_of_the_command(tmp_path, model):
     import json
 
@@ -186,3 +196,11 @@ def test_pictures_have_a_line_for_each_channel(model, record):
     assert figure.axes[0].get_ylabel() == "engine [rad]"
     swept = hotfire.sweep(model, frequencies=(6.0, 9.0), count=3, coarse=True)
     assert len(hotfire.plot.sweep(swept).axes[0].lines) == len(swept)
+
+
+def test_without_matplotlib_a_picture_says_what_to_install_and_all_else_works(monkeypatch, model, record):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "matplotlib.pyplot", raising=False)
+    run = hotfire.simulate(model, record)
+    with pytest.raises(ImportError, match="apt-get install python3-matplotlib"):
+        hotfire.plot.record(run, ["engine"])
