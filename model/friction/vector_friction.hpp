@@ -16,7 +16,11 @@ struct Pair {
   friend Pair operator+(const Pair& a, const Pair& b) noexcept { return {a.pitch + b.pitch, a.yaw + b.yaw}; }
   friend Pair operator-(const Pair& a, const Pair& b) noexcept { return {a.pitch - b.pitch, a.yaw - b.yaw}; }
   friend Pair operator*(const S& s, const Pair& a) noexcept { return {s * a.pitch, s * a.yaw}; }
-  S length() const noexcept { return sqrt(pitch * pitch + yaw * yaw); }
+  /// At zero it has no slope: that of the root would be infinite.
+  S length() const noexcept {
+    const S squared = pitch * pitch + yaw * yaw;
+    return value_of(squared) == 0.0 ? S{0.0} : S(sqrt(squared));
+  }
 };
 
 template <class S>

@@ -161,6 +161,9 @@ TEST(FmuStates, EveryArgumentIsChecked) {
     refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, 0.0); });
     refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, -1e-3); });
     refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, std::nan("")); });
+    refused(kError, "communicationStepSize", [&](const Run& run) { return run.step(1e-3, infinite); });
+    refused(kError, "currentCommunicationPoint = nan", [&](const Run& run) { return run.step(std::nan(""), 1e-3); });
+    refused(kError, "currentCommunicationPoint = inf", [&](const Run& run) { return run.step(infinite, 1e-3); });
     refused(kError, "value reference", [&](const Run& run) {
       double slope = 0.0;
       return run.differentiate(command[0], command[0], slope);
@@ -194,6 +197,39 @@ TEST(FmuStates, AMessageDoublesWhatTheStandardGivesAMeaning) {
                                                      &kCallbacks, 0, 0) == nullptr);
   // The importer has put the message through printf, which made one of each "%%".
   STRCMP_CONTAINS("50%s##1; allowed", last_message.data());
+}
+
+TEST(FmuStates, DerivativesInStepModeAreThoseOfTheNextInternalStep) {
+  for (const char* topology : kTopologies) {
+    const Case own = case_of(topology, 20);
+    for (const int version : {2, 3}) {
+      const Fmu fmu(scratch, own, version);
+      const unsigned known = fmu.reference(own.inputs[0]);
+      // Without noise, and before a delay.
+      const unsigned unknown = fmu.reference(own.outputs()[own.outputs().size() > 3 ? 1 : 0]);
+      const double width = 1e-5;
+      const auto run_to = [&](const Run& run, double value) {
+        run.enter();
+        run.set({known}, {0.0});
+        run.call("ExitInitializationMode");
+        LONGS_EQUAL(kOk, run.step(0.0, 4.0 * own.period));
+        LONGS_EQUAL(kOk, run.set({known}, {value}));
+      };
+      const auto reading = [&](double value) {
+        const Run run(fmu, version);
+        run_to(run, value);
+        LONGS_EQUAL(kOk, run.step(4.0 * own.period, own.period));
+        return run.got({unknown})[0];
+      };
+      const double expected = (reading(0.01 + width) - reading(0.01 - width)) / (2.0 * width);
+      const Run run(fmu, version);
+      run_to(run, 0.01);
+      double slope = 0.0;
+      LONGS_EQUAL(kOk, run.differentiate(unknown, known, slope));
+      CHECK(std::abs(expected) > 1e-12);
+      DOUBLES_EQUAL_TEXT(expected, slope, 1e-3 * std::abs(expected), topology);
+    }
+  }
 }
 
 TEST(FmuStates, DerivativesInInitializationAreThoseOfTheStart) {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Simulation has the bits of the command, batches those of single runs, gradients those of differences."""
 
+import sys
 import threading
 import time
 
@@ -115,8 +116,56 @@ def test_gradients_are_by_all_that_acts_unless_told(model, record):
     assert set(hotfire.gradients(model, record).keys) == set(model.parameters)
     with pytest.raises(hotfire.UsageError, match="no parameter that acts"):
         hotfire.gradients(model, record, ["effects.backlash.half_width"])
-    with pytest.raises(hotfire.UsageError, match="gradients takes a model of one axis"):
-        hotfire.gradients(hotfire.Model({"topology": "taos"}), inputs_of("taos"))
+    with pytest.raises(hotfire.UsageError, match='no parameter that acts in the model; did you mean "pitch.engine.inertia"'):
+        hotfire.gradients(hotfire.Model({"topology": "taos"}), inputs_of("taos"), ["pitch.engine.inertja"])
+
+
+# Under a misaligned thrust a run depends on what the record has for it.
+GIMBAL = {"gimbal": {"thrust": "1.86 MN", "pitch_misalignment": "10 mm"}}
+STRINGS = {"strings": {"lag": "2 ms"}, "sensors": {"piston": {"lag": "1 ms"}}}
+NOISE = {"strings": {"lag": "2 ms", "noise": "20 um"}, "sensors": {"piston": {"lag": "1 ms", "noise": "10 um", "step": "5 um"}}}
+
+
+@pytest.mark.parametrize(
+    "topology, still, noisy, thrust, keys",
+    [
+        ("taos", STRINGS, NOISE, "thrust", ["pitch.engine.inertia", "yaw.servovalve.position_gain", "pitch.structure.stiffness"]),
+        ("masv", {}, {}, "thrust.engine1", ["pitch1.engine.inertia", "yaw4.servovalve.position_gain"]),
+    ],
+)
+def test_a_gradient_of_several_axes_is_the_limit_of_differences(topology, still, noisy, thrust, keys):
+    still, noisy = (hotfire.Model({"topology": topology, **GIMBAL, **parts}) for parts in (still, noisy))
+    first = AXES[topology][0]
+    rows = np.arange(400)
+    channels = {name: channel.values[rows] for name, channel in inputs_of(topology).items()}
+    # A torque is interpolated between rows, a thrust is held.
+    channels[f"torque.{first}"] = 5e3 * np.sin(0.5 * rows)
+    channels[thrust] = 1.8e6 + 1e5 * np.sin(0.5 * rows)
+    record = hotfire.Record(channels, period=1e-3)
+    slopes = hotfire.gradients(noisy, record, keys)
+    assert slopes.units[f"engine.{first}"][0] == "rad/(kg.m^2)"
+    assert set(slopes.slopes) == {name for name in hotfire.simulate(noisy, record) if not name.startswith("command")}
+    for column, key in enumerate(keys):
+        # Noise and steps of a reading have no slope.
+        step = 1e-4 * still[key]
+        more, less = (hotfire.simulate(still.with_values({key: still[key] + side * step}), record) for side in (1, -1))
+        for channel, found in slopes.slopes.items():
+            difference = (more[channel].values - less[channel].values) / (2.0 * step)
+            # A string's reading is a small difference of lengths of metres.
+            rounding = 1e-15 * max(1.0, np.max(np.abs(more[channel].values))) / step
+            assert np.std(found[:, column] - difference) < 1e-5 * np.std(difference) + rounding, (key, channel)
+        assert np.std(slopes["engine." + key.partition(".")[0]][:, column]) > 0.0
+    alone = hotfire.gradients(noisy, record, keys[:1], threads=1)
+    assert np.array_equal(alone[f"engine.{first}"][:, 0], slopes[f"engine.{first}"][:, 0])
+
+
+def test_the_gradient_of_an_engine_that_rests_is_a_number():
+    friction = {"thrust": "1.86 MN", "friction": {"law": "lugre", "coulomb_torque": "20 kN.m"}}
+    model = hotfire.Model({"topology": "masv", "gimbal": friction})
+    record = hotfire.Record({"command.pitch1": 0.01 * np.sin(0.02 * np.arange(200))}, period=1e-3)
+    slopes = hotfire.gradients(model, record, ["pitch1.engine.inertia", "yaw3.engine.inertia"])
+    assert all(np.all(np.isfinite(values)) for values in slopes.slopes.values())
+    assert np.std(slopes["engine.pitch1"][:, 0]) > 0.0
 
 
 def test_a_sweep_has_the_notch_of_the_command(tmp_path, model):
@@ -147,3 +196,11 @@ def test_pictures_have_a_line_for_each_channel(model, record):
     assert figure.axes[0].get_ylabel() == "engine [rad]"
     swept = hotfire.sweep(model, frequencies=(6.0, 9.0), count=3, coarse=True)
     assert len(hotfire.plot.sweep(swept).axes[0].lines) == len(swept)
+
+
+def test_without_matplotlib_a_picture_says_what_to_install_and_all_else_works(monkeypatch, model, record):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "matplotlib.pyplot", raising=False)
+    run = hotfire.simulate(model, record)
+    with pytest.raises(ImportError, match="apt-get install python3-matplotlib"):
+        hotfire.plot.record(run, ["engine"])

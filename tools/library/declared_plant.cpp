@@ -9,7 +9,6 @@
 #include "tools/interface/plant/setup_text.hpp"
 #include "tools/simulate/plant_image_text.hpp"
 #include "tools/simulate/vehicle_readings.hpp"
-#include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {
 
@@ -21,7 +20,9 @@ DeclaredPlant declared(ModelFile model, double period, unsigned seed) {
           std::visit([](const auto& parameters) { return plant::AnyParameters(parameters); }, model.parameters)};
 }
 
-DeclaredPlant declared(const VehicleFile& file, double period, unsigned seed) {
+}  // namespace
+
+DeclaredPlant declared_plant(const VehicleFile& file, double period, unsigned seed) {
   DeclaredPlant declared{file.name, {period, seed, !file.sensors.strings.empty()}, {}};
   std::visit(
       [&]<class Parameters>(const Parameters& parameters) {
@@ -35,14 +36,12 @@ DeclaredPlant declared(const VehicleFile& file, double period, unsigned seed) {
   return declared;
 }
 
-}  // namespace
-
 DeclaredPlant declared_plant(const std::filesystem::path& path, double period, unsigned seed) {
-  return is_vehicle(path) ? declared(load_vehicle(path), period, seed) : declared(load_model(path), period, seed);
+  return is_vehicle(path) ? declared_plant(load_vehicle(path), period, seed) : declared(load_model(path), period, seed);
 }
 
 DeclaredPlant declared_plant(const std::string& text, const std::filesystem::path& path, double period, unsigned seed) {
-  return is_vehicle(text, path) ? declared(parse_vehicle(text, path), period, seed)
+  return is_vehicle(text, path) ? declared_plant(parse_vehicle(text, path), period, seed)
                                 : declared(parse_model(text, path), period, seed);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tools/interface/plant/plant.hpp"
+#include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {
 
@@ -20,6 +21,9 @@ DeclaredPlant declared_plant(const std::filesystem::path& path, double period, u
 
 /// The same of the text of a model file; `path` represents the file in messages, and a mode table is read from beside it.
 DeclaredPlant declared_plant(const std::string& text, const std::filesystem::path& path, double period, unsigned seed);
+
+/// The same of a vehicle file that has been read.
+DeclaredPlant declared_plant(const VehicleFile& file, double period, unsigned seed);
 
 /// The plant text of a declared plant (interface/plant/setup_text.hpp).
 std::string plant_text_of(const DeclaredPlant& declared);

@@ -162,7 +162,6 @@ Model with_values(Model model, std::map<std::string, double> values) {
   if (auto* one = std::get_if<ModelFile>(&model.file)) {
     std::erase_if(one->left_out, [&values](const std::string& key) { return values.contains(key); });
   }
-  const std::vector<Parameter> acting = listed(model).parameters;
   Setter setter(values);
   if (auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
     std::visit([&](auto& parameters) { visit_axes(parameters, setter); }, vehicle->parameters);
@@ -170,22 +169,29 @@ Model with_values(Model model, std::map<std::string, double> values) {
     std::visit([&](auto& parameters) { model::visit_keys(parameters, setter); }, std::get<ModelFile>(model.file).parameters);
   }
   if (!values.empty()) {
-    std::vector<std::string_view> known(acting.size());
-    std::transform(acting.begin(), acting.end(), known.begin(),
-                   [](const Parameter& own) { return std::string_view(std::get<0>(own)); });
-    const std::string& stranger = values.begin()->first;
-    throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", stranger, suggestion(stranger, known)));
+    require_acting(model, {values.begin()->first});
   }
   return model;
 }
 
 }  // namespace
 
-const ModelFile& Model::one_axis(const std::string& what) const {
-  if (const auto* one = std::get_if<ModelFile>(&file)) {
-    return *one;
+std::vector<std::string> acting_keys(const Model& model) {
+  std::vector<std::string> keys;
+  for (const Parameter& own : listed(model).parameters) {
+    keys.push_back(std::get<0>(own));
   }
-  throw UsageError(fmt::format("{} takes a model of one axis; allowed with topology \"simplex\" or \"direct\"", what));
+  return keys;
+}
+
+void require_acting(const Model& model, const std::vector<std::string>& keys) {
+  const std::vector<std::string> acting = acting_keys(model);
+  for (const std::string& key : keys) {
+    if (std::find(acting.begin(), acting.end(), key) == acting.end()) {
+      throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", key,
+                                   suggestion(key, std::vector<std::string_view>(acting.begin(), acting.end()))));
+    }
+  }
 }
 
 void add_models(py::module_& module) {

@@ -5,6 +5,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "tools/files/model/model_file.hpp"
 #include "tools/structure/vehicle_file.hpp"
@@ -14,10 +15,13 @@ namespace hotfire::python {
 /// A model of any topology.
 struct Model {
   std::variant<ModelFile, VehicleFile> file;
-
-  /// The model of one axis. Throws UsageError, which says that `what` takes no other, for one of several.
-  const ModelFile& one_axis(const std::string& what) const;
 };
+
+/// The keys of the parameters that act: "engine.inertia", of several axes "pitch.engine.inertia".
+std::vector<std::string> acting_keys(const Model& model);
+
+/// Throws UsageError for a key that is not among them.
+void require_acting(const Model& model, const std::vector<std::string>& keys);
 
 /// Adds the class Model to the module.
 void add_models(pybind11::module_& module);

@@ -12,6 +12,7 @@
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/python/models.hpp"
+#include "tools/python/vehicle_gradients.hpp"
 #include "tools/simulate/gradients.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -63,11 +64,14 @@ std::vector<Record> run_many(const std::vector<std::pair<const Model*, const Rec
 }
 
 /// The derivatives by channel, as arrays of rows and keys.
-py::dict gradients_of(const Model& model, const Record& inputs, const std::vector<std::string>& keys) {
+py::dict gradients_of(const Model& model, const Record& inputs, const std::vector<std::string>& keys, unsigned threads) {
   std::vector<ChannelSlopes> channels;
   {
     const py::gil_scoped_release released;
-    channels = gradients(model.one_axis("gradients"), inputs, keys);
+    require_acting(model, keys);
+    const auto* vehicle = std::get_if<VehicleFile>(&model.file);
+    channels = vehicle != nullptr ? vehicle_gradients(*vehicle, inputs, keys, threads)
+                                  : gradients(std::get<ModelFile>(model.file), inputs, keys);
   }
   py::dict result;
   for (const ChannelSlopes& channel : channels) {
@@ -143,9 +147,8 @@ void add_runs(py::module_& module) {
         return run_many(runs, {fit_start, seed}, threads);
       },
       py::arg("runs"), py::arg("fit_start"), py::arg("seed"), py::arg("threads"));
-  module.def(
-      "acting_keys", [](const Model& model) { return acting_keys(model.one_axis("gradients")); }, py::arg("model"));
-  module.def("gradients", &gradients_of, py::arg("model"), py::arg("inputs"), py::arg("keys"));
+  module.def("acting_keys", &acting_keys, py::arg("model"));
+  module.def("gradients", &gradients_of, py::arg("model"), py::arg("inputs"), py::arg("keys"), py::arg("threads"));
   module.def(
       "sweep",
       [](const Model& model, const std::vector<double>& amplitudes, double from, double to, int count, bool coarse,

@@ -92,12 +92,9 @@ std::vector<ChannelSlopes> differentiated(const typename Plant::Parameters& para
 
 }  // namespace
 
-std::vector<std::string> acting_keys(const ModelFile& model) {
-  return std::visit([](const auto& parameters) { return keys_of(parameters); }, model.parameters);
-}
-
 std::vector<ChannelSlopes> gradients(const ModelFile& model, const Record& inputs, const std::vector<std::string>& keys) {
-  const std::vector<std::string> acting = acting_keys(model);
+  const std::vector<std::string> acting =
+      std::visit([](const auto& parameters) { return keys_of(parameters); }, model.parameters);
   for (const std::string& key : keys) {
     if (std::find(acting.begin(), acting.end(), key) == acting.end()) {
       throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", key,

@@ -15,13 +15,9 @@ struct ChannelSlopes {
   std::vector<double> slopes;  ///< d channel / d parameter, in SI: a row of the record after the other, a parameter a column
 };
 
-/// The keys of the scalar parameters that act in a model: "engine.inertia", "effects.gimbal_friction.coulomb_torque". Those
-/// of an inactive effect, and of a law that is not chosen, are not among them.
-std::vector<std::string> acting_keys(const ModelFile& model);
-
 /// The exact derivatives of what `simulate` gives for the model and the record, start included, by the parameters of these
-/// keys: the run is made with dual numbers, as a fit makes it. Throws UsageError for a key that does not act in the model,
-/// and what `simulate` throws.
+/// keys, "engine.inertia": the run is made with dual numbers, as a fit makes it. Throws UsageError for a key that does not
+/// act in the model, of an inactive effect or of a law that is not chosen, and what `simulate` throws.
 std::vector<ChannelSlopes> gradients(const ModelFile& model, const Record& inputs, const std::vector<std::string>& keys);
 
 }  // namespace hotfire

@@ -111,6 +111,13 @@ std::string_view broken_period(double period) {
                                                                : "outside its bounds; allowed: 1e-06 to 1 s";
 }
 
+hotfire_status refuse_step(hotfire_model& model) noexcept {
+  return model.started
+             ? fail(&model, HOTFIRE_RAN_AWAY,
+                    "the model runs away at %g s: its parameters make it unstable for these inputs", model.plant->time())
+             : refuse_before_start(&model, "hotfire_step");
+}
+
 void copy_message(std::string_view text, char* message, std::size_t size) noexcept {
   if (message == nullptr || size == 0) {
     return;
@@ -225,16 +232,7 @@ hotfire_status hotfire_start(hotfire_model* model, double time) {
                                "the model has no steady state under these inputs: its parameters make it unstable for them");
 }
 
-hotfire_status hotfire_step(hotfire_model* model) {
-  if (!model->started) {
-    return refuse_before_start(model, "hotfire_step");
-  }
-  if (!model->plant->advance()) {
-    return fail(model, HOTFIRE_RAN_AWAY, "the model runs away at %g s: its parameters make it unstable for these inputs",
-                model->plant->time());
-  }
-  return HOTFIRE_OK;
-}
+hotfire_status hotfire_step(hotfire_model* model) { return hotfire::interface::step(*model); }
 
 double hotfire_time(const hotfire_model* model) { return model->plant->time(); }
 

@@ -29,6 +29,14 @@ inline constexpr double kLongestPeriod = 1.0;    ///< [s]
 /// What is wrong with a period [s]; empty if nothing.
 std::string_view broken_period(double period);
 
+/// Writes why a model could not be stepped. Apart from `step`, so that a step in the loop of a caller stays small.
+hotfire_status refuse_step(hotfire_model& model) noexcept;
+
+/// What hotfire_step does.
+inline hotfire_status step(hotfire_model& model) noexcept {
+  return model.started && model.plant->advance() ? HOTFIRE_OK : refuse_step(model);
+}
+
 /// Copies a text into a caller's buffer, cut to its size.
 void copy_message(std::string_view text, char* message, std::size_t size) noexcept;
 

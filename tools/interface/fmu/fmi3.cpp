@@ -157,10 +157,10 @@ HOTFIRE_FMU_API fmi3Status FMI3(fmi3DoStep)(fmi3Instance instance, fmi3Float64 c
     if (event_handling_needed == nullptr || terminate == nullptr || early == nullptr || last_successful == nullptr) {
       return slave.refuse(Status::error, "fmi3DoStep", "a place for a result is missing");
     }
-    const Status status = slave.do_step(current, step);
     *event_handling_needed = false;
     *terminate = false;
     *early = false;
+    const Status status = slave.do_step(current, step);
     *last_successful = slave.last_successful_time();
     return status;
   });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 
 #include "tools/interface/c/model_handle.hpp"
@@ -59,6 +60,8 @@ Slave::Slave(hotfire_model* model, Log log, void* instance) : model_(model), log
   for (const plant::Variable& input : model->plant->inputs()) {
     input_bounds_.push_back({input.lower, input.upper});
   }
+  inputs_ = model->plant->input_values();
+  outputs_ = model->plant->output_values();
 }
 
 Slave::~Slave() { hotfire_close(model_); }
@@ -218,15 +221,21 @@ Status Slave::refuse_point(double current) noexcept {
   return refuse(Status::error, "DoStep", problem.data());
 }
 
+Status Slave::refuse_run() noexcept {
+  last_successful_ = start_ + static_cast<double>(periods_) * model_->plant->period();
+  return refuse(Status::error, "DoStep", hotfire_message(model_));
+}
+
 Status Slave::do_step(double current, double step) noexcept {
   if (phase_ != Phase::step) {
     return refuse_phase("DoStep");
   }
   const double period = model_->plant->period();
-  if (!(step > 0.0) || !std::isfinite(current) || !std::isfinite(step)) {
-    return refuse(Status::error, "DoStep", "communicationStepSize; allowed: above 0");
+  if (!(step > 0.0 && step <= std::numeric_limits<double>::max())) {
+    return refuse(Status::error, "DoStep", "communicationStepSize; allowed: a finite number above 0");
   }
-  if (std::abs(current - time_) > kEarly * period) {
+  // A point that is no number is near to none.
+  if (!(std::abs(current - time_) <= kEarly * period)) {
     return refuse_point(current);
   }
   const double end = current + step;
@@ -237,9 +246,8 @@ Status Slave::do_step(double current, double step) noexcept {
   const auto wanted =
       static_cast<std::uint64_t>(static_cast<std::int64_t>(std::min((end - start_) / period + kEarly, 0x1p53)));
   while (periods_ < wanted) {
-    if (const hotfire_status status = hotfire_step(model_); status != HOTFIRE_OK) {
-      last_successful_ = start_ + static_cast<double>(periods_) * period;
-      return refuse(Status::error, "DoStep", hotfire_message(model_));
+    if (interface::step(*model_) != HOTFIRE_OK) {
+      return refuse_run();
     }
     ++periods_;
   }

@@ -74,7 +74,7 @@ class Slave {
   Status load(std::span<const std::byte> bytes) noexcept;
 
   /// Logs a failure. `error` makes the instance unusable until it is reset or gets a state; `discard` does not.
-  Status refuse(Status status, const char* function, const char* problem) noexcept;
+  [[gnu::cold]] Status refuse(Status status, const char* function, const char* problem) noexcept;
 
  private:
   struct Place {
@@ -86,14 +86,16 @@ class Slave {
   Slave(hotfire_model* model, Log log, void* instance);
 
   bool find(Reference reference, Place& place) const noexcept;
+  // What is cold stays a function of its own: the calls of every step then need no stack for it.
   Status refuse_reference(const char* function, Reference reference) noexcept;
-  Status refuse_phase(const char* function) noexcept;
+  [[gnu::cold]] Status refuse_phase(const char* function) noexcept;
   Status refuse_model(const char* function, hotfire_status status) noexcept;
   Status start_if_needed(const char* function) noexcept;
   /// What `set` and `get` do beside inputs and outputs in step mode, which are most of the calls.
-  Status set_any(std::span<const Reference> references, std::span<const double> values) noexcept;
-  Status get_any(std::span<const Reference> references, std::span<double> values) noexcept;
-  Status refuse_point(double current) noexcept;
+  [[gnu::cold]] Status set_any(std::span<const Reference> references, std::span<const double> values) noexcept;
+  [[gnu::cold]] Status get_any(std::span<const Reference> references, std::span<double> values) noexcept;
+  [[gnu::cold]] Status refuse_point(double current) noexcept;
+  [[gnu::cold]] Status refuse_run() noexcept;
   Status set_of_kind(hotfire_kind kind, std::span<const Reference> references, std::span<const double> values) noexcept;
   void say(Status status, Category category, const char* message) noexcept;
 
@@ -116,6 +118,9 @@ class Slave {
     double upper;
   };
   std::vector<Bounds> input_bounds_;
+  // Of the plant, which keeps them in one place.
+  std::span<double> inputs_;
+  std::span<const double> outputs_;
   // Room for the arguments of the C interface.
   std::vector<std::size_t> indices_;
   std::vector<double> values_;

@@ -56,20 +56,19 @@ Status Slave::set_of_kind(hotfire_kind kind, std::span<const Reference> referenc
 }
 
 Status Slave::set(std::span<const Reference> references, std::span<const double> values) noexcept {
-  if (phase_ != Phase::step || references.size() != values.size() || is_missing(references) || is_missing(values)) {
+  if (phase_ != Phase::step || references.size() != values.size() || references.data() == nullptr ||
+      values.data() == nullptr) {
     return set_any(references, values);
   }
   for (std::size_t i = 0; i < references.size(); ++i) {
     const std::size_t index = references[i] - kFirstInput;
     // A value that is no number is within no bounds.
-    if (index >= input_bounds_.size() ||
-        !(values[i] >= input_bounds_[index].lower && values[i] <= input_bounds_[index].upper)) {
+    if (index >= inputs_.size() || !(values[i] >= input_bounds_[index].lower && values[i] <= input_bounds_[index].upper)) {
       return set_any(references, values);
     }
   }
-  double* const inputs = model_->plant->input_values().data();
   for (std::size_t i = 0; i < references.size(); ++i) {
-    inputs[references[i] - kFirstInput] = values[i];
+    inputs_[references[i] - kFirstInput] = values[i];
   }
   return Status::ok;
 }
@@ -95,17 +94,17 @@ Status Slave::set_any(std::span<const Reference> references, std::span<const dou
 }
 
 Status Slave::get(std::span<const Reference> references, std::span<double> values) noexcept {
-  if (phase_ != Phase::step || references.size() != values.size() || is_missing(references) || is_missing(values)) {
+  if (phase_ != Phase::step || references.size() != values.size() || references.data() == nullptr ||
+      values.data() == nullptr) {
     return get_any(references, values);
   }
-  const std::span<const double> outputs = model_->plant->output_values();
-  const std::size_t first = kFirstInput + input_bounds_.size();
+  const std::size_t first = kFirstInput + inputs_.size();
   for (std::size_t i = 0; i < references.size(); ++i) {
     const std::size_t index = references[i] - first;
-    if (index >= outputs.size()) {
+    if (index >= outputs_.size()) {
       return get_any(references, values);
     }
-    values[i] = outputs[index];
+    values[i] = outputs_[index];
   }
   return Status::ok;
 }

@@ -88,6 +88,15 @@ class Plant {
   /// The same of the outputs that `start(time)` reads.
   virtual void differentiate_start(double time, std::span<const Seed> seeds, std::span<double> sensitivity) noexcept = 0;
 
+  /// The derivatives along a whole run, its start included, when parameters move by the seeds: exact, by dual numbers.
+  /// `start_slopes` starts at `time` under the inputs. `step_slopes` advances by one step of the model, `steps` of which
+  /// make a period, under the inputs as they are then. `read_slopes` gives by how much the outputs move, at the start and
+  /// once a period. The plant's own run stays as it is. `differentiate` and `differentiate_start` end such a run. No
+  /// allocation.
+  virtual void start_slopes(double time, std::span<const Seed> seeds) noexcept = 0;
+  virtual void step_slopes() noexcept = 0;
+  virtual void read_slopes(std::span<double> sensitivity) noexcept = 0;
+
   /// What a plant is in the middle of a run: inputs, outputs, parameters and the model's state, as bytes of this build for
   /// this machine. `load` is for bytes of `save` of a plant with the same `identity`.
   std::size_t state_size() const noexcept;

@@ -101,17 +101,37 @@ class PlantOf final : public Plant {
     const hal::FlushDenormals flush;
     Moved::begin_reading(*dual_state_, dual_.parameters());
     for (int step = 0; step < steps_; ++step) {
-      Moved::step(dual_.model(), *dual_state_, dual_inputs_, dual_.parameters());
+      step_slopes();
     }
     read_slopes(sensitivity);
   }
 
   void differentiate_start(double time, std::span<const Seed> seeds, std::span<double> sensitivity) noexcept override {
+    start_slopes(time, seeds);
+    read_slopes(sensitivity);
+  }
+
+  void start_slopes(double time, std::span<const Seed> seeds) noexcept override {
     move(seeds);
     Moved::settle(dual_.model(), *dual_state_, dual_inputs_, dual_.parameters(), dual_further_, time);
     const hal::FlushDenormals flush;
     Moved::begin_reading(*dual_state_, dual_.parameters());
-    read_slopes(sensitivity);
+  }
+
+  void step_slopes() noexcept override {
+    for (std::size_t i = 0; i < dual_inputs_.size(); ++i) {
+      dual_inputs_[i].a = input_values_[i];
+    }
+    const hal::FlushDenormals flush;
+    Moved::step(dual_.model(), *dual_state_, dual_inputs_, dual_.parameters());
+  }
+
+  void read_slopes(std::span<double> sensitivity) noexcept override {
+    const hal::FlushDenormals flush;
+    Moved::read(*dual_state_, period(), dual_outputs_);
+    for (std::size_t i = 0; i < sensitivity.size(); ++i) {
+      sensitivity[i] = dual_outputs_[i].v[0];
+    }
   }
 
  protected:
@@ -174,13 +194,6 @@ class PlantOf final : public Plant {
     Moved::smooth(dual_.parameters());
     if (rebuild) {
       dual_.build(period(), steps_);
-    }
-  }
-
-  void read_slopes(std::span<double> sensitivity) noexcept {
-    Moved::read(*dual_state_, period(), dual_outputs_);
-    for (std::size_t i = 0; i < sensitivity.size(); ++i) {
-      sensitivity[i] = dual_outputs_[i].v[0];
     }
   }
 

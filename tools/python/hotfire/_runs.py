@@ -91,20 +91,26 @@ class Gradients:
 
 
 def gradients(
-    model: Model, inputs: Union[Record, npt.ArrayLike], keys: Optional[Iterable[str]] = None, *, period: Optional[float] = None
+    model: Model,
+    inputs: Union[Record, npt.ArrayLike],
+    keys: Optional[Iterable[str]] = None,
+    *,
+    period: Optional[float] = None,
+    threads: Optional[int] = None,
 ) -> Gradients:
     """The derivatives of what ``simulate`` gives by the parameters of ``keys``, all that act by default.
 
-    They are exact: the run is made with dual numbers. Where friction turns over they are those of its either side. For a
-    model of one axis. Raises UsageError for a key that does not act in the model.
+    They are exact: the run is made with dual numbers. Where friction turns over they are those of its either side. Of
+    several axes a parameter takes a run of its own, on as many threads as the process has cores, or ``threads``; the
+    slopes are of readings without noise and steps. Raises UsageError for a key that does not act in the model.
     """
     record = _inputs(model, inputs, period)
     wanted = tuple(_core.acting_keys(model._core) if keys is None else keys)
-    slopes = _core.gradients(model._core, record._core, list(wanted))
-    units = {"piston": "m", "engine": "rad", "load_pressure": "Pa"}
+    slopes = _core.gradients(model._core, record._core, list(wanted), _threads(threads))
+    units = {"piston": "m", "engine": "rad", "load_pressure": "Pa", **{f"string{number}": "m" for number in range(1, 5)}}
     of_keys = {key: parameter.unit for key, parameter in model.parameters.items()}
     quotients = {
-        channel: tuple(f"{units.get(channel, '1')}/({of_keys[key] or '1'})" for key in wanted) for channel in slopes
+        channel: tuple(f"{units.get(channel.partition('.')[0], '1')}/({of_keys[key] or '1'})" for key in wanted) for channel in slopes
     }
     return Gradients(wanted, quotients, slopes)
 
