@@ -16,9 +16,9 @@ namespace hotfire {
 
 namespace {
 
-/// share/hotfire/fmu beside the folder of this program, in a build as in an installation.
+/// lib/hotfire/fmu beside the folder of this program, in a build as in an installation.
 std::filesystem::path materials_of_this_program() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "share/hotfire/fmu";
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib/hotfire/fmu";
 }
 
 void run_export(FmuOptions options, bool json) {
