@@ -10,7 +10,7 @@ namespace hotfire {
 struct FmuOptions {
   std::filesystem::path model;      ///< model file
   std::filesystem::path fmu;        ///< archive to write; its name without folder and ending names the binary
-  std::filesystem::path materials;  ///< folder share/hotfire/fmu of this build or installation: binaries and sources
+  std::filesystem::path materials;  ///< folder lib/hotfire/fmu of this build or installation: binaries and sources
   int version = 3;                  ///< of FMI: 2 or 3
   double period = 1e-3;             ///< fixed internal step [s]
   unsigned seed = 1;                ///< of the sensors' noise and of the strings' placement errors

@@ -74,6 +74,7 @@ room(tools/cli shared "the list of commands, and options that several commands h
 room(tools/cli files "commands that check or convert files: check, convert, import, export, header" shared)
 room(tools/cli model "commands that run or fit a model: simulate, explain, reduce" shared)
 room(tools/cli trials "commands for test profiles: sweep, step, stiffness, strings, disturbances, findings" shared)
+room(tools/cli reference "man pages and completion of a shell, from the descriptions of --help" shared)
 room(tools/cli rig "commands that start or prepare a real-time run: plant, lab, controller, replay, timing, doctor" shared)
 
 room(tests/model support "plants and vehicles for tests, and every effect with typical parameters")

@@ -81,10 +81,12 @@ int main(int count, char** values) {
   std::filesystem::create_directories(folder);
   hotfire::check_the_program(values[1], folder);
   const std::string units = values[2];
-  hotfire::check_the_unit(units + "/hotfire-plant@.service", {"/hotfire plant --model /etc/hotfire/%i.toml"});
+  hotfire::check_the_unit(units + "/hotfire-plant@.service", {"/hotfire plant --model /etc/hotfire/%i.toml",
+                                                              "/hotfire-rt plant --image /etc/hotfire/%i.image"});
   // What ended by itself, or by an interlock, is not started anew.
   hotfire::check_the_unit(units + "/hotfire-lab@.service",
-                          {"/hotfire lab --profile /etc/hotfire/%i.toml", " CAP_NET_ADMIN\n", "\nRestart=on-abnormal\n"});
+                          {"/hotfire lab --profile /etc/hotfire/%i.toml", "/hotfire-rt lab --image /etc/hotfire/%i.image",
+                           " CAP_NET_ADMIN\n", "\nRestart=on-abnormal\n"});
   std::filesystem::remove_all(folder);
   return hotfire::failures == 0 ? 0 : 1;
 }

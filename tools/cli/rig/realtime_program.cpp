@@ -12,26 +12,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "tools/files/model/model_file.hpp"
-#include "tools/files/rig/fault_file.hpp"
+#include "tools/cli/shared/plant_image.hpp"
 #include "tools/files/text/error.hpp"
-#include "tools/simulate/vehicle_image_text.hpp"
 
 namespace hotfire {
-
-namespace {
-
-/// The image of a model of one axis or of a vehicle, and of the faults that its plant plays.
-std::string image_of(const std::string& model_path, const std::string& faults_path) {
-  if (is_vehicle(model_path)) {
-    const VehicleFile vehicle = load_vehicle(model_path);
-    return plant_image_text(vehicle) + (faults_path.empty() ? "" : load_faults(faults_path, faulty_plant(vehicle)));
-  }
-  const ModelFile model = load_model(model_path);
-  return plant_image_text(model) + (faults_path.empty() ? "" : load_faults(faults_path, faulty_plant(model)));
-}
-
-}  // namespace
 
 std::string share_image(const std::string& image) {
   const int file = memfd_create("image", 0);
@@ -76,7 +60,7 @@ void add_realtime_command(CLI::App& program, const std::string& name, const std:
     arguments.insert(arguments.begin(), name);
     if (!asks_for_text_only(arguments)) {
       if (!path->empty()) {
-        arguments.insert(arguments.end(), {"--image", share_image(image_of(*path, *faults))});
+        arguments.insert(arguments.end(), {"--image", share_image(image_of_model(*path, *faults))});
       } else if (needs_model) {
         throw UsageError("--model FILE is needed");
       } else if (!faults->empty()) {

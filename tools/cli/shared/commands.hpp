@@ -23,6 +23,7 @@ void add_lab(CLI::App& program);
 void add_reduce(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);
+void add_reference(CLI::App& program);  ///< hidden: what makes the man pages and the completion of a shell
 void add_replay(CLI::App& program);
 void add_step(CLI::App& program);
 void add_stiffness(CLI::App& program);

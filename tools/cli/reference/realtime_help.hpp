@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hotfire {
+
+/// One line of hotfire-rt's table of options.
+struct RealtimeOption {
+  std::string name;     ///< with its hyphens
+  std::string value;    ///< empty: a flag
+  std::string meaning;  ///< in one line
+};
+
+/// What `hotfire-rt --help` prints, by its parts. hotfire-rt keeps its table to itself, so that it needs nothing of the
+/// host.
+struct RealtimeHelp {
+  std::string introduction;
+  std::vector<std::string> examples;
+  std::vector<RealtimeOption> options;
+  std::string ending;  ///< with the exit statuses
+};
+
+/// The parts of such a text.
+RealtimeHelp parse_realtime_help(const std::string& text);
+
+/// Asks the hotfire-rt beside this program. Throws UsageError if there is none.
+RealtimeHelp realtime_help();
+
+}  // namespace hotfire

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "tools/cli/reference/completion.hpp"
+#include "tools/cli/reference/man_page.hpp"
+#include "tools/cli/shared/commands.hpp"
+#include "tools/files/text/whole_file.hpp"
+
+namespace hotfire {
+
+namespace {
+
+bool is_listed(const CLI::App* command) { return !command->get_group().empty(); }
+
+void write_pages(const CLI::App& program, const std::filesystem::path& folder) {
+  const RealtimeHelp realtime = realtime_help();
+  std::filesystem::create_directories(folder);
+  write_whole_file(folder / "hotfire.1", program_page(program));
+  write_whole_file(folder / "hotfire-rt.1", realtime_page(realtime));
+  for (const CLI::App* command : program.get_subcommands(is_listed)) {
+    write_whole_file(folder / ("hotfire-" + command->get_name() + ".1"), command_page(*command, realtime));
+  }
+}
+
+}  // namespace
+
+void add_reference(CLI::App& program) {
+  const auto folder = std::make_shared<std::string>();
+  CLI::App* manual = program.add_subcommand("manual", "Write the man page of every command, for the build");
+  manual->group("");
+  manual->add_option("FOLDER", *folder, "folder for the pages")->required();
+  manual->footer("Example: hotfire manual build/man1");
+  manual->callback([&program, folder] { write_pages(program, *folder); });
+
+  const auto words = std::make_shared<std::vector<std::string>>();
+  CLI::App* complete = program.add_subcommand("complete", "List what may follow on a command line, for a shell");
+  complete->group("");
+  complete->add_option("WORDS", *words, "the words behind hotfire, up to the one that is typed, behind --")->required();
+  complete->footer("Example: hotfire complete -- explain --mo");
+  complete->callback([&program, words] {
+    for (const std::string& one : completions(program, *words)) {
+      if (one.starts_with('*') || one.starts_with(words->back())) {
+        std::cout << one << '\n';
+      }
+    }
+  });
+}
+
+}  // namespace hotfire
