@@ -100,7 +100,7 @@ class Vehicle {
       thrust[at(e)] = bearing.thrust;
       stiffens_ = stiffens_ || value_of(bearing.unloaded_structure) < 1.0 || value_of(bearing.unloaded_stiffness) < 1.0;
     }
-    motion_per_surplus_ = motion_per_surplus(thrust);
+    give_ = give_under(thrust);
   }
 
   double step_size() const noexcept { return h_; }
@@ -133,7 +133,7 @@ class Vehicle {
     step.force = inputs.force;
     step.torque = inputs.torque;
     if (stiffens_) {
-      step.motion_per_surplus = motion_per_surplus(step.thrust);
+      step.give = give_under(step.thrust);
     }
     for (int pass = 0; pass < kPasses; ++pass) {
       evaluate(state, step, pass + 1 == kPasses ? Keep::yes : Keep::no);
@@ -171,6 +171,13 @@ class Vehicle {
     bool vibrates;
   };
 
+  /// How the attach points give way: their mean motion per mean force over a step, and the factor of it in series with the
+  /// springs.
+  struct Give {
+    AxisMatrix flexibility;
+    AxisMatrix factor;
+  };
+
   /// One step under way.
   struct Step {
     std::array<typename AxisModel::Advance, kAxes> axes;
@@ -183,7 +190,7 @@ class Vehicle {
     std::array<S, Engines> thrust{};
     std::array<S, kAxes> torque{};
     std::array<Vector3<S>, Engines> force;
-    AxisMatrix motion_per_surplus;  ///< under this step's thrust; read only where stiffness follows it
+    Give give;  ///< under this step's thrust; read only where stiffness follows it
   };
 
   static constexpr std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
@@ -244,7 +251,8 @@ class Vehicle {
     for (int e = 0; e < Engines; ++e) {
       move_engine(state, step, moved, e, motion, surplus);
     }
-    motion += times(stiffens_ ? step.motion_per_surplus : motion_per_surplus_, surplus);
+    const Give& give = stiffens_ ? step.give : give_;
+    motion += times(give.flexibility, solve_factorised<S, kAxes>(give.factor, surplus));
     for (int i = 0; i < kAxes; ++i) {
       auto& axis = state.axes[at(i)];
       step.around[at(i)].motion = motion(i);
@@ -255,9 +263,9 @@ class Vehicle {
     turn_engines(state, step, keep);
   }
 
-  /// flexibility (1 / K_T + flexibility)^-1 under a thrust, flexibility being the mean motion of the attach points per mean
-  /// force, bearings at zero angles.
-  AxisMatrix motion_per_surplus(const std::array<S, Engines>& thrust) const noexcept;
+  /// How the attach points give way under a thrust, bearings at zero angles. What the springs take up of their surplus moves
+  /// them by flexibility (1 / K_T + flexibility)^-1 of it.
+  Give give_under(const std::array<S, Engines>& thrust) const noexcept;
 
   /// What an attach point gives way by beyond its declared stiffness under a thrust [m/N].
   S further_flexibility(int i, const S& thrust) const noexcept {
@@ -371,8 +379,7 @@ class Vehicle {
   std::array<AxisModel, kAxes> axes_;
   Structure structure_;
   std::array<Gimbal, Engines> gimbals_;
-  /// What the attach points move by when the springs take up their surplus, under the declared thrust.
-  AxisMatrix motion_per_surplus_;
+  Give give_;              ///< under the declared thrust
   bool stiffens_ = false;  ///< structure or bearings are stiffer under thrust
 };
 

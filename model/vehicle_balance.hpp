@@ -71,30 +71,29 @@ void Vehicle<S, Engines, Capacity, List>::couple_at_rest(State& state, std::arra
 }
 
 template <class S, int Engines, int Capacity, class List>
-typename Vehicle<S, Engines, Capacity, List>::AxisMatrix Vehicle<S, Engines, Capacity, List>::motion_per_surplus(
+typename Vehicle<S, Engines, Capacity, List>::Give Vehicle<S, Engines, Capacity, List>::give_under(
     const std::array<S, Engines>& thrust) const noexcept {
-  AxisMatrix flexibility = structure_.mean_flexibility().template topLeftCorner<kAxes, kAxes>();
+  Give give;
+  give.flexibility = structure_.mean_flexibility().template topLeftCorner<kAxes, kAxes>();
   for (int e = 0; e < Engines; ++e) {
     const Gimbal& gimbal = gimbals_[at(e)];
     const Vector3<S> load = gimbal.upright.thrust * (thrust[at(e)] + gimbal.bearing.dead_load);
     const auto& direction = gimbal.upright.direction;
-    for (int a = 0; a < 2; ++a) {
-      for (int b = 0; b < 2; ++b) {
-        flexibility(2 * e + a, 2 * e + b) += gimbal.spring.mean_flexibility(direction[at(a)], direction[at(b)], load);
-      }
-      flexibility(2 * e + a, 2 * e + a) += further_flexibility(2 * e + a, thrust[at(e)]);
-    }
+    const S pitch = gimbal.spring.mean_flexibility(direction[0], direction[0], load);
+    const S yaw = gimbal.spring.mean_flexibility(direction[1], direction[1], load);
+    const S cross = gimbal.spring.mean_flexibility(direction[0], direction[1], load);
+    give.flexibility(2 * e, 2 * e) += pitch + further_flexibility(2 * e, thrust[at(e)]);
+    give.flexibility(2 * e + 1, 2 * e + 1) += yaw + further_flexibility(2 * e + 1, thrust[at(e)]);
+    give.flexibility(2 * e, 2 * e + 1) += cross;
+    give.flexibility(2 * e + 1, 2 * e) += cross;
   }
-  AxisMatrix with_springs = flexibility;
+  AxisMatrix with_springs = give.flexibility;
   for (int i = 0; i < kAxes; ++i) {
     with_springs(i, i) += 1.0 / axes_[at(i)].stiffness();
   }
-  const AxisMatrix force_per_surplus = inverse_of_positive_definite<S, kAxes>(with_springs);
-  AxisMatrix product;
-  for (int column = 0; column < kAxes; ++column) {
-    product.col(column) = times(flexibility, Eigen::Matrix<S, kAxes, 1>(force_per_surplus.col(column)));
-  }
-  return product;
+  // Positive definite: the springs alone are, and what is added to them gives way.
+  factorise<S, kAxes>(with_springs, give.factor);
+  return give;
 }
 
 }  // namespace hotfire::model

@@ -67,6 +67,7 @@ struct FaultyPlant {
   std::span<const std::string_view> channels;
   bool hydraulic;
   std::size_t actuators;  ///< at most
+  bool has_bearing = false;
 };
 
 PlayedFault read_fault(Entries& entries, const std::string& prefix, const FaultyPlant& plant) {
@@ -83,7 +84,9 @@ PlayedFault read_fault(Entries& entries, const std::string& prefix, const Faulty
   if (is_of_sensor(fault.kind)) {
     fault.channel = read_word(entries, prefix + "channel", plant.channels);
   } else if (!plant.hydraulic) {
-    entries.refuse(prefix + "kind: leak and lost_supply are faults of a hydraulic axis");
+    entries.refuse(prefix + "kind: leak, lost_supply, torque and thrust are of a hydraulic axis and its engine");
+  } else if (fault.kind == PlayedKind::thrust && !plant.has_bearing) {
+    entries.refuse(prefix + "kind: thrust is of topology taos or masv");
   }
   switch (fault.kind) {
     case PlayedKind::biased:
@@ -101,16 +104,24 @@ PlayedFault read_fault(Entries& entries, const std::string& prefix, const Faulty
     case PlayedKind::lost_supply:
       fault.value = read_bounded(entries, prefix + "value", 1e4, 1e9, "Pa");
       break;
+    case PlayedKind::torque:
+      fault.value = read_bounded(entries, prefix + "value", -kLargestTorque, kLargestTorque, "N m");
+      break;
+    case PlayedKind::thrust:
+      fault.value = read_bounded(entries, prefix + "value", 0.0, kLargestThrust, "N");
+      break;
     default:
       break;
   }
   return fault;
 }
 
-/// Two faults would each want the actuator to be another model.
+/// Two faults would each want the actuator to be another model, or the engine to have another thrust.
 bool are_at_odds(const PlayedFault& one, const PlayedFault& other) {
-  return is_of_actuator(one.kind) && is_of_actuator(other.kind) && one.from < other.to && other.from < one.to &&
-         (one.actuator == 0 || other.actuator == 0 || one.actuator == other.actuator);
+  const bool both_thrust = one.kind == PlayedKind::thrust && other.kind == PlayedKind::thrust;
+  const auto part = [&](const PlayedFault& fault) { return both_thrust ? (fault.actuator + 1) / 2 : fault.actuator; };
+  return (both_thrust || (is_of_actuator(one.kind) && is_of_actuator(other.kind))) && one.from < other.to &&
+         other.from < one.to && (one.actuator == 0 || other.actuator == 0 || part(one) == part(other));
 }
 
 std::vector<PlayedFault> read_faults(Entries& entries, const FaultyPlant& plant) {
@@ -118,7 +129,9 @@ std::vector<PlayedFault> read_faults(Entries& entries, const FaultyPlant& plant)
   for (std::string prefix = "fault.0."; entries.has_prefix(prefix); prefix = text("fault.%zu.", faults.size())) {
     const PlayedFault fault = read_fault(entries, prefix, plant);
     if (std::any_of(faults.begin(), faults.end(), [&](const PlayedFault& other) { return are_at_odds(fault, other); })) {
-      entries.refuse(prefix + "kind: a leak or lost supply of an actuator that has another one at that time");
+      entries.refuse(
+          prefix +
+          "kind: a leak or lost supply of an actuator, or a thrust of an engine, that has another one at that time");
     }
     faults.push_back(fault);
   }
@@ -181,7 +194,7 @@ PlantImage fill_vehicle(Entries& entries) {
       image.parameters.emplace(std::in_place_type<model::InstrumentedVehicle<Vehicle>>));
   Filler filler(entries);
   model::visit_vehicle_keys(instrumented, filler);
-  image.faults = read_faults(entries, {Vehicle::AxisModel::channels, true, Vehicle::kAxes});
+  image.faults = read_faults(entries, {Vehicle::AxisModel::channels, true, Vehicle::kAxes, true});
   entries.refuse_unused();
   refuse_broken_vehicle(entries, instrumented);
   if (!entries.error().empty()) {

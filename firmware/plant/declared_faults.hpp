@@ -19,15 +19,22 @@ namespace hotfire::firmware {
 ///
 /// Of a sensor: `stuck` holds what it read before; `biased` adds `value`; `noisy` adds white noise of rms `value`; `dropped`
 /// is not sent; `delayed` is sent `value` seconds late. Of an actuator: `leak` has a leakage of `value` across the piston;
-/// `lost_supply` has a supply pressure of `value`. `bus_off`: the plant neither receives nor sends.
-enum class PlayedKind : std::uint8_t { stuck, biased, noisy, dropped, delayed, leak, lost_supply, bus_off };
-inline constexpr std::array<std::string_view, 8> kPlayedKinds{"stuck",   "biased", "noisy",       "dropped",
-                                                              "delayed", "leak",   "lost_supply", "bus_off"};
+/// `lost_supply` has a supply pressure of `value`. `bus_off`: the plant neither receives nor sends. Of an engine: `torque`
+/// of `value` turns it towards positive angles of the actuator's axis; `thrust` of `value` replaces the declared one.
+enum class PlayedKind : std::uint8_t { stuck, biased, noisy, dropped, delayed, leak, lost_supply, bus_off, torque, thrust };
+inline constexpr std::array<std::string_view, 10> kPlayedKinds{"stuck", "biased",      "noisy",   "dropped", "delayed",
+                                                               "leak",  "lost_supply", "bus_off", "torque",  "thrust"};
 
 constexpr bool is_of_sensor(PlayedKind kind) noexcept { return kind <= PlayedKind::delayed; }
 constexpr bool is_of_actuator(PlayedKind kind) noexcept {
   return kind == PlayedKind::leak || kind == PlayedKind::lost_supply;
 }
+
+constexpr bool is_of_engine(PlayedKind kind) noexcept { return kind == PlayedKind::torque || kind == PlayedKind::thrust; }
+
+/// The largest torque [N m] and thrust [N] of an engine.
+inline constexpr double kLargestTorque = 1e7;
+inline constexpr double kLargestThrust = 1e8;
 
 /// The longest delay of a sensor [s].
 inline constexpr double kLongestSensorDelay = 1.0;
@@ -69,6 +76,49 @@ struct CycleSpan {
     constexpr double kNever = 1e18;
     return static_cast<std::uint64_t>(std::min(std::ceil(time / period - kRounding), kNever));
   }
+};
+
+/// What acts on the engines of a plant from outside, by the faults that say so.
+class PlayedLoads {
+ public:
+  PlayedLoads(const std::vector<PlayedFault>& faults, double period) {
+    for (const PlayedFault& fault : faults) {
+      if (is_of_engine(fault.kind)) {
+        loads_.push_back({fault, CycleSpan(fault, period)});
+      }
+    }
+  }
+
+  bool any() const noexcept { return !loads_.empty(); }
+
+  /// The torque on an actuator's engine in a cycle: the sum of all that last [N m]. Real-time.
+  double torque(std::uint64_t cycle, std::size_t actuator) const noexcept {
+    double sum = 0.0;
+    for (const Load& load : loads_) {
+      sum += load.is(PlayedKind::torque, cycle) && load.fault.is_of(actuator) ? load.fault.value : 0.0;
+    }
+    return sum;
+  }
+
+  /// The thrust of an engine in a cycle [N]; `declared` while none is played. Real-time.
+  double thrust(std::uint64_t cycle, std::size_t engine, double declared) const noexcept {
+    for (const Load& load : loads_) {
+      if (load.is(PlayedKind::thrust, cycle) && (load.fault.is_of(2 * engine) || load.fault.is_of(2 * engine + 1))) {
+        return load.fault.value;
+      }
+    }
+    return declared;
+  }
+
+ private:
+  struct Load {
+    PlayedFault fault;
+    CycleSpan cycles;
+
+    bool is(PlayedKind kind, std::uint64_t cycle) const noexcept { return fault.kind == kind && cycles.has(cycle); }
+  };
+
+  std::vector<Load> loads_;
 };
 
 /// Plays the faults of the sensors of a plant on what they read. The same faults and readings give the same bits.

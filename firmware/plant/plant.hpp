@@ -35,7 +35,8 @@ class Plant {
       : steps_(model::steps_per_period<Model>(parameters, period)),
         model_(parameters, period / steps_),
         states_(actuators, start()),
-        readings_(faults, period, actuators, channels.size()) {
+        readings_(faults, period, actuators, channels.size()),
+        loads_(faults, period) {
     for (const PlayedFault& fault : faults) {
       if (is_of_actuator(fault.kind)) {
         broken_.emplace_back(fault, period, Model(broken(parameters, fault), period / steps_));
@@ -48,7 +49,7 @@ class Plant {
     for (std::size_t actuator = 0; actuator < states_.size(); ++actuator) {
       const Model& model = model_of(actuator);
       for (int i = 0; i < steps_; ++i) {
-        model.step(states_[actuator], command.values[actuator]);
+        advance(model, actuator, command.values[actuator]);
       }
     }
     readings_.take([this](std::span<double> readings) noexcept { measure(readings); });
@@ -110,6 +111,17 @@ class Plant {
     return model_;
   }
 
+  void advance(const Model& model, std::size_t actuator, double command) noexcept {
+    if constexpr (requires { Model::kAngle; }) {
+      if (const double torque = loads_.torque(readings_.cycle(), actuator); torque != 0.0) {
+        const double arm = model.parameters().actuator.moment_arm;
+        model.step(states_[actuator], command, [=](double) { return model::Coupling<double>{0.0, arm, -torque}; });
+        return;
+      }
+    }
+    model.step(states_[actuator], command);
+  }
+
   typename Model::State start() const {
     if constexpr (requires { model_.steady(0.0); }) {
       return model_.steady(0.0);
@@ -145,6 +157,7 @@ class Plant {
   Model model_;
   std::vector<typename Model::State> states_;
   PlayedReadings readings_;
+  PlayedLoads loads_;
   StringPotentiometers geometry_{StringPotentiometers::representative()};
   std::vector<double> strings_;
   std::vector<Broken> broken_;

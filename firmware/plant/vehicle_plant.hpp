@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -42,7 +43,11 @@ class VehiclePlant {
         state_(std::make_unique<State>(vehicle_.steady({}))),
         modes_(static_cast<std::size_t>(parameters.vehicle.modes.modes)),
         sensors_(parameters.sensors, *state_),
-        readings_(faults, period, Vehicle::kAxes, channels.size()) {
+        readings_(faults, period, Vehicle::kAxes, channels.size()),
+        loads_(faults, period) {
+    for (std::size_t e = 0; e < Vehicle::kEngines; ++e) {
+      declared_thrust_[e] = parameters.vehicle.gimbals[e].bearing.thrust;
+    }
     make_broken(parameters.vehicle, faults);
     readings_.start([this](std::span<double> readings) noexcept { measure(readings); });
   }
@@ -51,6 +56,9 @@ class VehiclePlant {
 
   void step(const hal::Command& command) noexcept {
     std::copy_n(command.values.begin(), Vehicle::kAxes, inputs_.commands.begin());
+    if (loads_.any()) {
+      put_loads();
+    }
     const Vehicle& vehicle = vehicle_now();
     for (int i = 0; i < steps_; ++i) {
       vehicle.step(*state_, inputs_);
@@ -156,6 +164,15 @@ class VehiclePlant {
     return vehicle_;
   }
 
+  void put_loads() noexcept {
+    for (std::size_t axis = 0; axis < actuators(); ++axis) {
+      inputs_.torque[axis] = loads_.torque(readings_.cycle(), axis);
+    }
+    for (std::size_t e = 0; e < Vehicle::kEngines; ++e) {
+      inputs_.thrust[e] = loads_.thrust(readings_.cycle(), e, declared_thrust_[e]) - declared_thrust_[e];
+    }
+  }
+
   void measure(std::span<double> readings) noexcept {
     sensors_.read_pistons(*state_, period_, piston_noise_);
     const auto& measured = Vehicle::measured(*state_);
@@ -176,6 +193,8 @@ class VehiclePlant {
   WhiteNoise string_noise_{102};  ///< its own: what the pistons read does not depend on whether there are strings
   bool has_strings_ = false;
   PlayedReadings readings_;
+  PlayedLoads loads_;
+  std::array<double, Vehicle::kEngines> declared_thrust_{};  ///< [N]
   std::vector<std::unique_ptr<Broken>> broken_;
 };
 

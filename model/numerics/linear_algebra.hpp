@@ -24,10 +24,10 @@ bool is_symmetric(const Eigen::Matrix<S, N, N>& matrix) {
 }
 
 /// The factor L of matrix = L L^T (Cholesky), of which only the lower triangle is read. Returns false, with the factor
-/// unfinished, if the matrix is not positive definite. Set-up only. Written out because Eigen's order of additions follows
+/// unfinished, if the matrix is not positive definite. Written out because Eigen's order of additions follows
 /// the instruction set, and a model must have the same bits in the host's tools and on the target.
 template <class S, int N>
-bool factorise(const Eigen::Matrix<S, N, N>& matrix, Eigen::Matrix<S, N, N>& factor) {
+bool factorise(const Eigen::Matrix<S, N, N>& matrix, Eigen::Matrix<S, N, N>& factor) noexcept {
   factor.setZero();
   for (int j = 0; j < N; ++j) {
     S pivot = matrix(j, j);
@@ -55,6 +55,27 @@ bool is_positive_definite(const Eigen::Matrix<S, N, N>& matrix) {
   return factorise<S, N>(matrix, factor);
 }
 
+/// Solves L L^T x = b with a finished factor L.
+template <class S, int N>
+Eigen::Matrix<S, N, 1> solve_factorised(const Eigen::Matrix<S, N, N>& factor, const Eigen::Matrix<S, N, 1>& b) noexcept {
+  Eigen::Matrix<S, N, 1> x;
+  for (int i = 0; i < N; ++i) {
+    S sum = b(i);
+    for (int k = 0; k < i; ++k) {
+      sum -= factor(i, k) * x(k);
+    }
+    x(i) = sum / factor(i, i);
+  }
+  for (int i = N - 1; i >= 0; --i) {
+    S sum = x(i);
+    for (int k = i + 1; k < N; ++k) {
+      sum -= factor(k, i) * x(k);
+    }
+    x(i) = sum / factor(i, i);
+  }
+  return x;
+}
+
 /// Inverse of a symmetric positive definite matrix. Set-up only; zero if the matrix is not what it must be.
 template <class S, int N>
 Eigen::Matrix<S, N, N> inverse_of_positive_definite(const Eigen::Matrix<S, N, N>& matrix) {
@@ -64,20 +85,9 @@ Eigen::Matrix<S, N, N> inverse_of_positive_definite(const Eigen::Matrix<S, N, N>
     return inverse;
   }
   for (int column = 0; column < N; ++column) {
-    for (int i = 0; i < N; ++i) {
-      S sum = i == column ? S(1.0) : S(0.0);
-      for (int k = 0; k < i; ++k) {
-        sum -= factor(i, k) * inverse(k, column);
-      }
-      inverse(i, column) = sum / factor(i, i);
-    }
-    for (int i = N - 1; i >= 0; --i) {
-      S sum = inverse(i, column);
-      for (int k = i + 1; k < N; ++k) {
-        sum -= factor(k, i) * inverse(k, column);
-      }
-      inverse(i, column) = sum / factor(i, i);
-    }
+    Eigen::Matrix<S, N, 1> unit = Eigen::Matrix<S, N, 1>::Zero();
+    unit(column) = S(1.0);
+    inverse.col(column) = solve_factorised<S, N>(factor, unit);
   }
   return inverse;
 }

@@ -97,7 +97,7 @@ constexpr std::array kFindings{
             {Physics::stribeck}},
     Finding{"F15",
             "many modes, none dominant: how far static and dynamic structure give the same notch [SD fig. 2]",
-            "notch of both at four locations, 30 % of the flexibility in modes",
+            "notch of both at eight locations, 30 % of the flexibility in modes",
             "hotfire findings --only F15",
             static_or_dynamic,
             {Physics::modes}},

@@ -118,9 +118,12 @@ Outcome stiffness_by_location(const Bench& bench) {
   outcome.note = fmt::format(
       "Synthetic vehicle of 120 modes, reduced to {}, which carry 30 % of the load flexibility; the rest is local to the "
       "attach points. One actuator is commanded at a time. The deepest notch is the one that is read, and it need not be "
-      "the load's: modes that cross the band have notches of "
-      "their own. So the scatter is larger than that of [SD fig. 11], whose vehicle must have fewer modes that the "
-      "actuators feel.",
+      "the load's: modes that cross the band have notches of their own. A stiffness from a notch multiplies the notch's "
+      "displacement by 2 K_L / K_T, about four here (the total goes with the square, and the actuator's share is taken "
+      "off). "
+      "So the 13 % of F15 at one location are 80 % of stiffness, and the scatter is larger than that of [SD fig. 11], whose "
+      "vehicle must have fewer modes that the actuators feel. [SD 2.4] fits the curve of a one-axis model to the whole "
+      "response, which a single deep notch of a mode disturbs less; that fit is not repeated here.",
       stage.reduced.modes());
   return outcome;
 }
@@ -139,30 +142,36 @@ Outcome static_or_dynamic(const Bench& bench) {
   }
   outcome.figures.push_back({"largest share of one mode in the modes' flexibility", 100.0 * largest, 0.0, 10.0, "%"});
   std::vector<trials::ChannelSweep> drawn;
+  constexpr double kNearly = 0.06;  // what still counts as the same frequency
   double mean = 0.0;
   double furthest = 0.0;
-  for (const std::string name : {"pitch1", "yaw1", "pitch2", "yaw4"}) {
+  double same = 0.0;
+  for (const std::string& name : axis_names(4)) {
     set_modes(stage, moving);
     trials::ChannelSweep dynamic = piston_sweep(stage, name);
     set_modes(stage, Modes::at_rest);
     trials::ChannelSweep still = piston_sweep(stage, name);
     const double ratio = notch_of(dynamic) / notch_of(still);
-    outcome.figures.push_back({fmt::format("notch of {}, dynamic over static structure", name), ratio, 0.93, 1.07, ""});
-    mean += 0.25 * ratio;
+    outcome.figures.push_back({fmt::format("notch of {}, dynamic over static structure", name), ratio, 0.9, 1.2, ""});
+    mean += ratio / kLocations;
     furthest = std::max(furthest, std::abs(ratio - 1.0));
-    if (name == "pitch1") {
+    same += std::abs(ratio - 1.0) < kNearly ? 1.0 : 0.0;
+    if (name == "pitch3") {
       dynamic.channel = "dynamic";
       still.channel = "static";
       drawn = {dynamic, still};
     }
   }
-  outcome.figures.push_back({"mean over the four", mean, 0.97, 1.03, ""});
-  outcome.figures.push_back({"largest difference", 100.0 * furthest, 2.0, 8.0, "%"});
-  outcome.picture = trials::bode_chart("F15: piston of engine 1 pitch on a dynamic and on a static vehicle", drawn);
+  outcome.figures.push_back({"mean over the locations", mean, 0.97, 1.06, ""});
+  // Eight of eight would be a structure whose modes do not matter, fewer than six no finding.
+  outcome.figures.push_back({"locations where both are within 6 %", same, 6.0, 7.0, ""});
+  outcome.figures.push_back({"largest difference", 100.0 * furthest, 6.0, 25.0, "%"});
+  outcome.picture = trials::bode_chart("F15: piston of engine 3 pitch on a dynamic and on a static vehicle", drawn);
   outcome.note =
       "The same vehicle as in F12, in place of its modes their static flexibility. \"Nearly the same frequency\" [SD] holds "
-      "to "
-      "5 % here, and to 2 % in the mean.";
+      "to 5 % at seven of the eight locations. It does not hold for the pitch of engine 3, which is drawn: there the "
+      "deepest "
+      "notch is that of a mode.";
   return outcome;
 }
 

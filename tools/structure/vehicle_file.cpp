@@ -343,7 +343,7 @@ VehicleFile with_thrust(VehicleFile vehicle, double thrust) {
 FaultyPlant faulty_plant(const VehicleFile& vehicle) {
   // An axis has these channels whatever its effects.
   const auto axes = std::visit([](const auto& parameters) { return parameters.axes.size(); }, vehicle.parameters);
-  return {channels_of_plant<model::Taos<double>::AxisModel>(), true, static_cast<std::int64_t>(axes)};
+  return {channels_of_plant<model::Taos<double>::AxisModel>(), true, static_cast<std::int64_t>(axes), true};
 }
 
 }  // namespace hotfire

@@ -47,6 +47,8 @@ TEST(FaultFile, WhatCannotBeIsRefusedWithItsLineAndWhatIsAllowed) {
   refused("kind = \"biased\"\nfrom = 1\nchannel = \"piston\"\nvalue = \"2 kg\"\n", {"faults.toml:6", "fault.0.value", "m"});
   refused("kind = \"delayed\"\nfrom = 1\nchannel = \"piston\"\nvalue = \"2 s\"\n", {"fault.0.value", "allowed: 0 to 1 s"});
   refused("kind = \"bus_off\"\nfrom = 1\nactuator = 1\n", {"faults.toml:5", "actuator"});
+  refused("kind = \"torque\"\nfrom = 1\nvalue = \"2 kN\"\n", {"faults.toml:5", "fault.0.value", "N.m"});
+  refused("kind = \"thrust\"\nfrom = 1\nvalue = 0\n", {"faults.toml:3", "needs a gimbal bearing", "taos"});
 }
 
 TEST(FaultFile, FileWithoutSchemaOrFaultIsRefused) {

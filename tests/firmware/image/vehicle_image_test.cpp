@@ -139,4 +139,16 @@ TEST(VehicleImage, FaultOfAnActuatorThatTheVehicleHasNotIsRefused) {
   refused(text + fault + "3\n", "fault.0.actuator = 3: allowed is a whole number from 0 to 2");
 }
 
+TEST(VehicleImage, EngineHasOneThrustAtATimeWhicheverOfItsActuatorsNamesIt) {
+  const std::string text = plant_image_text(load_vehicle(scratch.write("masv.toml", "schema = 1\ntopology = \"masv\"\n")));
+  const auto thrust = [](int number, int actuator) {
+    const std::string prefix = "fault." + std::to_string(number) + ".";
+    return prefix + "kind thrust\n" + prefix + "from 0\n" + prefix + "to 1\n" + prefix + "actuator " +
+           std::to_string(actuator) + "\n" + prefix + "value 1e6\n";
+  };
+  STRCMP_EQUAL("", parse_plant_image(text + thrust(0, 2) + thrust(1, 3), "image").error.c_str());
+  refused(text + thrust(0, 1) + thrust(1, 2), "fault.1.kind: ");
+  refused(text + thrust(0, 5) + thrust(1, 0), "a thrust of an engine, that has another one at that time");
+}
+
 }  // namespace hotfire

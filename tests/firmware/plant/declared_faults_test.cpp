@@ -141,6 +141,29 @@ TEST(PlayedFaults, LeakAndLostSupplyChangeTheirActuatorFromTheirTimeOnAndOnlyIt)
   }
 }
 
+// A torque turns the engine by what its springs give, and by what the piston gives way until the feedback of its load
+// pressure is washed out. An overshoot of half is allowed.
+TEST(PlayedFaults, TorqueTurnsItsEngineTowardsPositiveAnglesWhileItLasts) {
+  constexpr double kTorque = 2e4;
+  const Simplex::Parameters reference;
+  const double arm = reference.actuator.moment_arm;
+  const double spring = 1.0 / (1.0 / reference.actuator.stiffness + 1.0 / reference.structure.stiffness);
+  const double turned = kTorque / (reference.engine.duct_stiffness + spring * arm * arm);
+  const double pressure = kTorque / (arm * reference.actuator.piston_area);
+  const double given = reference.servovalve.pressure_feedback_gain * pressure / (reference.servovalve.position_gain * arm);
+  const Rows rows = played({of(PlayedKind::torque, 0.5 * kTorque), of(PlayedKind::torque, 0.5 * kTorque)});
+  for (std::size_t cycle = 0; cycle < kCycles; ++cycle) {
+    for (std::size_t i = 0; i < kChannels; ++i) {
+      CHECK(rows[cycle][i] == healthy[cycle][i]);
+      CHECK(cycle >= kFrom || rows[cycle][kPlace + i] == healthy[cycle][kPlace + i]);
+    }
+  }
+  const double largest = rows[kTo - 1][kPlace + 1] - healthy[kTo - 1][kPlace + 1];
+  CHECK(largest > 0.5 * turned);
+  CHECK(largest < 1.5 * (turned + given));
+  CHECK(std::abs(rows[kCycles - 1][kPlace + 1] - healthy[kCycles - 1][kPlace + 1]) < 0.5 * largest);
+}
+
 TEST(PlayedFaults, BusThatIsOffNeitherReceivesNorSendsAndForgetsWhatCame) {
   hal::sim::SimulatedPlantBus wire({}, kPeriod);
   PlayedBus bus(wire, {{PlayedKind::bus_off, 0.01, 0.02}}, kPeriod);
@@ -156,7 +179,7 @@ TEST(PlayedFaults, BusThatIsOffNeitherReceivesNorSendsAndForgetsWhatCame) {
 TEST(PlayedFaults, PlayingAllocatesNothing) {
   std::vector<PlayedFault> faults;
   for (const PlayedKind kind : {PlayedKind::stuck, PlayedKind::biased, PlayedKind::noisy, PlayedKind::dropped,
-                                PlayedKind::delayed, PlayedKind::leak}) {
+                                PlayedKind::delayed, PlayedKind::leak, PlayedKind::torque}) {
     faults.push_back({kind, 0.0, 1.0, 0, 0, 1e-9});
   }
   Plant<Simplex> plant({}, kPeriod, 8, faults);
@@ -194,6 +217,7 @@ TEST(PlayedFaults, ImageWithAFaultThatCannotBeIsRefused) {
   refused("fault.0.kind stuck\nfault.0.from 0\nfault.0.to 1\nfault.0.actuator 1\nfault.0.channel piston\n",
           "fault.0.channel = piston: allowed are position");
   refused("fault.0.kind leak\nfault.0.from 0\nfault.0.to 1\nfault.0.actuator 1\nfault.0.value 0\n", "hydraulic");
+  refused("fault.0.kind torque\nfault.0.from 0\nfault.0.to 1\nfault.0.actuator 1\nfault.0.value 0\n", "hydraulic");
   refused("fault.1.kind bus_off\nfault.1.from 0\nfault.1.to 1\n", "fault.1.kind = bus_off: unknown key");
 }
 

@@ -3,6 +3,7 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -54,6 +55,20 @@ Rows played(const std::vector<PlayedFault>& faults) {
   return rows;
 }
 
+/// An engine whose friction is mu N r, and whose structure and trim follow the thrust.
+model::InstrumentedVehicle<Taos> followed_thrust() {
+  model::InstrumentedVehicle<Taos> rig;
+  rig.vehicle = test::hot_fire<Taos>();
+  auto& gimbal = rig.vehicle.gimbals[0];
+  gimbal.bearing.rated_thrust = gimbal.bearing.thrust;
+  gimbal.bearing.dead_load = -3.4e4;
+  gimbal.bearing.unloaded_structure = 0.4;
+  gimbal.bearing.pitch_misalignment = 3e-3;
+  gimbal.friction.coulomb_torque = 0.0;
+  gimbal.friction.coefficient = 0.08;
+  return rig;
+}
+
 /// The first cycle in which any of some readings differs; the number of cycles if none does.
 std::size_t first_difference(const Rows& one, const Rows& other, std::size_t from, std::size_t to) {
   std::size_t cycle = 0;
@@ -103,7 +118,7 @@ TEST(VehiclePlant, LoopGivesTheBitsOfOfflineStepping) {
 TEST(VehiclePlant, CyclesOfFourEnginesWithModesStringsAndFaultsAllocateNothing) {
   std::vector<PlayedFault> faults;
   for (const PlayedKind kind : {PlayedKind::stuck, PlayedKind::biased, PlayedKind::noisy, PlayedKind::dropped,
-                                PlayedKind::delayed, PlayedKind::leak}) {
+                                PlayedKind::delayed, PlayedKind::leak, PlayedKind::torque, PlayedKind::thrust}) {
     faults.push_back({kind, 0.1, 0.3, 0, 0, 1e-9});
   }
   const auto plant = std::make_unique<VehiclePlant<Masv>>(*hot_masv(), kPeriod, faults);
@@ -192,6 +207,65 @@ TEST(VehiclePlant, FaultsOfActuatorsThatOverlapActTogetherAndEachInItsTime) {
   // Each acts on its own actuator: without supply the yaw piston no longer follows, with a leak the pitch piston does.
   CHECK(std::abs(both[300][kChannels] - healthy[300][kChannels]) > 1e-3);
   CHECK(std::abs(both[300][0] - leaking[300][0]) < 1e-3);
+}
+
+TEST(VehiclePlant, ThrustAndTorqueThatAreSwitchedGiveTheBitsOfOfflineStepping) {
+  const hal::FlushDenormals flush;
+  const model::InstrumentedVehicle<Taos> rig = followed_thrust();
+  const auto plant = std::make_unique<VehiclePlant<Taos>>(
+      rig, kPeriod,
+      std::vector<PlayedFault>{{PlayedKind::thrust, 0.1, 0.3, 1, 0, 0.0}, {PlayedKind::torque, 0.2, 0.35, 2, 0, 5e3}});
+  const auto vehicle = std::make_unique<Taos>(rig.vehicle, kPeriod / 2);
+  const auto state = std::make_unique<Taos::State>(vehicle->steady({}));
+  for (int cycle = 0; cycle < 400; ++cycle) {
+    Taos::Inputs inputs;
+    hal::Command command;
+    command.values[0] = inputs.commands[0] = 0.02 * std::sin(20.0 * cycle * kPeriod);
+    command.values[1] = inputs.commands[1] = 0.015 * std::sin(31.0 * cycle * kPeriod);
+    inputs.thrust[0] = cycle >= 100 && cycle < 300 ? -rig.vehicle.gimbals[0].bearing.thrust : 0.0;
+    inputs.torque[1] = cycle >= 200 && cycle < 350 ? 5e3 : 0.0;
+    plant->step(command);
+    vehicle->step(*state, inputs);
+    vehicle->step(*state, inputs);
+    for (std::size_t i = 0; i < state->measured.size(); ++i) {
+      if (i % kChannels != 0) {
+        DOUBLES_EQUAL(state->measured[i], plant->measured()[i], 0.0);
+      }
+    }
+  }
+}
+
+// Friction from the load pressure: half of what it differs by between both ways through zero, so that what is viscous
+// cancels between two thrusts.
+TEST(VehiclePlant, FrictionDiffersBetweenNoThrustAndFullThrustByMuNR) {
+  constexpr double kPeak = 0.05;
+  constexpr int kCycles = 4000;  // of a triangle, at 0.05 rad/s
+  const model::InstrumentedVehicle<Taos> rig = followed_thrust();
+  const auto plant = std::make_unique<VehiclePlant<Taos>>(
+      rig, kPeriod, std::vector<PlayedFault>{{PlayedKind::thrust, 1e-3 * 2 * kCycles, 1e9, 0, 0, 0.0}});
+  std::array<double, 2> resistance{};  // under full thrust, without
+  for (std::size_t part = 0; part < resistance.size(); ++part) {
+    std::array<double, 2> sum{};  // on the way down, up
+    std::array<int, 2> count{};
+    for (int cycle = 0; cycle < 2 * kCycles; ++cycle) {
+      const double turn = static_cast<double>(cycle % kCycles) / kCycles;
+      hal::Command command;
+      command.values[0] = kPeak * (turn < 0.25 ? 4.0 * turn : turn < 0.75 ? 2.0 - 4.0 * turn : 4.0 * turn - 4.0);
+      const double before = plant->measured()[1];
+      plant->step(command);
+      const double angle = plant->measured()[1];
+      if (cycle >= kCycles && std::abs(angle) < 0.4 * kPeak) {
+        sum[angle > before ? 1 : 0] += plant->measured()[2];
+        ++count[angle > before ? 1 : 0];
+      }
+    }
+    resistance[part] = 0.5 * (sum[1] / count[1] - sum[0] / count[0]);
+  }
+  const auto& bearing = rig.vehicle.gimbals[0].bearing;
+  const double law =
+      0.08 * rig.vehicle.gimbals[0].friction.radius * (bearing.thrust + bearing.dead_load - std::abs(bearing.dead_load));
+  const double arm = Taos::geometry_of(rig.vehicle, 0).at(0.0, 0.0).arm[0][0];
+  DOUBLES_EQUAL(law, (resistance[0] - resistance[1]) * rig.vehicle.axes[0].actuator.piston_area * arm, 0.01 * law);
 }
 
 TEST(VehiclePlant, FaultOfEveryActuatorIsThatOfEach) {

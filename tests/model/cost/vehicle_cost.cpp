@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps from random states under random commands, for callgrind to count: vehicle_cost.cmake runs it.
-//   vehicle_cost axis|taos|masv MODES
+//   vehicle_cost axis|taos|taos-thrust|masv|masv-thrust MODES
 
 #include <cstdio>
 #include <cstdlib>
@@ -57,9 +57,27 @@ void step_axis() {
   }
 }
 
+/// Lets everything that can follow the thrust do so: friction, bearing, structure, trim.
+template <class Parameters>
+void follow_thrust(Parameters& parameters) {
+  for (auto& gimbal : parameters.gimbals) {
+    gimbal.bearing.rated_thrust = 1.86e6;
+    gimbal.bearing.dead_load = -3.4e4;
+    gimbal.bearing.unloaded_structure = 0.4;
+    gimbal.bearing.pitch_misalignment = gimbal.bearing.yaw_misalignment = 3e-3;
+    gimbal.friction.coulomb_torque = 0.0;
+    gimbal.friction.coefficient = 0.08;
+  }
+}
+
+enum class Thrust { constant, followed };
+
 template <class Vehicle, class Measured>
-void step_vehicle(int modes, Measured&& measured) {
+void step_vehicle(int modes, Thrust thrust, Measured&& measured) {
   typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
+  if (thrust == Thrust::followed) {
+    follow_thrust(parameters);
+  }
   parameters.modes = random_modes<typename Vehicle::Modes>(modes, 1.0 / 1.05e8, 5);
   const Vehicle plant(parameters, kStep);
   Random random(11);
@@ -68,6 +86,9 @@ void step_vehicle(int modes, Measured&& measured) {
     typename Vehicle::State state = rest;
     typename Vehicle::Inputs inputs;
     for (int e = 0; e < Vehicle::kEngines; ++e) {
+      if (thrust == Thrust::followed) {
+        inputs.thrust[static_cast<std::size_t>(e)] = -random.uniform(0.0, 1.86e6);
+      }
       const double size = random.one_in(2) ? 1.0 : 1e-5;
       for (int axis = 2 * e; axis < 2 * e + 2; ++axis) {
         disturb(state.axes[static_cast<std::size_t>(axis)], random, size);
@@ -94,12 +115,12 @@ int main(int argc, char** argv) {
   const int modes = argc > 2 ? static_cast<int>(std::strtol(argv[2], nullptr, 10)) : 0;
   if (what == "axis") {
     step_axis();
-  } else if (what == "taos") {
-    step_vehicle<Taos>(modes, hotfire_measured_taos);
-  } else if (what == "masv") {
-    step_vehicle<Masv>(modes, hotfire_measured_masv);
+  } else if (what == "taos" || what == "taos-thrust") {
+    step_vehicle<Taos>(modes, what == "taos" ? Thrust::constant : Thrust::followed, hotfire_measured_taos);
+  } else if (what == "masv" || what == "masv-thrust") {
+    step_vehicle<Masv>(modes, what == "masv" ? Thrust::constant : Thrust::followed, hotfire_measured_masv);
   } else {
-    std::fputs("vehicle_cost axis|taos|masv MODES\n", stderr);
+    std::fputs("vehicle_cost axis|taos|taos-thrust|masv|masv-thrust MODES\n", stderr);
     return 2;
   }
   return 0;

@@ -14,11 +14,16 @@ using Vector = Eigen::Vector3d;
 using Pair = Eigen::Vector2d;
 using Six = Eigen::Matrix<double, 6, 1>;
 
-// States: of every engine two axes, the bristle and the bearing; then displacement and rate of every mode.
+// States: of every engine two axes, the bristle, the bearing and, where they have inertia, its halves; then displacement and
+// rate of every mode.
 constexpr int kAxisStates = kReferenceStates;
 constexpr int kBristle = 2 * kAxisStates;
 constexpr int kBearing = kBristle + 2;
-constexpr int kEngineStates = kBearing + 6;
+constexpr int kHalves = kBearing + 6;
+constexpr int kHalfStates = 8;  ///< about pitch, then yaw: angle and rate of the vehicle's half, then of the engine's
+
+bool has_halves(const ReferenceVehicle& vehicle) { return vehicle.engines.front().half_inertia > 0.0; }
+std::size_t engine_states(const ReferenceVehicle& vehicle) { return kHalves + (has_halves(vehicle) ? kHalfStates : 0); }
 
 struct Problem {
   const ReferenceVehicle* vehicle = nullptr;
@@ -94,6 +99,26 @@ Friction friction_on_bearing(const ReferenceVehicle::Engine& engine, const Pair&
   return friction;
 }
 
+/// Friction between two halves of a bearing that have inertia, each on half of its torsion: what the engine's half passes
+/// on, and the rate of the bristle.
+Friction friction_between_halves(const ReferenceVehicle::Engine& engine, const Pair& angles, const Pair& rates,
+                                 const Pair& z, const double* y, double* d) {
+  const Pair slip(y[3] - y[1], y[7] - y[5]);
+  const Friction friction = lugre(engine, slip, z);
+  Friction passed{Pair::Zero(), friction.bristle_rate};
+  for (int axis = 0; axis < 2; ++axis) {
+    const double* own = y + 4 * axis;
+    double* rate = d + 4 * axis;
+    const double stiffness = 2.0 / engine.bearing_compliance(4 + axis, 4 + axis);
+    passed.torque(axis) = stiffness * (angles(axis) - own[2] + engine.loss_time * (rates(axis) - own[3]));
+    rate[0] = own[1];
+    rate[1] = (friction.torque(axis) - stiffness * (own[0] + engine.loss_time * own[1])) / engine.half_inertia;
+    rate[2] = own[3];
+    rate[3] = (passed.torque(axis) - friction.torque(axis)) / engine.half_inertia;
+  }
+  return passed;
+}
+
 /// What the structure does at one engine.
 struct Base {
   Pair moved = Pair::Zero();  ///< attach points pulled together [m]
@@ -128,8 +153,12 @@ OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const doub
 
   const Pair rates(of(0, kReferenceAngleRate), of(1, kReferenceAngleRate));
   Six bearing_rate;
-  const Friction friction = friction_on_bearing(engine, rates - base.turned_rate, Pair(y[kBristle], y[kBristle + 1]),
-                                                bearing, on_bearing, bearing_rate);
+  const Pair bristle(y[kBristle], y[kBristle + 1]);
+  Friction friction = friction_on_bearing(engine, rates - base.turned_rate, bristle, bearing, on_bearing, bearing_rate);
+  if (engine.half_inertia > 0.0) {
+    const Pair angles(of(0, kReferenceAngle), of(1, kReferenceAngle));
+    friction = friction_between_halves(engine, angles, rates, bristle, y + kHalves, d + kHalves);
+  }
   Eigen::Map<Six>(d + kBearing) = bearing_rate;
   d[kBristle] = friction.bristle_rate(0);
   d[kBristle + 1] = friction.bristle_rate(1);
@@ -160,8 +189,9 @@ int derivative(double, N_Vector state, N_Vector result, void* user) {
   const std::size_t engines = vehicle.engines.size();
   const double* y = N_VGetArrayPointer(state);
   double* d = N_VGetArrayPointer(result);
-  const double* modes = y + engines * kEngineStates;
-  double* mode_rates = d + engines * kEngineStates;
+  const std::size_t own = engine_states(vehicle);
+  const double* modes = y + engines * own;
+  double* mode_rates = d + engines * own;
 
   // The modes without force; what the engines do comes on top.
   for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
@@ -179,8 +209,7 @@ int derivative(double, N_Vector state, N_Vector result, void* user) {
       base.turned += rotation * modes[2 * k];
       base.turned_rate += rotation * modes[2 * k + 1];
     }
-    const OnStructure on =
-        engine_derivative(vehicle.engines[e], problem.commands + 2 * e, base, y + e * kEngineStates, d + e * kEngineStates);
+    const OnStructure on = engine_derivative(vehicle.engines[e], problem.commands + 2 * e, base, y + e * own, d + e * own);
     for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
       const Eigen::Map<const Pair> attach(&vehicle.modes[k].attach[2 * e]);
       const Eigen::Map<const Pair> rotation(&vehicle.modes[k].rotation[2 * e]);
@@ -197,6 +226,9 @@ std::vector<double> scales(const ReferenceVehicle& vehicle) {
     scale.insert(scale.end(), kAxis.begin(), kAxis.end());
     scale.insert(scale.end(), kAxis.begin(), kAxis.end());
     scale.insert(scale.end(), 8, 1e-4);
+    for (int half = 0; has_halves(vehicle) && half < 4; ++half) {
+      scale.insert(scale.end(), {1e-2, 0.1});
+    }
   }
   for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
     scale.insert(scale.end(), {0.1, 1.0});
@@ -218,7 +250,10 @@ std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& veh
       std::copy(own.begin(), own.end(), y + axis * kAxisStates);
     }
     std::copy(engine.bearing.begin(), engine.bearing.end(), y + kBearing);
-    y += kEngineStates;
+    for (std::size_t axis = 0; has_halves(vehicle) && axis < 2; ++axis) {
+      y[kHalves + 4 * axis + 2] = engine.axes[axis][kReferenceAngle];
+    }
+    y += engine_states(vehicle);
   }
   for (std::size_t k = 0; k < start.modes.size(); ++k) {
     y[2 * k] = start.modes[k];
@@ -230,7 +265,7 @@ std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& veh
     integrator.advance(static_cast<double>(i + 1) * sample);
     std::vector<double> row;
     for (std::size_t e = 0; e < vehicle.engines.size(); ++e) {
-      const double* now = integrator.state() + e * kEngineStates;
+      const double* now = integrator.state() + e * engine_states(vehicle);
       row.insert(row.end(), {now[kReferencePiston], now[kReferenceAngle], now[kAxisStates + kReferencePiston],
                              now[kAxisStates + kReferenceAngle]});
     }

@@ -28,6 +28,9 @@ struct ReferenceVehicle {
     ReferenceAxis::Bristle friction;  ///< one bristle vector over both angles; level zero: none
     double vibration_ratio = 1.0;
     double vibration_velocity = 1.0;
+    /// Of each half of the bearing about pitch and yaw, with half of its torsion on either side of the friction [kg m^2];
+    /// zero: the halves have none. Only on a base at rest and for a torsion of its own about either axis.
+    double half_inertia = 0.0;
   };
   std::vector<Engine> engines;
 

@@ -144,6 +144,31 @@ TEST(VehicleAgreesWithCvode, WithAtLeastTheFirstOrderUnderFriction) {
   check_order("with friction", parameters, 1.0);
 }
 
+// A block of 50 kg within 0.14 m of the gimbal's centre has less than 1 kg m^2. Given to each half, on half of the bearing's
+// torsion, it changes what engine and pistons do by less than a thousandth of what the halves' torsion does itself, which a
+// hundred times as much inertia does not.
+TEST(VehicleAgreesWithCvode, WithTwoHalvesOfTheBearingAndTheInertiaOfItsBlock) {
+  Taos::Parameters parameters = hot_fire<Taos>();
+  auto& gimbal = parameters.gimbals[0];
+  gimbal.stiffness = Eigen::Matrix<double, 6, 6>(gimbal.stiffness.diagonal().asDiagonal());
+  const Taos plant(parameters, kSample);
+  const auto with_inertia = [&](double inertia) {
+    ReferenceVehicle vehicle = reference_of<Taos>(parameters, plant);
+    vehicle.engines[0].half_inertia = inertia;
+    return integrate_reference(vehicle, start_of(plant.steady({}), 0), command_profile<Taos>(), kSample, 1e-8);
+  };
+  const VehicleRows model = run_model<Taos>(parameters, 4);
+  Taos::Parameters rigid = parameters;
+  rigid.gimbals[0].compliant = false;
+  const double torsion = largest_error(run_model<Taos>(rigid, 4), model);
+  const double block = largest_error(model, with_inertia(1.0));
+  const double heavy = largest_error(model, with_inertia(100.0));
+  std::printf("\nrigid gimbal %.3f %%, block of 1 kg m^2 %.4f %%, of 100 kg m^2 %.3f %%", 100.0 * torsion, 100.0 * block,
+              100.0 * heavy);
+  CHECK_TRUE(block < 1e-3 * torsion);
+  CHECK_TRUE(heavy > 1e-3 * torsion);
+}
+
 // Four engines that feel each other through twelve modes. The reference's differences for a Jacobian of 120 states take
 // their time, so its tolerance is wider: still a thousandth of the limit.
 TEST(VehicleAgreesWithCvode, WithFourEnginesOnOneStructure) {

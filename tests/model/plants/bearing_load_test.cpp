@@ -45,9 +45,50 @@ double sliding(const Friction& friction, double speed, double load) {
   return torque.pitch;
 }
 
+/// Checks the friction of a plant under a command of pitch against mu N r, wherever the bearing has slid fast for so long
+/// that neither the Stribeck rise nor the bristles' travel are left; returns at how many steps that was.
+template <class Command>
+int check_sliding(double thrust, Command&& command) {
+  constexpr double kFast = 0.08;     // rad/s: eight times the Stribeck velocity
+  constexpr int kStepsToSlide = 50;  // 2 mrad: ten times the travel of the bristles under full thrust
+  const Taos::Parameters parameters = thrust_dependent<Taos>(thrust);
+  const auto& friction = parameters.gimbals[0].friction;
+  const auto plant = std::make_unique<Taos>(parameters, kStep);
+  const auto state = std::make_unique<Taos::State>(plant->steady({}));
+  Taos::Inputs inputs;
+  int fast = 0;
+  int checked = 0;
+  for (int k = 0; k < 2000; ++k) {
+    inputs.commands[0] = command(k * kStep);
+    plant->step(*state, inputs);
+    fast = std::abs(state->axes[0].y(Taos::AxisModel::kAngleRate)) > kFast ? fast + 1 : 0;
+    if (fast < kStepsToSlide) {
+      continue;
+    }
+    const auto pose =
+        plant->geometry(0).at(state->axes[0].y(Taos::AxisModel::kAngle), state->axes[1].y(Taos::AxisModel::kAngle));
+    const model::Vector3<double> load = pose.thrust * (thrust + parameters.gimbals[0].bearing.dead_load) +
+                                        pose.direction[0] * state->axes[0].spring_force +
+                                        pose.direction[1] * state->axes[1].spring_force;
+    const double expected = friction.coefficient * friction.radius * load.norm();
+    DOUBLES_EQUAL(expected, state->gimbals[0].torque.length(), 0.01 * expected);
+    ++checked;
+  }
+  return checked;
+}
+
 }  // namespace
 
 TEST_GROUP(BearingUnderLoad){};
+
+TEST(BearingUnderLoad, RubsByMuNRInStepsAndSinesWithoutThrustAndUnderIt) {
+  const auto step = [](double time) { return time < 0.1 ? 0.0 : 0.03; };
+  const auto sine = [](double time) { return 0.014 * std::sin(2.0 * std::numbers::pi * 3.0 * time); };
+  for (const double thrust : {0.0, 1.86e6}) {
+    CHECK_TRUE(check_sliding(thrust, step) > 20);
+    CHECK_TRUE(check_sliding(thrust, sine) > 100);
+  }
+}
 
 TEST(BearingUnderLoad, RubsByItsConstantTorqueAndMuNR) {
   Friction friction{2, 1e3, 1e8, 1.2, 0.01, 3e3};

@@ -29,14 +29,16 @@ struct Kind {
 };
 
 constexpr double kLargest = std::numeric_limits<double>::max();
-constexpr std::array<Kind, 8> kKinds{{{"stuck", true, std::nullopt},
-                                      {"biased", true, "", -kLargest, kLargest},
-                                      {"noisy", true, "", 0.0, kLargest},
-                                      {"dropped", true, std::nullopt},
-                                      {"delayed", true, "s", 0.0, 1.0},
-                                      {"leak", false, "m^3/s/Pa", 0.0, 1e-6},
-                                      {"lost_supply", false, "Pa", 1e4, 1e9},
-                                      {"bus_off", false, std::nullopt}}};
+constexpr std::array<Kind, 10> kKinds{{{"stuck", true, std::nullopt},
+                                       {"biased", true, "", -kLargest, kLargest},
+                                       {"noisy", true, "", 0.0, kLargest},
+                                       {"dropped", true, std::nullopt},
+                                       {"delayed", true, "s", 0.0, 1.0},
+                                       {"leak", false, "m^3/s/Pa", 0.0, 1e-6},
+                                       {"lost_supply", false, "Pa", 1e4, 1e9},
+                                       {"bus_off", false, std::nullopt},
+                                       {"torque", false, "N.m", -1e7, 1e7},
+                                       {"thrust", false, "N", 0.0, 1e8}}};
 
 /// One table `[[fault]]`.
 class FaultTable {
@@ -94,8 +96,11 @@ class FaultTable {
     if (found == kKinds.end()) {
       source_.refuse(node, prefix_ + "kind", suggestion(name, names));
     }
-    if ((name == "leak" || name == "lost_supply") && !plant_.hydraulic) {
-      source_.refuse(node, prefix_ + "kind", "a fault of a hydraulic axis, and this model has none");
+    if (!found->of_sensor && name != "bus_off" && !plant_.hydraulic) {
+      source_.refuse(node, prefix_ + "kind", "of a hydraulic axis and its engine, and this model has none");
+    }
+    if (name == "thrust" && !plant_.has_bearing) {
+      source_.refuse(node, prefix_ + "kind", "needs a gimbal bearing; allowed with topology \"taos\" or \"masv\"");
     }
     return *found;
   }

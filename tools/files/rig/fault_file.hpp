@@ -15,6 +15,7 @@ struct FaultyPlant {
   std::vector<ModelChannel> channels;  ///< of every actuator
   bool hydraulic = true;
   std::int64_t actuators = 8;  ///< at most
+  bool has_bearing = false;
 };
 
 FaultyPlant faulty_plant(const ModelFile& model);
