@@ -70,10 +70,24 @@ TEST(TomlSource, letter_beyond_ascii_is_refused_but_in_strings_and_comments) {
 
 TEST(TomlSource, quote_inside_of_a_word_begins_no_string_and_is_refused) {
   // The parser reads on behind the quote and meets a letter that its table does not have.
-  expect_message(refused("schema = 1\ntopology = 11'1\u033e1'\n"), {"m.toml:2: a quote inside of a key or a number"});
-  expect_message(refused("x = 1\"\u033e\"\n"), {"m.toml:1: a quote inside"});
-  expect_message(refused("a'b' = 1\n"), {"m.toml:1: a quote inside"});
+  expect_message(refused("schema = 1\ntopology = 11'1\u033e1'\n"),
+                 {"m.toml:2: a quote, a bracket or = inside a key or a number"});
+  expect_message(refused("x = 1\"\u033e\"\n"), {"m.toml:1: a quote, a bracket or = inside"});
+  expect_message(refused("a'b' = 1\n"), {"m.toml:1: a quote, a bracket or = inside"});
   STRCMP_EQUAL("", refused("x=['a',\"b\"]\ny={'k'='v'}\na.'b'='c'#'\n").c_str());
+}
+
+TEST(TomlSource, quote_bracket_or_equals_sign_inside_of_a_value_is_refused_in_tables_and_arrays_too) {
+  // The parser reads a value up to a space, a comma or a closing bracket, and its table does not have this letter.
+  for (const char* text :
+       {"x = 10:04:8:['\ufeef#", "x = 1=\"\ufeef\"", "x = 1.\"\ufeef\"", "x = =\"\ufeef\"", "x = .'\ufeef'",
+        "x = [1, 2['\ufeef']]", "x = {a = 1{\"\ufeef\"}}", "x = {a = [1], b = 2'\ufeef'}"}) {
+    expect_message(refused(text), {"m.toml:1: a quote, a bracket or = inside"});
+  }
+  expect_message(refused("x = [1,\n2='\ufeef']"), {"m.toml:2: a quote, a bracket or = inside"});
+  STRCMP_EQUAL("", refused("x = [[1,2],['\ufeef']]\ny={a=[1,{b='c', e=0.5e1}],d=-2}\n[t]\nz=1\n[[u]]\nv.'\ufeef'='\ufeef'\n"
+                           "[t.\"w\"]\nd = 2026-11-24 10:00:00\nl = [\n1, # '\n]\n'k' = inf\n")
+                       .c_str());
 }
 
 TEST(TomlSource, letter_beyond_ascii_behind_a_backslash_is_refused) {

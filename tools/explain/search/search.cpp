@@ -92,7 +92,10 @@ class Search {
     }
     if (options_.most_effects > 0) {
       unlisted_.finish();
-      take_out_harmful();
+      if (take_out_harmful()) {
+        unlisted_.finish();
+        take_out_harmful();
+      }
     }
     result_.searched = options_.most_effects > 0;
     result_.interrupted = options_.watch.interrupted();
@@ -117,10 +120,6 @@ class Search {
     if (!found.kept) {
       return false;
     }
-    if (const std::string harm = harm_of(data_, found.model.prediction, result_.calibrated.prediction); !harm.empty()) {
-      refuse(found.kept->trial.candidate, round, harm);
-      return false;
-    }
     if (result_.rival) {
       earlier_rivals_.push_back(std::move(*result_.rival));
     }
@@ -132,28 +131,23 @@ class Search {
     return true;
   }
 
-  /// Says of the trial that was to be kept why it is not.
-  void refuse(const Candidate& candidate, int round, const std::string& harm) {
-    for (Trial& trial : result_.trials) {
-      if (trial.round == round && trial.decision == "kept" && label(trial.candidate) == label(candidate)) {
-        trial.decision = "dropped";
-        trial.reason += "; " + words::refused(harm);
-      }
-    }
-  }
-
-  /// Takes out, the last first, what leaves more of a record or of a band than the calibrated model does.
-  void take_out_harmful() {
+  /// Takes out what leaves more of a record or of a band than the calibrated model does. It judges all that was found
+  /// together: of two effects that act on one record, each alone may leave more of it. Of the effects without which nothing
+  /// is worse, the one is taken out that leaves the least error; without such an effect it is the last.
+  /// Returns whether any was taken out.
+  bool take_out_harmful() {
+    bool any = false;
     while (!result_.kept.empty() && !options_.watch.interrupted()) {
       const std::string harm = harm_of(data_, result_.explained.prediction, result_.calibrated.prediction);
       if (harm.empty()) {
-        return;
+        break;
       }
-      const Kept last = std::move(result_.kept.back());
-      result_.kept.pop_back();
-      Trial trial{result_.next_round(), last.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", words::refused(harm)};
-      Assessed<Family> rest =
-          result_.kept.empty() ? result_.calibrated : refiner_.without(result_.explained.model, last.trial.candidate);
+      any = true;
+      options_.watch.progress("what was found is worse than the calibrated model: " + harm);
+      auto [out, rest] = without_harm();
+      const Kept taken = std::move(result_.kept[out]);
+      result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(out));
+      Trial trial{result_.next_round(), taken.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", words::refused(harm)};
       if (!rest.good()) {
         rest = result_.calibrated;
         result_.kept.clear();
@@ -163,6 +157,27 @@ class Search {
       result_.rival.reset();
       result_.explained = std::move(rest);
     }
+    return any;
+  }
+
+  /// The effect to take out, by its place, and the model without it.
+  std::pair<std::size_t, Assessed<Family>> without_harm() {
+    if (result_.kept.size() == 1) {
+      return {0, result_.calibrated};
+    }
+    std::optional<std::pair<std::size_t, Assessed<Family>>> best;
+    for (std::size_t i = 0; i < result_.kept.size(); ++i) {
+      Assessed<Family> rest = refiner_.without(result_.explained.model, result_.kept[i].trial.candidate);
+      const bool is_last = i + 1 == result_.kept.size();
+      const bool is_harmless = rest.good() && harm_of(data_, rest.prediction, result_.calibrated.prediction).empty();
+      if (is_harmless &&
+          (!best || Goodness::combined(rest.goodness.held_out) < Goodness::combined(best->second.goodness.held_out))) {
+        best = {i, std::move(rest)};
+      } else if (is_last && !best) {
+        best = {i, std::move(rest)};
+      }
+    }
+    return std::move(*best);
   }
 
   /// True for an effect that was taken out twice: adding it again would go round in a circle.

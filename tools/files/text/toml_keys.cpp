@@ -2,6 +2,7 @@
 #include "tools/files/text/toml_keys.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace hotfire {
 
@@ -56,17 +57,21 @@ std::size_t escaped_foreign_letter(std::string_view text, std::size_t at, std::s
   return std::string_view::npos;
 }
 
-/// Walks a text by strings, words and breaks, and counts the parts of the key under way.
+/// Walks a text by strings, words and breaks. It counts the parts of the key under way, and it follows tables and arrays to
+/// distinguish keys from values.
 class KeyWalk {
  public:
   explicit KeyWalk(std::string_view text) : text_(text) {}
 
   KeyFault first_fault() {
+    constexpr std::string_view kNoValueBegins = "=,[]{}\n# \t";
     constexpr std::string_view kBreaks = "=,[]{}\n#\"'. \t";
     while (at_ < text_.size() && fault_.kind == KeyFault::Kind::none) {
       const char letter = text_[at_];
       if (letter == '"' || letter == '\'') {
         take_string(letter);
+      } else if (is_value_ && kNoValueBegins.find(letter) == std::string_view::npos) {
+        take_value();
       } else if (kBreaks.find(letter) == std::string_view::npos) {
         take_word(std::min(text_.find_first_of(kBreaks, at_), text_.size()));
       } else {
@@ -95,10 +100,23 @@ class KeyWalk {
     if (is_foreign(text_, at_, end)) {
       fail(KeyFault::Kind::foreign_letter, at_);
     }
-    // The parser takes a quote here for a part of the word, and what follows for no string: what is not looked at there.
+    // The parser reads a quote here as a part of the word, and does not begin a string.
     if (end < text_.size() && (text_[end] == '"' || text_[end] == '\'')) {
       fail(KeyFault::Kind::quote_in_word, end);
     }
+    at_ = end;
+  }
+
+  /// A number, a date or a word. The parser reads everything up to its end as one value, quotes and brackets as well.
+  void take_value() {
+    const std::size_t end = std::min(text_.find_first_of(" \t\n,]}#", at_), text_.size());
+    if (text_.substr(at_, end - at_).find_first_of("=[{\"'") != std::string_view::npos) {
+      fail(KeyFault::Kind::quote_in_word, at_);
+    }
+    if (is_foreign(text_, at_, end)) {
+      fail(KeyFault::Kind::foreign_letter, at_);
+    }
+    joined_ = false;
     at_ = end;
   }
 
@@ -111,8 +129,29 @@ class KeyWalk {
       joined_ = true;
     } else if (letter != ' ' && letter != '\t') {
       joined_ = false;
+      follow(letter);
     }
     ++at_;
+  }
+
+  /// Whether a key or a value is next. A bracket at the place of a key is that of a table's header.
+  void follow(char letter) {
+    if (letter == '=') {
+      if (is_value_) {
+        fail(KeyFault::Kind::quote_in_word, at_);
+      }
+      is_value_ = true;
+    } else if (letter == '\n') {
+      is_value_ = is_value_ && !open_.empty();
+    } else if (is_value_ && (letter == '[' || letter == '{')) {
+      open_.push_back(letter);
+      is_value_ = letter == '[';
+    } else if (!open_.empty() && (letter == ']' || letter == '}')) {
+      open_.pop_back();
+      is_value_ = true;
+    } else if (!open_.empty() && letter == ',') {
+      is_value_ = open_.back() == '[';
+    }
   }
 
   void count_part() {
@@ -134,7 +173,9 @@ class KeyWalk {
   std::string_view text_;
   std::size_t at_ = 0;
   std::size_t parts_ = 0;
-  bool joined_ = false;  ///< the last thing was a point, which joins what follows to the key
+  std::string open_;       ///< brackets of the arrays and the tables in braces that are open
+  bool is_value_ = false;  ///< a value is next, or was the last
+  bool joined_ = false;    ///< the last thing was a point, which joins what follows to the key
   KeyFault fault_;
 };
 

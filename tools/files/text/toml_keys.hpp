@@ -18,7 +18,7 @@ struct KeyFault {
     long_key,        ///< a key has more than `kMostKeyParts` parts
     foreign_letter,  ///< a letter beyond ASCII is outside of strings and comments, where TOML 1.0.0 has none
     escaped_letter,  ///< a letter beyond ASCII is behind a backslash, or first behind a line that ends with one
-    quote_in_word    ///< a quote is behind a letter of a key or a number, where TOML 1.0.0 begins no string
+    quote_in_word    ///< a quote, a bracket or = is inside a word, where TOML 1.0.0 begins no string, table or array
   };
   Kind kind = Kind::none;
   std::size_t line = 0;  ///< from 1

@@ -94,7 +94,8 @@ std::string what_is_wrong(KeyFault::Kind kind) {
       return fmt::format("a key of more than {} parts; allowed: up to {}, as in limits.command_rate", kMostKeyParts,
                          kMostKeyParts);
     case KeyFault::Kind::quote_in_word:
-      return "a quote inside of a key or a number; a string begins behind =, a comma, a bracket or a space";
+      return "a quote, a bracket or = inside a key or a number; a string or an array begins after =, a comma, a bracket or "
+             "a space";
     case KeyFault::Kind::escaped_letter:
       return "a letter beyond ASCII behind a backslash; remove the backslash, or begin the line with another letter";
     default:
