@@ -170,10 +170,9 @@ class Search {
       Assessed<Family> rest = refiner_.without(result_.explained.model, result_.kept[i].trial.candidate);
       const bool is_last = i + 1 == result_.kept.size();
       const bool is_harmless = rest.good() && harm_of(data_, rest.prediction, result_.calibrated.prediction).empty();
-      if (is_harmless &&
-          (!best || Goodness::combined(rest.goodness.held_out) < Goodness::combined(best->second.goodness.held_out))) {
-        best = {i, std::move(rest)};
-      } else if (is_last && !best) {
+      const bool leaves_least =
+          !best || Goodness::combined(rest.goodness.held_out) < Goodness::combined(best->second.goodness.held_out);
+      if (is_harmless ? leaves_least : is_last && !best) {
         best = {i, std::move(rest)};
       }
     }
