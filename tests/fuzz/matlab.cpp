@@ -60,7 +60,6 @@ class Batch {
     std::string content;
   };
   static constexpr std::size_t kInputs = 32;
-  static constexpr ApartLimits kLimits{4096, 60, 600, 1};
 
   static ImportMap map_of(std::uint8_t wanted) {
     static const std::array<const char*, 4> kColumns{"X", "X.beta", "X:2", "nothing"};
@@ -72,7 +71,7 @@ class Batch {
   void read() {
     for (*next_ = 0; *next_ < inputs_.size(); ++*next_) {
       try {
-        run_apart([this] { return read_rest_here(); }, kLimits);
+        run_apart([this] { return read_rest_here(); }, matlab_limits(0));
       } catch (const ApartError&) {
         const Input& input = inputs_.at(*next_);
         const std::string& path = file_.holding(input.content);

@@ -22,7 +22,7 @@ int complain(const std::string& problem, ExitStatus status) {
 /// What the program takes at this place: the names of its commands or the options of the chosen one.
 std::vector<std::string> known_words(const CLI::App& command) {
   std::vector<std::string> words;
-  for (const CLI::App* child : command.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) {
+  for (const CLI::App* child : command.get_subcommands(is_listed)) {
     words.push_back(child->get_name());
   }
   for (const CLI::Option* option : command.get_options()) {

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "tools/cli/reference/realtime_help.hpp"
+#include "tools/cli/shared/commands.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
@@ -107,7 +108,7 @@ std::vector<std::string> completions(const CLI::App& program, const std::vector<
     return named.empty() ? std::vector<std::string>{} : completions_in(*named.front(), words);
   }
   std::vector<std::string> names = option_names(program);
-  for (const CLI::App* command : program.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) {
+  for (const CLI::App* command : program.get_subcommands(is_listed)) {
     names.push_back(command->get_name());
   }
   return names;

@@ -7,6 +7,8 @@
 #include <cctype>
 #include <sstream>
 
+#include "tools/cli/shared/commands.hpp"
+
 namespace hotfire {
 
 namespace {
@@ -121,7 +123,7 @@ std::string realtime_examples(const RealtimeHelp& realtime, const std::string& b
 std::string program_page(const CLI::App& program) {
   std::string commands = ".SH COMMANDS\n";
   std::vector<std::string> pages;
-  for (const CLI::App* command : program.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) {
+  for (const CLI::App* command : program.get_subcommands(is_listed)) {
     commands += entry(command->get_name(), "", command->get_description());
     pages.push_back("hotfire-" + command->get_name());
   }

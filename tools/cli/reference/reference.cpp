@@ -12,8 +12,6 @@ namespace hotfire {
 
 namespace {
 
-bool is_listed(const CLI::App* command) { return !command->get_group().empty(); }
-
 void write_pages(const CLI::App& program, const std::filesystem::path& folder) {
   const RealtimeHelp realtime = realtime_help();
   std::filesystem::create_directories(folder);

@@ -6,6 +6,9 @@
 
 namespace hotfire {
 
+/// False for a command of the build or of a shell, which --help and the reference do not list.
+inline bool is_listed(const CLI::App* command) { return !command->get_group().empty(); }
+
 /// Each adds one command to the program. A command runs in its callback: it prints its result on standard output and nothing
 /// else there, throws FileError or UsageError, or CLI::RuntimeError with an exit status when all is said.
 void add_check(CLI::App& program);

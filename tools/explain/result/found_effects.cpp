@@ -33,8 +33,8 @@ double percent_taken_off(double ratio) { return 100.0 * (1.0 - ratio); }
 
 template <class Family>
 std::vector<EffectParameter> parameters_of(const Candidate& candidate, const Fitted<Family>& model,
-                                           const std::vector<Estimate>& estimated) {
-  const auto meaning = meanings<Family>();
+                                           const std::vector<Estimate>& estimated,
+                                           const std::map<std::string, std::string>& meaning) {
   const std::string prefix = "effects." + candidate.name + ".";
   std::vector<EffectParameter> parameters;
   for (std::size_t k = 0; k < estimated.size(); ++k) {
@@ -96,6 +96,7 @@ std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult<F
   const Fitted<Family>& model = found.explained.model;
   const auto parameters = Evaluator<Family>::with_values(model.base, model.free, model.u);
   const Reach reach = reach_of(data, parameters);
+  const auto meaning = meanings<Family>();
   std::vector<FoundEffect> effects;
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
@@ -103,7 +104,7 @@ std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult<F
     effect.name = effect.key = candidate.name;
     effect.site = candidate.site;
     effect.law = candidate.option_name;
-    effect.parameters = parameters_of(candidate, model, estimated);
+    effect.parameters = parameters_of(candidate, model, estimated, meaning);
     effect.held_out_drop = percent_taken_off(kept.trial.held_out_ratio);
     effect.delta_criterion = kept.trial.delta_criterion;
     effect.alternatives = alternatives_of(kept);

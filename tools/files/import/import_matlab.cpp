@@ -16,11 +16,6 @@ namespace hotfire {
 
 namespace {
 
-/// What reading a file may use. A column of as many rows as a record may have is 80 MB, and matio holds it twice.
-constexpr std::size_t kMemoryMib = 4096;
-constexpr std::size_t kProcessorSeconds = 60;
-constexpr std::size_t kSeconds = 600;  ///< on a machine that has a tenth of a processor for it
-
 std::vector<std::vector<double>> columns_of(std::string_view text) {
   std::vector<std::vector<double>> columns;
   while (text.size() >= sizeof(std::uint64_t)) {
@@ -47,8 +42,7 @@ std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path
   const std::size_t most_bytes = map.columns.size() * sizeof(double) * (kMostRows + 1);
   std::vector<std::vector<double>> values;
   try {
-    values = columns_of(
-        run_apart([&] { return matlab_columns_text(path, map); }, {kMemoryMib, kProcessorSeconds, kSeconds, most_bytes}));
+    values = columns_of(run_apart([&] { return matlab_columns_text(path, map); }, matlab_limits(most_bytes)));
   } catch (const ApartError& error) {
     throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {}; it is damaged: save it again with -v7",
                                 path.string(), error.what()));
