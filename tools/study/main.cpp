@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <stdexcept>
 
@@ -17,6 +18,7 @@
 #include "tools/study/tally/candidate_fit.hpp"
 #include "tools/study/tally/cost.hpp"
 #include "tools/study/tally/judge.hpp"
+#include "tools/study/tally/sensitivity.hpp"
 #include "tools/study/tally/similarity.hpp"
 #include "tools/study/tally/tally.hpp"
 
@@ -196,6 +198,58 @@ void add_fit(CLI::App& program, FitArguments& arguments) {
   command->add_flag("--json", arguments.json, "one JSON object");
 }
 
+/// What `sensitivity` varies.
+struct SensitivityArguments {
+  std::vector<std::string> folders;
+  std::vector<std::string> only;
+  std::string keep;
+  unsigned threads = 1;
+};
+
+/// A line a ruling as it is made, into a file too if one is given; then the table.
+ExitStatus vary_policy(const SensitivityArguments& arguments) {
+  google::SetCommandLineOption("minloglevel", "3");
+  const std::vector<Variation> varied = variations(arguments.only);
+  std::vector<std::filesystem::path> folders;
+  for (const std::string& folder : arguments.folders) {
+    folders.push_back(std::filesystem::path(folder).lexically_normal());
+  }
+  std::vector<Ruling> known;
+  std::ofstream kept;
+  if (!arguments.keep.empty()) {
+    known = load_rulings(arguments.keep);
+    kept.open(arguments.keep, std::ios::app);
+    if (!kept) {
+      throw UsageError(arguments.keep + ": cannot be written; give another file with --keep");
+    }
+  }
+  const std::size_t all = varied.size() * folders.size();
+  std::size_t made = known.size();
+  const auto rulings = sensitivity(folders, varied, std::move(known), arguments.threads, [&](const Ruling& ruling) {
+    std::cerr << fmt::format("{} of {}: {} x {}: {} {}\n", ++made, all,
+                             ruling.constant.empty() ? "as it is" : ruling.constant, ruling.factor, ruling.name,
+                             ruling.good ? "good" : "not good");
+    if (kept.is_open()) {
+      kept << json_of(ruling).dump() << std::endl;
+    }
+  });
+  const std::vector<Change> changes = changes_of(rulings, varied);
+  std::cout << table_of(changes);
+  const bool met = std::ranges::all_of(changes, [](const Change& c) { return c.better + c.worse <= kMostChanges; });
+  return met ? ExitStatus::good : ExitStatus::bad_verdict;
+}
+
+void add_sensitivity(CLI::App& program, SensitivityArguments& arguments) {
+  CLI::App* command =
+      program.add_subcommand("sensitivity", "Cases that each constant of the finder's policy changes, times 0.7 and 1.4");
+  command->add_option("folders", arguments.folders, "cases, as other commands make them with --generate-only or --write")
+      ->required();
+  command->add_option("--only", arguments.only, "only these constants");
+  command->add_option("--keep", arguments.keep, "file of rulings, a line each; a run that was stopped goes on from it");
+  add_threads(*command, arguments.threads);
+  command->footer("Example: hotfire-study sensitivity --keep rulings.jsonl cases/*");
+}
+
 void add_judging(CLI::App& command, Options& options) {
   add_threads(command, options.threads);
   command.add_flag("--json", options.json, "one JSON object a line: every case, then the summary");
@@ -262,6 +316,8 @@ int run(int argc, char** argv) {
   add_fit(program, candidate);
   CostArguments cost;
   add_cost(program, cost);
+  SensitivityArguments varied;
+  add_sensitivity(program, varied);
   CLI::App* judging = program.add_subcommand("judge", "Explain cases that are there");
   judging->add_option("folders", folders.folders, "folders with given/ and kept/")->required();
   add_judging(*judging, folders);
@@ -295,6 +351,8 @@ int run(int argc, char** argv) {
     status = fit_one(candidate);
   } else if (program.got_subcommand("cost")) {
     status = cost_of_one(cost);
+  } else if (program.got_subcommand("sensitivity")) {
+    status = vary_policy(varied);
   } else {
     status = judge_folders(folders);
   }

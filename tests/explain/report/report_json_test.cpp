@@ -4,6 +4,8 @@
 #include <set>
 #include <string>
 
+#include "tools/explain/policy/policy.hpp"
+
 #include <CppUTest/TestHarness.h>
 
 namespace {
@@ -23,7 +25,7 @@ void expect_keys(const std::set<std::string>& wanted, const json& object) { CHEC
 
 const std::set<std::string> kAlways{"schema",  "model",           "name",     "verdict",    "sentence",
                                     "records", "held_out",        "warnings", "channels",   "effects",
-                                    "search",  "identifiability", "residual", "calibration"};
+                                    "search",  "identifiability", "residual", "calibration", "policy"};
 
 }  // namespace
 
@@ -52,6 +54,19 @@ TEST(ReportJson, what_is_optional_has_its_key_where_it_is_there) {
   std::set<std::string> wanted = kAlways;
   wanted.insert({"held_out_records", "located", "trace", "baseline", "valve_bias"});
   expect_keys(wanted, report_json(result));
+}
+
+TEST(ReportJson, every_constant_of_the_policy_is_there_with_the_value_that_decided) {
+  Policy other;
+  other.clearly_less = 0.25;
+  const WithPolicy with(other);
+  const json policy = report_json({})["policy"];
+  CHECK_EQUAL(kPolicyConstants.size(), policy.size());
+  for (std::size_t i = 0; i < kPolicyConstants.size(); ++i) {
+    expect_keys({"name", "value", "unit", "reason"}, policy[i]);
+    DOUBLES_EQUAL(other.*kPolicyConstants[i].value, policy[i]["value"].get<double>(), 0.0);
+    CHECK_TRUE(!policy[i]["reason"].get<std::string>().empty());
+  }
 }
 
 TEST(ReportJson, a_channel_has_its_three_models_its_noise_source_and_its_black_box_where_they_are_known) {

@@ -6,16 +6,13 @@
 
 #include "tools/explain/fit/goodness.hpp"
 #include "tools/explain/inference/residual_statistics.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
 namespace {
 
-constexpr double kWorseRecord = 1.05;
-constexpr double kWorseBand = 2.0;
-/// What is left counts from this many times the noise of a record, or of a band, on.
-constexpr double kMoreThanNoise = 1.5;
 constexpr double kSignalOverNoise = 10.0;
 constexpr double kSignalShare = 0.01;
 
@@ -55,7 +52,7 @@ std::string harm_of(const Dataset& data, const Prediction& model, const Predicti
       }
       const double before = left_of(experiment, calibrated[e], c);
       const double after = left_of(experiment, model[e], c);
-      if (after > kWorseRecord * before && after > kMoreThanNoise * experiment.noise[c]) {
+      if (after > (1.0 + policy().scatter) * before && after > policy().chaotic * experiment.noise[c]) {
         return words::worse_record(experiment.name, after / before - 1.0, data.channels[c]);
       }
     }
@@ -69,7 +66,7 @@ std::string harm_of(const Dataset& data, const Prediction& model, const Predicti
     for (std::size_t i = 0; i < after.size(); ++i) {
       const bool has_signal =
           signal[i].rms > kSignalOverNoise * signal[i].noise && signal[i].rms > kSignalShare * std::sqrt(whole);
-      if (has_signal && after[i].rms > kWorseBand * before[i].rms && after[i].rms > kMoreThanNoise * after[i].noise) {
+      if (has_signal && policy().little_explained * after[i].rms > before[i].rms && after[i].rms > policy().chaotic * after[i].noise) {
         return words::worse_band(data.channels[c], after[i].rms / before[i].rms - 1.0, after[i].from, after[i].to);
       }
     }

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "tools/explain/latent/correlation.hpp"
+#include "tools/explain/fit/curve_points.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -13,8 +16,13 @@ using model::Argument;
 using model::Memory;
 using model::Site;
 
-/// Points of a curve: what a search of its shape needs; a term can hold some more.
-constexpr int kCurvePoints = 11;
+/// Points of a curve in front of a memory: as many as a term holds.
+constexpr int kCurvePoints = model::kUnlistedPoints;
+/// Share of a smoothed signal's variance that no function follows: what a smoother adds.
+constexpr double kLeastScatter = 1e-3;
+/// Widths at which a straight line may bend, over the 99th percentile of the argument: from what play and noise hide.
+constexpr double kNarrowestKink = 0.02;
+constexpr int kKinks = 10;
 /// Share of a quantity's values on either side that its curve's ends leave out.
 constexpr double kEnds = 5e-4;
 /// Ends of the combs of times and frequencies, in time constants of the servo: of the reference axis 0.1, 10 and 1 s, and 1
@@ -90,6 +98,54 @@ bool bears_curve(Memory kind, bool curve_first) {
   }
 }
 
+/// Points half by the range of values and half by how often they occur: of a curve in front of a memory, of whose output
+/// the signal shows nothing point by point.
+std::vector<double> spread_points(const std::vector<double>& sorted) {
+  std::vector<double> points;
+  const double low = quantile(sorted, kEnds);
+  const double high = quantile(sorted, 1.0 - kEnds);
+  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high)) {
+    return points;
+  }
+  const double least_gap = 1e-3 * (high - low);
+  for (int i = 0; i < kCurvePoints; ++i) {
+    const double place = static_cast<double>(i) / (kCurvePoints - 1);
+    const double x = 0.5 * (low + (high - low) * place + quantile(sorted, kEnds + (1.0 - 2.0 * kEnds) * place));
+    if (points.empty() || x > points.back() + least_gap) {
+      points.push_back(x);
+    }
+  }
+  return points;
+}
+
+/// Points where a curve over the form's output has to bend to follow the smoothed signal. Its scatter about any function of
+/// the output is its noise.
+std::vector<double> followed_points(const FormRegression& regression, const Form& form) {
+  const auto [x, signal] = output_and_signal(regression, form);
+  std::vector<double> sorted = x;
+  std::ranges::sort(sorted);
+  const double low = quantile(sorted, kEnds);
+  const double high = quantile(sorted, 1.0 - kEnds);
+  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high)) {
+    return {};
+  }
+  double square = 0.0;
+  for (const double value : signal) {
+    square += value * value;
+  }
+  const double within = std::max(kLeastScatter, 1.0 - correlation_ratio(x, signal));
+  const double noise = std::sqrt(within * square / static_cast<double>(signal.size()));
+  std::vector<double> own;
+  std::vector<double> followed;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] >= low && x[i] <= high) {
+      own.push_back(x[i]);
+      followed.push_back(noise > 0.0 ? signal[i] / noise : 0.0);
+    }
+  }
+  return curve_points(own, followed, model::kUnlistedPoints);
+}
+
 }  // namespace
 
 Form at_place(const LatentPlace& place, Argument argument, std::optional<Argument> factor) {
@@ -159,9 +215,7 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
     }
   }
   for (const double width : comb(0.03, 1.0, 7)) {
-    for (const Memory kind : {Memory::quantise, Memory::dead_zone, Memory::saturation}) {
-      add(kind, [&](auto& memory) { memory.width = width * size; });
-    }
+    add(Memory::quantise, [&](auto& memory) { memory.width = width * size; });
     add(Memory::slew, [&](auto& memory) { memory.width = width * rate; });
   }
   // A period is told from its neighbours by a quarter of it at the ends of the argument's range.
@@ -180,26 +234,27 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   return forms;
 }
 
+std::vector<Form> with_kinks(const FormRegression& regression, const Form& plain) {
+  std::vector<Form> forms;
+  const double size = size_of(regression, plain);
+  if (size > 0.0) {
+    for (const double width : comb(kNarrowestKink, 1.0, kKinks)) {
+      Form form = plain;
+      form.memory.kind = Memory::saturation;
+      form.memory.width = width * size;
+      forms.push_back(std::move(form));
+    }
+  }
+  return forms;
+}
+
 std::optional<Form> with_curve(const FormRegression& regression, Form form, bool curve_first) {
   if (!bears_curve(form.memory.kind, curve_first)) {
     return std::nullopt;
   }
   form.curve_first = curve_first;
-  form.points.clear();
-  const std::vector<double> values = sorted_values(regression, form, !curve_first);
-  const double low = quantile(values, kEnds);
-  const double high = quantile(values, 1.0 - kEnds);
-  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high)) {
-    return std::nullopt;
-  }
-  const double least_gap = 1e-3 * (high - low);
-  for (int i = 0; i < kCurvePoints; ++i) {
-    const double place = static_cast<double>(i) / (kCurvePoints - 1);
-    const double x = 0.5 * (low + (high - low) * place + quantile(values, kEnds + (1.0 - 2.0 * kEnds) * place));
-    if (form.points.empty() || x > form.points.back() + least_gap) {
-      form.points.push_back(x);
-    }
-  }
+  form.points = curve_first && form.memory.kind != Memory::none ? spread_points(sorted_values(regression, form, false))
+                                                                : followed_points(regression, form);
   return form.points.size() >= 3 ? std::optional(std::move(form)) : std::nullopt;
 }
 

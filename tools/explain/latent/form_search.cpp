@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tools/explain/fit/parallel.hpp"
+#include "tools/explain/latent/correlation.hpp"
 #include "tools/explain/latent/form_comb.hpp"
 
 namespace hotfire::explain {
@@ -26,12 +27,13 @@ constexpr std::size_t kScreenedMoving = 10;
 constexpr int kMemoriesOfOne = 2;
 /// A memory explains clearly more than its argument where it leaves less than this share of what that leaves.
 constexpr double kClearlyLess = 0.9;
-constexpr std::size_t kBins = 32;
-/// Rows between those that the screening looks at, and values that its bins are laid by.
-constexpr Eigen::Index kEvery = 4;
-constexpr std::size_t kSampled = 500;
+/// Arguments without a memory whose kinks are tried.
+constexpr std::size_t kKinked = 3;
 /// Rounds in which a memory's parameter is refined, each with half the step.
 constexpr int kFormRefinements = 3;
+/// Memories that are tuned in the screening, and steps of that.
+constexpr std::size_t kTuned = 24;
+constexpr int kTunings = 8;
 
 void keep_best(std::vector<ScoredForm>& all, std::size_t most) {
   std::ranges::stable_sort(all, {}, [](const ScoredForm& s) { return s.score.criterion; });
@@ -69,65 +71,22 @@ std::vector<ScoredForm> scored(const FormRegression& regression, std::vector<For
   return all;
 }
 
-/// Share of a signal's variance that a function of x explains: the correlation ratio over bins of equal width between the
-/// ends of x (Pearson 1905). It asks for no shape of the function.
-double correlation_ratio(const std::vector<double>& x, const std::vector<double>& signal) {
-  std::vector<double> sample;
-  for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kSampled) {
-    sample.push_back(x[i]);
-  }
-  std::ranges::sort(sample);
-  const double low = quantile(sample, 0.01);
-  const double high = quantile(sample, 0.99);
-  if (!(high > low)) {
-    return 0.0;
-  }
-  std::array<double, kBins> sum{};
-  std::array<double, kBins> count{};
-  double whole = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double place = std::clamp((x[i] - low) / (high - low), 0.0, 1.0);
-    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(place * static_cast<double>(kBins)));
-    sum[bin] += signal[i];
-    count[bin] += 1.0;
-    whole += signal[i] * signal[i];
-  }
-  double between = 0.0;
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    between += count[bin] > 0.0 ? sum[bin] * sum[bin] / count[bin] : 0.0;
-  }
-  return whole > 0.0 ? between / whole : 0.0;
-}
-
-/// The same of a form's output, or of its output less its argument, whichever explains more, of every few rows.
-double correlation_ratio(const FormRegression& regression, const Form& form, const std::vector<double>& signal) {
-  std::vector<double> output;
-  std::vector<double> distortion;
-  for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
-    const Eigen::VectorXd argument = argument_of(form, regression.quantities()[e]);
-    const Eigen::VectorXd own = remembered(form, argument, regression.problem().data.experiments[e].period);
-    for (Eigen::Index row = 0; row < own.size(); row += kEvery) {
-      output.push_back(own(row));
-      distortion.push_back(own(row) - argument(row));
+/// Moves the parameter of a form's memory to where a function of its output explains most of the signal: a curve that bends
+/// several times over the output shows only close to the right parameter, and a comb is never that dense.
+void tune(const FormRegression& regression, ScoredForm& scored) {
+  double factor = 1.2;
+  for (int i = 0; i < kTunings; ++i) {
+    bool moved = false;
+    for (Form& form : neighbours(scored.form, factor)) {
+      const double left = 1.0 - explained_share(regression, form);
+      if (left < scored.score.criterion) {
+        scored.form = std::move(form);
+        scored.score.criterion = left;
+        moved = true;
+      }
     }
+    factor = moved ? factor : std::sqrt(factor);
   }
-  const double share = correlation_ratio(output, signal);
-  return form.has_direct() ? std::max(share, correlation_ratio(distortion, signal)) : share;
-}
-
-/// The smoothed signal less its mean, of every few rows.
-std::vector<double> screened_signal(const FormRegression& regression) {
-  std::vector<double> values;
-  double sum = 0.0;
-  for (const Eigen::VectorXd& signal : regression.signal()) {
-    for (Eigen::Index row = 0; row < signal.size(); row += kEvery) {
-      values.push_back(signal(row));
-      sum += signal(row);
-    }
-  }
-  const double mean = sum / static_cast<double>(values.size());
-  std::ranges::transform(values, values.begin(), [&](double value) { return value - mean; });
-  return values;
 }
 
 /// Of the forms those that a function of whose output explains most of the smoothed signal: the best without memory, and the
@@ -135,12 +94,11 @@ std::vector<double> screened_signal(const FormRegression& regression) {
 /// of them would crowd out whatever else there is.
 std::vector<Form> screened(const FormRegression& regression, const std::vector<Form>& plain,
                            const std::vector<Form>& remembering, unsigned threads) {
-  const std::vector<double> signal = screened_signal(regression);
   const auto scored_by_ratio = [&](const std::vector<Form>& forms) {
     std::vector<ScoredForm> all(forms.size());
     parallel_for(forms.size(), threads, [&](std::size_t i) {
       all[i] = {forms[i], {}};
-      all[i].score.criterion = 1.0 - correlation_ratio(regression, forms[i], signal);
+      all[i].score.criterion = 1.0 - explained_share(regression, forms[i]);
     });
     return all;
   };
@@ -155,8 +113,10 @@ std::vector<Form> screened(const FormRegression& regression, const std::vector<F
   for (ScoredForm& scored : best_of_each(std::move(still), kScreenedStill)) {
     best.push_back(std::move(scored.form));
   }
+  moving = best_of_each(std::move(moving), kTuned);
+  parallel_for(moving.size(), threads, [&](std::size_t i) { tune(regression, moving[i]); });
   const std::size_t most = best.size() + kScreenedMoving;
-  for (ScoredForm& scored : best_of_each(std::move(moving), remembering.size())) {
+  for (ScoredForm& scored : best_of_each(std::move(moving), kTuned)) {
     const auto of_same = std::ranges::count_if(best, [&](const Form& form) { return is_of_same(scored.form, form); });
     if (best.size() < most && of_same <= kMemoriesOfOne) {
       best.push_back(std::move(scored.form));
@@ -196,8 +156,12 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   const std::vector<Form> likely = screened(regression, plain, forms, threads);
 
   std::vector<Form> laid;
+  std::size_t kinked = 0;
   for (const Form& form : likely) {
     laid.push_back(form);
+    if (form.memory.kind == model::Memory::none && kinked++ < kKinked) {
+      std::ranges::move(with_kinks(regression, form), std::back_inserter(laid));
+    }
     for (const bool curve_first : {false, true}) {
       if (auto curve = with_curve(regression, form, curve_first)) {
         laid.push_back(std::move(*curve));

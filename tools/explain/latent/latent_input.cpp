@@ -2,6 +2,7 @@
 #include "tools/explain/latent/latent_input.hpp"
 
 #include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,8 +12,10 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Correlation time of the signal, in time constants of the servo: slower than its transients, faster than a profile.
-constexpr double kCorrelationTime = 8.5;
+/// Correlation times of the signal, in time constants of the servo: slower than its transients and faster than a profile, as
+/// fast as the servo, as fast as its oil.
+constexpr double kSlowest = 8.5;
+constexpr std::array kFaster{1.4, 0.24};
 /// Deviation of the start from the simulated one, over the scales of the states: a twentieth of what full opening does.
 constexpr double kStartDeviation = 0.05;
 /// Sizes of the signal over its scale that are looked at, as logarithms: from what no sensor sees to all that the plant has.
@@ -44,8 +47,11 @@ struct Step {
 
 class Filter {
  public:
-  Filter(const LatentProblem& problem, const std::optional<LatentPlace>& place, double deviation)
-      : problem_(problem), place_(place), variance_(deviation * deviation) {}
+  Filter(const LatentProblem& problem, const std::optional<LatentPlace>& place, const LatentPrior& prior)
+      : problem_(problem),
+        place_(place),
+        variance_(prior.deviation * prior.deviation),
+        correlation_time_(prior.correlation_time) {}
 
   /// Observation of channel c over its noise in a record.
   FilterVector observation(const Experiment& experiment, std::size_t channel) const {
@@ -59,7 +65,7 @@ class Filter {
   }
 
   double memory(const Experiment& experiment) const {
-    return std::exp(-experiment.period / (kCorrelationTime * problem_.scales.time));
+    return std::exp(-experiment.period / (correlation_time_ * problem_.scales.time));
   }
 
   FilterMatrix start() const {
@@ -179,6 +185,7 @@ class Filter {
   const LatentProblem& problem_;
   const std::optional<LatentPlace> place_;
   double variance_;
+  double correlation_time_;
 };
 
 }  // namespace
@@ -247,35 +254,38 @@ LatentProblem latent_problem(const Dataset& data, const Fitted<SimplexFamily>& a
 
 double likelihood_without(const LatentProblem& problem) {
   Eigen::VectorXd move;
-  return Filter(problem, std::nullopt, 0.0).likelihood(move);
+  return Filter(problem, std::nullopt, {}).likelihood(move);
 }
 
 LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& place) {
   LatentInput best;
-  double at = 0.0;
-  const auto look = [&](double logarithm) {
+  const auto look = [&](const LatentPrior& prior) {
     Eigen::VectorXd move;
-    const double likelihood = Filter(problem, place, std::exp(logarithm)).likelihood(move);
-    if (best.deviation == 0.0 || likelihood > best.log_likelihood) {
-      best = {likelihood, std::exp(logarithm), move, {}, {}, {}};
-      at = logarithm;
+    const double likelihood = Filter(problem, place, prior).likelihood(move);
+    if (best.prior.deviation == 0.0 || likelihood > best.log_likelihood) {
+      best = {likelihood, prior, move, {}, {}, {}};
     }
   };
   for (double logarithm = kSmallest; logarithm < kLargest + 0.5; logarithm += kCoarse) {
-    look(logarithm);
+    look({std::exp(logarithm), kSlowest});
+  }
+  // Beyond 1 / T the density of the signal is that of its deviation's square over T.
+  const double density = best.prior.deviation / std::sqrt(kSlowest);
+  for (const double time : kFaster) {
+    look({density * std::sqrt(time), time});
   }
   double step = kCoarse;
   for (int i = 0; i < kRefinements; ++i) {
     step *= 0.4;
-    const double center = at;
-    look(center - step);
-    look(center + step);
+    const LatentPrior center = best.prior;
+    look({center.deviation * std::exp(-step), center.correlation_time});
+    look({center.deviation * std::exp(step), center.correlation_time});
   }
   return best;
 }
 
 void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput& input) {
-  const Filter filter(problem, place, input.deviation);
+  const Filter filter(problem, place, input.prior);
   std::vector<double> square(kReadState.size(), 0.0);
   std::vector<double> rows(kReadState.size(), 0.0);
   for (std::size_t e = 0; e < problem.data.experiments.size(); ++e) {

@@ -33,10 +33,16 @@ struct LatentProblem {
 /// in tolerances, then the zero of every channel of every record, in its prior's deviation (zeros.hpp).
 LatentProblem latent_problem(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads);
 
-/// An unknown signal w(t) at one place, as an Ornstein-Uhlenbeck process.
+/// What a signal is like before it is seen: an Ornstein-Uhlenbeck process.
+struct LatentPrior {
+  double deviation = 0.0;         ///< stationary rms of the signal over its scale
+  double correlation_time = 1.0;  ///< in time constants of the servo
+};
+
+/// An unknown signal w(t) at one place.
 struct LatentInput {
   double log_likelihood = 0.0;  ///< of the records, parameters and signal integrated out
-  double deviation = 0.0;       ///< stationary rms of the signal over its scale, the most likely one
+  LatentPrior prior{};          ///< the most likely one
   Eigen::VectorXd move;         ///< of the problem's parameters
   std::vector<double> leaves;  ///< by channel: mean square over noise of what the smoothed signal leaves; filled by `smooth`
   std::vector<Eigen::VectorXd> signal;  ///< by experiment, a value a row, over its scale; filled by `smooth`
@@ -47,9 +53,10 @@ struct LatentInput {
 /// Log likelihood of the records without any unknown signal.
 double likelihood_without(const LatentProblem& problem);
 
-/// The most likely size of a signal at `place`.
+/// The most likely size and correlation time of a signal at `place`: a friction force is slow, what a sensor adds may be fast,
+/// and a prior that fits neither would compare places by how well it fits.
 ///
-/// w' = -w / T + white noise, T a few time constants of the servo. The plant's deviation, linear along its simulation, and w
+/// w' = -w / T + white noise, T from a fraction of a time constant of the servo to several. The plant's deviation, linear along its simulation, and w
 /// are the state of a Kalman filter; records reset them. Declared parameters are constants over all records, zeros over one:
 /// the filter runs on their sensitivities beside the residuals, and their move follows by least squares on the innovations,
 /// with tolerances and deviations as prior [de Jong 1991, The diffuse Kalman filter, Annals of Statistics 19].

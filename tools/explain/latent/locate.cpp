@@ -7,25 +7,14 @@
 #include "model/declaration/sites.hpp"
 #include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/fit/parallel.hpp"
+#include "tools/explain/policy/policy.hpp"
 
 namespace hotfire::explain {
 
 namespace {
 
-/// Least gain of a signal in log likelihood: of 40 sets of records without any missing effect none gains 10.
-constexpr double kLeastGain = 50.0;
-/// Places are tied where their gains differ by less than this [log likelihood], or by this share of the best gain: a
-/// signal's prior and the linear flow are wrong by as much.
-constexpr double kTiedGain = 150.0;
-constexpr double kTiedShare = 0.01;
-/// ... and where what they leave is no more than this factor of what the best leaves, channel by channel.
-constexpr double kTiedLeaves = 1.25;
-/// Where no single signal explains the records, places of this share of the best gain stay open.
-constexpr double kOpenShare = 0.1;
-/// Rows at most: of ten minutes at the rate at which candidates are ranked, as much again for long records.
-constexpr double kMostRows = 2e5;
-/// Mean square over noise of what a signal leaves where it is not alone.
-constexpr double kLeftBySingle = 1.9;
+/// Rows at most: of two minutes at 250 Hz. Gains are a thousand times what decides between places.
+constexpr double kMostRows = 3.2e4;
 
 std::string site(model::Site at) { return std::string(model::site_name(at)); }
 
@@ -84,32 +73,32 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
   parallel_for(wanted.size(), threads, [&](std::size_t i) {
     tried[i].second = most_likely_input(problem, wanted[i].first);
     const LatentInput& input = tried[i].second;
-    tried[i].first = {wanted[i].second, input.log_likelihood - without, {}, false, wanted[i].first, input.deviation,
+    tried[i].first = {wanted[i].second, input.log_likelihood - without, {}, false, wanted[i].first, input.prior,
                       input.move};
   });
   const double best = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; }).first.gain;
-  if (best < kLeastGain) {
+  if (best < policy().least_gain) {
     return located;
   }
   const auto close_to_best = [&](double share) {
     parallel_for(wanted.size(), threads, [&](std::size_t i) {
       auto& [place, input] = tried[i];
-      if (place.gain >= best - std::max(kTiedGain, share * best) && place.leaves.empty()) {
+      if (place.gain >= best - std::max(policy().tied_gain, share * best) && place.leaves.empty()) {
         smooth(problem, wanted[i].first, input);
         place.leaves = input.leaves;
       }
     });
   };
-  close_to_best(kTiedShare);
+  close_to_best(policy().tied_share);
   const Place& first = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; }).first;
-  located.is_single = std::ranges::all_of(first.leaves, [](double leaves) { return leaves < kLeftBySingle; });
+  located.is_single = std::ranges::all_of(first.leaves, [](double leaves) { return leaves < policy().left_by_single; });
   if (!located.is_single) {
-    close_to_best(kOpenShare);
+    close_to_best(policy().open_share);
   }
   for (auto& [place, input] : tried) {
     place.is_likely = !place.leaves.empty() &&
                       (!located.is_single || std::ranges::equal(place.leaves, first.leaves, [](double one, double least) {
-                        return one <= kTiedLeaves * std::max(1.0, least);
+                        return one <= policy().tied_leaves * std::max(1.0, least);
                       }));
   }
   std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first.gain; });

@@ -16,7 +16,7 @@ struct Place {
   std::vector<double> leaves;      ///< by channel: mean square over noise of what the signal leaves; of likely places only
   bool is_likely = false;          ///< no other place explains clearly more
   LatentPlace where{};
-  double deviation = 0.0;  ///< of the most likely signal, over its scale
+  LatentPrior prior{};     ///< of the most likely signal
   Eigen::VectorXd move{};  ///< of the parameters of its problem beside it
 };
 
@@ -32,7 +32,7 @@ struct Located {
 };
 
 /// Tries an unknown signal at every place beside a fitted model. It knows no law: which place explains most is decided by
-/// the likelihood of the records alone. Records of more than 200,000 rows together are thinned to as many: the filter keeps
+/// the likelihood of the records alone. Records of more than 32,000 rows together are thinned to as many: the filter keeps
 /// about a kilobyte a row.
 Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads);
 

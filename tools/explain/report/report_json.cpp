@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "tools/explain/policy/policy.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -25,8 +27,8 @@ json interval_json(const std::optional<Interval95>& interval) {
   return interval ? json{interval->first, interval->second} : json(nullptr);
 }
 
-template <class Row, class ToJson>
-json list_of(const std::vector<Row>& rows, ToJson&& to_json) {
+template <class Rows, class ToJson>
+json list_of(const Rows& rows, ToJson&& to_json) {
   json list = json::array();
   std::transform(rows.begin(), rows.end(), std::back_inserter(list), to_json);
   return list;
@@ -154,6 +156,13 @@ json search_json(const SearchRow& row) {
   return result;
 }
 
+json policy_json(const PolicyConstant& constant) {
+  return {{"name", constant.name},
+          {"value", policy().*constant.value},
+          {"unit", constant.unit},
+          {"reason", constant.reason}};
+}
+
 json located_json(const LocatedResult& located) {
   const auto place_json = [](const LocatedPlace& place) {
     json row{{"sites", place.sites}, {"log_likelihood_gain", place.log_likelihood_gain}, {"likely", place.is_likely}};
@@ -252,6 +261,7 @@ json report_json(const Result& result) {
                                           })},
               {"residual", residual_json(result.residual)},
               {"search", list_of(result.search, search_json)}};
+  report["policy"] = list_of(kPolicyConstants, policy_json);
   if (!result.held_out_records.empty()) {
     report["held_out_records"] = list_of(result.held_out_records, held_out_json);
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 #include "tools/explain/words/conclusions.hpp"
 
@@ -25,7 +26,7 @@ std::string promising(const std::vector<Trial>& trials) {
   const auto best = std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
     return a.refined == b.refined ? a.delta_criterion < b.delta_criterion : a.refined;
   });
-  if (best == trials.end() || best->delta_criterion > -kStrongEvidence) {
+  if (best == trials.end() || best->delta_criterion > -policy().strong_evidence) {
     return "";
   }
   return " " + (best->refined ? words::best_so_far(phrase(best->candidate), best->held_out_ratio)

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/screening.hpp"
 #include "tools/explain/terms/assessed.hpp"
 #include "tools/explain/terms/trial.hpp"
@@ -19,17 +20,6 @@ inline constexpr std::size_t kFinalists = 3;
 inline constexpr std::size_t kUnlistedFinalists = 4;
 /// A variant (law) of a finalist is fitted too if it reached this share of the best variant's gain in screening.
 inline constexpr double kCloseVariant = 0.9;
-
-/// A finalist that leaves less than this many times what the best leaves may be held up by the ripples of its error alone.
-inline constexpr double kContender = 1.5;
-
-/// What is left beyond the noise is larger than the noise: worth a table of unknown law, and any effect that is supported.
-inline constexpr double kLargerThanNoise = 1.0;
-/// A further effect has to leave less than this share of the mean square beyond noise, once that is below the noise's.
-inline constexpr double kClearsUp = 2.0 / 3.0;
-/// A finalist that leaves less than this beyond the noise settles the round for those that promise clearly less: the noise
-/// itself is known to one or two percent, which is as much.
-inline constexpr double kNothingLeft = 0.2;
 
 /// Sets how a model does against another, on given effective samples.
 template <class Family>
@@ -45,7 +35,7 @@ template <class Family>
 std::vector<std::size_t> finalists_of(const std::vector<Screened<Family>>& screened) {
   std::vector<std::pair<std::string, double>> best_of_name;
   std::vector<std::size_t> finalists;
-  for (std::size_t i = 0; i < screened.size() && screened[i].criterion < -kStrongEvidence; ++i) {
+  for (std::size_t i = 0; i < screened.size() && screened[i].criterion < -policy().strong_evidence; ++i) {
     const std::string& name = screened[i].candidate.name;
     const auto known =
         std::find_if(best_of_name.begin(), best_of_name.end(), [&](const auto& n) { return n.first == name; });
@@ -75,7 +65,7 @@ std::vector<std::size_t> simplest_laws_first(const std::vector<std::size_t>& ord
 }
 
 /// The finalists that may win yet where none reaches the noise: of each name the law that leaves least, if that is less than
-/// kContender times the best of all.
+/// what is clearly more than the best of all.
 template <class Family>
 std::vector<std::size_t> contenders_of(const std::vector<std::size_t>& order, const std::vector<Screened<Family>>& screened,
                                        const std::vector<Assessed<Family>>& finalists) {
@@ -88,7 +78,7 @@ std::vector<std::size_t> contenders_of(const std::vector<std::size_t>& order, co
     const bool has_better_law = std::any_of(contenders.begin(), contenders.end(), [&](std::size_t k) {
       return screened[k].candidate.name == screened[i].candidate.name;
     });
-    if (!has_better_law && left(i) < kContender * left(closest.front())) {
+    if (!has_better_law && policy().clearly_less * left(i) < left(closest.front())) {
       contenders.push_back(i);
     }
   }
@@ -102,7 +92,7 @@ template <class Family>
 std::size_t unlisted_finalists(const std::vector<Screened<Family>>& screened) {
   const auto strong =
       static_cast<std::size_t>(std::count_if(screened.begin(), screened.end(), [](const Screened<Family>& candidate) {
-        return candidate.criterion <= -kStrongEvidence;
+        return candidate.criterion <= -policy().strong_evidence;
       }));
   return std::min(kUnlistedFinalists, strong == 0 ? screened.size() : strong);
 }

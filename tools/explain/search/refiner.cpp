@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tools/explain/inference/uncertainty.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/terms/trial.hpp"
 
@@ -19,10 +20,6 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Where an axis comes to rest in a play or a dead band depends on how it came there, and so the error of a model has
-/// ripples over its parameters. They are as high as such rests are apart: a few times the sensor noise, or nobody would see
-/// them.
-constexpr double kHighestRipple = 3.0;
 /// Rough steps serve where they change the residuals of every channel by less than this share of them. They are shifted by
 /// that change, and what is left of it is the square of a share.
 constexpr double kLostToSteps = 0.5;
@@ -149,7 +146,7 @@ std::vector<OfLaw<Family>> Refiner<Family>::of_richer_laws(int round, const Asse
       start.u.push_back(parameter.coordinate(parameter.unit_size));
     }
     Assessed<Family> fitted = ranked(start, kCheck);
-    if (fitted.good() && criterion_change(fitted, winner, fitted.goodness.fitted) < -kStrongEvidence) {
+    if (fitted.good() && criterion_change(fitted, winner, fitted.goodness.fitted) < -policy().strong_evidence) {
       Assessed<Family> closer = ranked(fitted.model, kRanking);
       richer.push_back({law, better_of(std::move(fitted), std::move(closer))});
     }
@@ -231,7 +228,7 @@ Assessed<Family> Refiner<Family>::in_place_of(const Fitted<Family>& model, const
 template <class Family>
 Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted) const {
   const double left = excess_over_noise(data_, fitted.prediction);
-  if (left < kNothingLeft || left >= kHighestRipple || watch_.interrupted()) {
+  if (left < policy().nothing_left || left >= policy().near_noise || watch_.interrupted()) {
     return fitted;
   }
   Assessed<Family> beyond = ranked(fitted.model, kOverRipples);

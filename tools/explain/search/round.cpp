@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/words/reasons.hpp"
@@ -13,13 +14,6 @@
 namespace hotfire::explain {
 
 namespace {
-
-/// A model that leaves less than this many times the noise may be the last; one that leaves more is fitted again beside the
-/// next effect.
-constexpr double kNearNoise = 3.0;
-/// Far above the noise an effect that leaves more than this share of the held-out error is not named: it takes up a little
-/// of what it does not have. Even the largest of four that are missing, all alike, leaves 0.87.
-constexpr double kHardlyLess = 0.95;
 
 /// True if a trial ranks before another: by the BIC, but one that held-out data do not support never before one that they
 /// do.
@@ -67,7 +61,7 @@ RoundResult<Family> Round<Family>::run() {
   const bool kept =
       best_ && result.model.good() && is_supported(trials_[*best_]) && is_worth_a_name(trials_[*best_], result.model);
   for (std::size_t i = 0; i < trials_.size(); ++i) {
-    const bool is_tied = kept && trials_[i].refined && trials_[i].delta_criterion - trials_[*best_].delta_criterion < kTied;
+    const bool is_tied = kept && trials_[i].refined && trials_[i].delta_criterion - trials_[*best_].delta_criterion < policy().strong_evidence;
     trials_[i].decision = kept && i == *best_ ? "kept" : is_tied ? "tied" : "dropped";
     trials_[i].reason = reason_of(trials_[i], best_ ? &trials_[*best_] : nullptr);
   }
@@ -89,12 +83,12 @@ template <class Family>
 bool Round<Family>::clears_up(const Assessed<Family>& with) const {
   const double before = excess_over_noise(data_, current_.prediction);
   const double after = excess_over_noise(data_, with.prediction);
-  return before > kLargerThanNoise || after * after < kClearsUp * before * before;
+  return before > policy().visible || after * after < policy().clearly_less * before * before;
 }
 
 template <class Family>
 bool Round<Family>::is_worth_a_name(const Trial& trial, const Assessed<Family>& with) const {
-  return trial.held_out_ratio < kHardlyLess || excess_over_noise(data_, with.prediction) < kNearNoise;
+  return trial.held_out_ratio < policy().hardly_less || excess_over_noise(data_, with.prediction) < policy().near_noise;
 }
 
 /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
@@ -102,7 +96,7 @@ bool Round<Family>::is_worth_a_name(const Trial& trial, const Assessed<Family>& 
 template <class Family>
 bool Round<Family>::is_decided_against(std::size_t wanted) const {
   return std::any_of(order_.begin(), order_.end(), [&](std::size_t i) {
-    if (!finalists_[i].good() || excess_over_noise(data_, finalists_[i].prediction) >= kNothingLeft) {
+    if (!finalists_[i].good() || excess_over_noise(data_, finalists_[i].prediction) >= policy().nothing_left) {
       return false;
     }
     return screened_[i].candidate.name == screened_[wanted].candidate.name
@@ -113,7 +107,7 @@ bool Round<Family>::is_decided_against(std::size_t wanted) const {
 
 template <class Family>
 bool Round<Family>::is_near_noise(std::size_t finalist) const {
-  return excess_over_noise(data_, finalists_[finalist].prediction) < kNearNoise;
+  return excess_over_noise(data_, finalists_[finalist].prediction) < policy().near_noise;
 }
 
 template <class Family>
@@ -226,7 +220,7 @@ RoundResult<Family> Round<Family>::undecided() {
 template <class Family>
 std::optional<Rival<Family>> Round<Family>::rival_of(const Kept& kept) const {
   for (const Trial& other : kept.alternatives) {
-    if (!other.refined || other.delta_criterion - kept.trial.delta_criterion >= kTied) {
+    if (!other.refined || other.delta_criterion - kept.trial.delta_criterion >= policy().strong_evidence) {
       continue;
     }
     for (std::size_t i = 0; i < screened_.size(); ++i) {

@@ -10,6 +10,7 @@
 
 #include "tools/explain/data/spectrum.hpp"
 #include "tools/explain/fit/parallel.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/trial.hpp"
@@ -303,7 +304,7 @@ Screened<Family> Screening<Family>::restart(const Candidate& candidate, const st
   stands.fitted.u.insert(stands.fitted.u.end(), own.begin(), own.end());
   improve(stands, Stage::scan);
   const bool elsewhere =
-      !restarts.empty() && (!stands.good || restarts.front().criterion < stands.criterion - kStrongEvidence);
+      !restarts.empty() && (!stands.good || restarts.front().criterion < stands.criterion - policy().strong_evidence);
   return elsewhere ? restarts.front() : Screened<Family>{candidate, fitted, 0.0, 0.0, false};
 }
 

@@ -11,6 +11,7 @@
 #include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/fit/scales.hpp"
 #include "tools/explain/inference/veto.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/channel_check.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/refiner.hpp"
@@ -78,7 +79,7 @@ class Search {
     result_.explained = result_.calibrated;
     for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
       const int round = result_.next_round();
-      if (lacks_nothing(data_, result_.explained) || !add_effect(round)) {
+      if (lacks_nothing(data_, result_.explained) || !add_effect(round, unlisted_.locate_about(result_.explained))) {
         break;
       }
       take_out_superfluous(round);
@@ -103,14 +104,18 @@ class Search {
   }
 
  private:
-  /// One round. False if no candidate is supported.
-  bool add_effect(int round) {
+  /// One round, of the effects at the sites where one signal explains what is missing, or of all where none does. False if
+  /// no candidate is supported.
+  bool add_effect(int round, const Located& where) {
     const Fitted<Family>& current = result_.explained.model;
     std::vector<Candidate> candidates = all_candidates<Family>(data_);
     std::erase_if(candidates, [&](const Candidate& c) {
       return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c) ||
-             is_measured_load(data_, c.site);
+             is_measured_load(data_, c.site) || (where.is_single && !where.allows(c.site));
     });
+    if (candidates.empty()) {
+      return false;
+    }
     const Evaluator<Family> evaluator = refiner_.for_screening(current);
     const Screening<Family> screening(evaluator, current, scales_, options_.threads);
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
@@ -282,7 +287,7 @@ class Search {
       result_.rival.reset();
       return;
     }
-    if (trial.delta_criterion < kTied) {
+    if (trial.delta_criterion < policy().strong_evidence) {
       trial.decision = "tied";
       trial.reason = words::text(words::LawChange::rival_tied, label(candidate));
       if (!result_.rival) {

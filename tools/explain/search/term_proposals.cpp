@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/explain/latent/form_search.hpp"
+#include "tools/explain/policy/policy.hpp"
 
 namespace hotfire::explain {
 
@@ -16,10 +17,6 @@ namespace {
 constexpr double kMostRows = 25e3;
 /// Forms of one place that are proposed.
 constexpr std::size_t kFormsOfPlace = 4;
-/// A form is not proposed that takes less than this share of what the best one takes.
-constexpr double kWorthwhile = 0.5;
-/// Mean square over noise of what the right form leaves along the linear flow.
-constexpr double kNoise = 1.5;
 /// How far a parameter of a memory may go from where the regression puts it, as a factor.
 constexpr double kReach = 100.0;
 
@@ -157,7 +154,7 @@ std::vector<Screened<SimplexFamily>> propose_terms(const Dataset& data, const Fi
     }
     watch.progress(fmt::format("regressing what is left on terms at {}", place.sites.front()));
     LatentInput input;
-    input.deviation = place.deviation;
+    input.prior = place.prior;
     input.move = place.move;
     smooth(problem, place.where, input);
     for (const auto arguments : {FormRegression::Arguments::simulated, FormRegression::Arguments::smoothed}) {
@@ -168,14 +165,14 @@ std::vector<Screened<SimplexFamily>> propose_terms(const Dataset& data, const Fi
         least = std::min(least, form.score.left);
         forms.push_back(std::move(form));
       }
-      if (least < kNoise) {
+      if (least < policy().left_by_single) {
         break;
       }
     }
   }
   std::ranges::stable_sort(forms, {}, [](const ScoredForm& s) { return s.score.criterion; });
   for (const ScoredForm& form : forms) {
-    if (without - form.score.left < kWorthwhile * (without - forms.front().score.left)) {
+    if (without - form.score.left < policy().little_explained * (without - forms.front().score.left)) {
       continue;
     }
     if (auto start = start_of(around, form, scales)) {

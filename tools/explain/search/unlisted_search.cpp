@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tools/explain/data/measured_load.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/search/term_proposals.hpp"
@@ -33,14 +34,6 @@ void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<
 
 /// Terms of the grammar that are fitted jointly, of those that were proposed: one of every site, or two of one.
 constexpr std::size_t kTermFinalists = 2;
-/// A term at another site is not separated from the best where it leaves less than this many times as much, or no more than
-/// noise.
-constexpr double kTiedSites = 1.5;
-/// Where a term of the grammar leaves less than this share of the held-out error, tables at the same sites are not tried.
-constexpr double kFound = 0.3;
-/// A signal that falls by less than this share of its range where it should rise is flat, as in a dead band.
-constexpr double kFlat = 0.05;
-
 /// True if a term on a signal makes it fall where it is asked to rise. No amplifier and no valve does: such a table imitates
 /// something that it does not depend on, and an axis that meets it beyond these records sticks where it falls.
 template <class Family>
@@ -52,7 +45,7 @@ bool falls_as_it_rises(const Fitted<Family>& model, const Candidate& candidate) 
   std::vector<double> signal;
   std::ranges::transform(table->x, table->y, std::back_inserter(signal), std::plus<>());
   const auto [low, high] = std::ranges::minmax(signal);
-  const double flat = kFlat * (high - low);
+  const double flat = policy().scatter * (high - low);
   return std::ranges::adjacent_find(signal, [&](double here, double next) { return next < here - flat; }) != signal.end();
 }
 
@@ -136,7 +129,7 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
 /// Marks the terms at other sites that the records do not separate from the best.
 template <class Family>
 void mark_tied_sites(UnlistedSearch<Family>& result) {
-  const double most = std::max(kLargerThanNoise, kTiedSites * result.left[*result.best]);
+  const double most = std::max(policy().visible, result.left[*result.best] / policy().clearly_less);
   for (std::size_t i = 0; i < result.trials.size(); ++i) {
     Trial& trial = result.trials[i];
     if (result.left[i] < most && trial.candidate.site != result.trials[*result.best].candidate.site) {
@@ -150,12 +143,12 @@ void mark_tied_sites(UnlistedSearch<Family>& result) {
 
 template <class Family>
 bool UnlistedSearch<Family>::leaves_less_than(double share) const {
-  return best && trials[*best].delta_criterion < -kStrongEvidence && trials[*best].held_out_ratio < share;
+  return best && trials[*best].delta_criterion < -policy().strong_evidence && trials[*best].held_out_ratio < share;
 }
 
 template <class Family>
 bool UnlistedSearch<Family>::reaches_noise(const Dataset& data) const {
-  return best && excess_over_noise(data, model.prediction) < kNothingLeft;
+  return best && excess_over_noise(data, model.prediction) < policy().nothing_left;
 }
 
 template <class Family>
@@ -171,7 +164,7 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
     const std::size_t wanted = terms_to_fit(proposals);
     fit_finalists(data, refiner, beside, around.u, std::move(proposals), wanted, kCheck, round, watch, result);
   }
-  if (!result.leaves_less_than(kFound)) {
+  if (!result.leaves_less_than(policy().term_found)) {
     const Screening<Family> screening(evaluator, around, scales, threads);
     std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
     std::erase_if(candidates, [&](const Candidate& candidate) {

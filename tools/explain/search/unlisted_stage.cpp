@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tools/explain/inference/veto.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 #include "tools/explain/words/reasons.hpp"
@@ -13,23 +14,6 @@
 namespace hotfire::explain {
 
 namespace {
-
-/// A term of unknown law has to stay below this share of the error that it is to explain: it has more freedom than a law.
-constexpr double kUnlistedAdvantage = 0.7;
-/// Names that leave more than this share of the calibrated model's held-out error explain little.
-constexpr double kLittleExplained = 0.5;
-/// ... and give way to a term of unknown law that is only a little better.
-constexpr double kAdvantageOverLittle = 0.9;
-/// ... but a curve over the signal that the names are laws of, such as dead band and asymmetry of a valve, is a finer word
-/// for the same and not another: it has to stay below this share of what they leave.
-constexpr double kAdvantageOverSameCurve = 0.5;
-/// Held-out data agree that a model leaves clearly less where their error is below this share: from 1 to 0.7 of the noise
-/// beyond it is 0.87 of the whole.
-constexpr double kHeldOutAgrees = 0.9;
-/// A model that leaves less than this many times the noise is near enough to it for its names to be kept.
-constexpr double kNearNoise = 3.0;
-/// A name beside a term of unknown law has to carry its weight: without it the held-out error grows by this factor.
-constexpr double kWeightOfName = 1.3;
 
 /// True if names are static laws of the opening that a term of unknown law is a curve over.
 bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names) {
@@ -49,7 +33,7 @@ bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names)
 
 template <class Family>
 void UnlistedStage<Family>::replace_names_that_explain_little() {
-  if (left_by_listed() <= kLittleExplained || !is_worth_a_table() || options_.watch.interrupted()) {
+  if (left_by_listed() <= policy().little_explained || !is_worth_a_table() || options_.watch.interrupted()) {
     return;
   }
   look_instead();
@@ -68,7 +52,7 @@ void UnlistedStage<Family>::finish() {
     drop_light_names();
     drop_names_that_explain_little();
   }
-  if (!options_.watch.interrupted() && excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise) {
+  if (!options_.watch.interrupted() && excess_over_noise(data_, result_.explained.prediction) > policy().visible) {
     result_.located = result_.kept.empty() ? located() : locate_about(result_.explained);
   }
 }
@@ -77,7 +61,7 @@ void UnlistedStage<Family>::finish() {
 template <class Family>
 bool UnlistedStage<Family>::is_worth_a_table() const {
   return !reaches_noise(data_, result_.explained) &&
-         (excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise ||
+         (excess_over_noise(data_, result_.explained.prediction) > policy().visible ||
           !is_within_tolerances(result_.explained.model));
 }
 
@@ -86,14 +70,14 @@ bool UnlistedStage<Family>::is_worth_a_table() const {
 template <class Family>
 bool UnlistedStage<Family>::leaves_clearly_less(const Assessed<Family>& model, double share) const {
   const double left = excess_over_noise(data_, result_.explained.prediction);
-  return left > kLargerThanNoise && excess_over_noise(data_, model.prediction) < share * left &&
-         held_out_ratio(model, result_.explained) < kHeldOutAgrees;
+  return left > policy().visible && excess_over_noise(data_, model.prediction) < share * left &&
+         held_out_ratio(model, result_.explained) < policy().held_out_less;
 }
 
 /// The share of what the listed effects leave that a term of unknown law has to stay below.
 template <class Family>
 double UnlistedStage<Family>::advantage() const {
-  return !result_.kept.empty() && left_by_listed() > kLittleExplained ? kAdvantageOverLittle : kUnlistedAdvantage;
+  return !result_.kept.empty() && left_by_listed() > policy().little_explained ? policy().held_out_less : policy().clearly_less;
 }
 
 template <class Family>
@@ -155,7 +139,7 @@ template <class Family>
 void UnlistedStage<Family>::take_instead_if_better() {
   const double listed = left_by_listed();
   const bool is_same = instead_->best && is_curve_of_the_same(instead_->trials[*instead_->best].candidate, result_.kept);
-  const double share = is_same ? kAdvantageOverSameCurve : advantage();
+  const double share = is_same ? policy().little_explained : advantage();
   if (!instead_->leaves_less_than(share * listed) &&
       !(instead_->leaves_less_than(1.0) && leaves_clearly_less(instead_->model, share))) {
     return;
@@ -191,13 +175,13 @@ template <class Family>
 void UnlistedStage<Family>::add_beside() {
   if constexpr (std::is_same_v<Family, SimplexFamily>) {
     while (!result_.kept.empty() && static_cast<int>(result_.kept.size()) < options_.most_effects &&
-           excess_over_noise(data_, result_.explained.prediction) > kLargerThanNoise && !options_.watch.interrupted()) {
+           excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
       const UnlistedSearch<Family> beside =
           search_unlisted(data_, refiner_, result_.explained, locate_about(result_.explained), scales_, options_.threads,
                           options_.watch, result_.next_round());
       const std::size_t first = result_.trials.size();
       result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
-      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, kUnlistedAdvantage) ||
+      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||
           !harm_of(data_, beside.model.prediction, result_.calibrated.prediction).empty()) {
         return;
       }
@@ -231,7 +215,7 @@ void UnlistedStage<Family>::drop_light_names() {
       continue;
     }
     compare(trial, rest, result_.explained, rest.goodness.fitted);
-    if (trial.held_out_ratio < kWeightOfName) {
+    if (policy().clearly_less * trial.held_out_ratio < 1.0) {
       result_.trials.push_back(std::move(trial));
       result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
       Assessed<Family> settled = refiner_.settled(rest.model);
@@ -246,8 +230,8 @@ void UnlistedStage<Family>::drop_names_that_explain_little() {
   const bool names_alone = !result_.kept.empty() && std::ranges::none_of(result_.kept, [](const Kept& kept) {
     return is_unlisted<Family>(kept.trial.candidate);
   });
-  if (names_alone && left_by_listed() > kLittleExplained &&
-      excess_over_noise(data_, result_.explained.prediction) > kNearNoise) {
+  if (names_alone && left_by_listed() > policy().little_explained &&
+      excess_over_noise(data_, result_.explained.prediction) > policy().near_noise) {
     take_out_names(words::leaves_far_above_noise(left_by_listed()));
   }
 }

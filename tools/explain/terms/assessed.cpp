@@ -5,19 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "tools/explain/policy/policy.hpp"
+
 namespace hotfire::explain {
 
 namespace {
 
-/// A residual whose part beyond noise is below this share of the noise rms is left alone: the model is then twice as close
-/// to the truth as the sensor is, and two friction laws of the same family differ by as much.
-constexpr double kImmaterialExcess = 0.5;
-/// Chaotic motion (stick-slip) of two models of one truth parts at the first slip that one has and the other has not: what
-/// is left then is of the noise's own size, and there is nothing in it to be named.
-constexpr double kImmaterialWhereChaotic = 1.5;
-/// A declared parameter that is further from its declaration than this many tolerances compensates for something: odds of
-/// one in a million if the tolerance is right, one in eighty if it was declared half as large as it is.
-constexpr double kFarthestFromDeclared = 5.0;
 /// Change of the logarithm of a temper below which it has converged.
 constexpr double kTemperStands = 0.2;
 /// A fit that ran out of iterations goes on where its last pass left less than this share of the error.
@@ -64,7 +57,7 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
 template <class Family>
 bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
   return excess_over_noise(data, assessed.prediction) <=
-         (assessed.model.chaotic ? kImmaterialWhereChaotic : kImmaterialExcess);
+         (assessed.model.chaotic ? policy().chaotic : policy().immaterial);
 }
 
 template <class Family>
@@ -81,7 +74,7 @@ Moved farthest_from_declared(const Fitted<Family>& model) {
 
 template <class Family>
 bool is_within_tolerances(const Fitted<Family>& model) {
-  return farthest_from_declared(model).tolerances <= kFarthestFromDeclared;
+  return farthest_from_declared(model).tolerances <= policy().farthest_from_declared;
 }
 
 template <class Family>

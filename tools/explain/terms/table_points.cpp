@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "model/numerics/step_size.hpp"
-#include "tools/explain/terms/curve_points.hpp"
+#include "tools/explain/fit/curve_points.hpp"
 #include "tools/simulate/run.hpp"
 
 namespace hotfire::explain {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
@@ -22,11 +23,11 @@ std::string label(const Candidate& candidate) {
 }
 
 bool is_supported(const Trial& trial) {
-  return trial.delta_criterion < -kStrongEvidence && trial.held_out_ratio < 1.0 - kLeastHeldOutDrop;
+  return trial.delta_criterion < -policy().strong_evidence && trial.held_out_ratio < 1.0 - policy().least_held_out_drop;
 }
 
 bool is_as_good(const Trial& trial) {
-  return trial.delta_criterion < kStrongEvidence && trial.held_out_ratio < 1.0 + kLeastHeldOutDrop;
+  return trial.delta_criterion < policy().strong_evidence && trial.held_out_ratio < 1.0 + policy().least_held_out_drop;
 }
 
 std::string reason_of(const Trial& trial, const Trial* best) {
@@ -40,7 +41,7 @@ std::string reason_of(const Trial& trial, const Trial* best) {
     return std::string(words::text(words::Reason::not_screened));
   }
   if (!trial.refined) {
-    return std::string(words::text(trial.delta_criterion > -kStrongEvidence ? words::Reason::no_lower_criterion
+    return std::string(words::text(trial.delta_criterion > -policy().strong_evidence ? words::Reason::no_lower_criterion
                                                                             : words::Reason::behind_finalists));
   }
   if (best != &trial && best->delta_criterion < trial.delta_criterion) {

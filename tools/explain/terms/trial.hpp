@@ -8,13 +8,6 @@
 
 namespace hotfire::explain {
 
-/// An effect is kept if it lowers the BIC by at least this much: odds beyond 150 to 1 [Kass and Raftery 1995, p. 777].
-inline constexpr double kStrongEvidence = 10.0;
-/// And only if it lowers the held-out error by this share of it.
-inline constexpr double kLeastHeldOutDrop = 0.01;
-/// Two candidates whose BIC differs by less than this are not separated by the data.
-inline constexpr double kTied = 10.0;
-
 /// What becomes of a candidate whose round was interrupted.
 inline constexpr const char* kUndecided = "undecided";
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/terms/table_points.hpp"
 
 namespace hotfire::explain {
@@ -16,9 +17,6 @@ template <class E>
 constexpr bool is_unlisted_effect() {
   return requires { E::is_unlisted; };
 }
-
-/// Share of the energy that a table takes out which it may feed in elsewhere: its scatter.
-constexpr double kScatter = 0.05;
 
 /// True for a term of the grammar that is a curve over the rate of the motion it is against, without memory.
 bool is_curve_over_own_rate(const Candidate& candidate) {
@@ -110,7 +108,7 @@ bool feeds_energy(const PlainParameters<Family>& parameters, const Candidate& ca
     const double power = (table->y[i] - at_rest) * (over_rate ? table->x[i] : 1.0);
     (power < 0.0 ? in : out) += std::abs(power);
   }
-  return in > kScatter * out;
+  return in > policy().scatter * out;
 }
 
 #define HOTFIRE_INSTANTIATE(Family)                                                                       \

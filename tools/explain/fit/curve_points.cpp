@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/terms/curve_points.hpp"
+#include "tools/explain/fit/curve_points.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/terms/trial.hpp"
 
 namespace hotfire::explain {
@@ -111,7 +112,7 @@ std::vector<double> curve_points(std::span<const double> x, std::span<const doub
   const Cloud cloud(x, y, *low, *high);
   std::vector<std::size_t> places{0, kPlaces - 1};
   // Strong evidence, for the best of so many places.
-  const double worth = kStrongEvidence + 2.0 * std::log(static_cast<double>(kPlaces));
+  const double worth = policy().strong_evidence + 2.0 * std::log(static_cast<double>(kPlaces));
   double left = cloud.left_by(places);
   while (places.size() < most) {
     // Of the three points of a bump the first two show little: they are let in on trust.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/terms/curve_points.hpp"
+#include "tools/explain/fit/curve_points.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/explain/latent/correlation.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "tools/explain/latent/form_comb.hpp"
+
+namespace hotfire::explain {
+
+namespace {
+
+constexpr std::size_t kBins = 32;
+/// Rows between those that are looked at, and values that the bins are laid by.
+constexpr Eigen::Index kEvery = 4;
+constexpr std::size_t kSampled = 500;
+
+/// The smoothed signal less its mean.
+std::vector<double> centered_signal(const FormRegression& regression) {
+  std::vector<double> values;
+  double sum = 0.0;
+  for (const Eigen::VectorXd& signal : regression.signal()) {
+    for (Eigen::Index row = 0; row < signal.size(); row += kEvery) {
+      values.push_back(signal(row));
+      sum += signal(row);
+    }
+  }
+  const double mean = sum / static_cast<double>(values.size());
+  std::ranges::transform(values, values.begin(), [&](double value) { return value - mean; });
+  return values;
+}
+
+/// The form's output, and its output less its argument.
+std::pair<std::vector<double>, std::vector<double>> output_and_distortion(const FormRegression& regression,
+                                                                          const Form& form) {
+  std::pair<std::vector<double>, std::vector<double>> both;
+  for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
+    const Eigen::VectorXd argument = argument_of(form, regression.quantities()[e]);
+    const Eigen::VectorXd own = remembered(form, argument, regression.problem().data.experiments[e].period);
+    for (Eigen::Index row = 0; row < own.size(); row += kEvery) {
+      both.first.push_back(own(row));
+      both.second.push_back(own(row) - argument(row));
+    }
+  }
+  return both;
+}
+
+}  // namespace
+
+double correlation_ratio(const std::vector<double>& x, const std::vector<double>& signal) {
+  std::vector<double> sample;
+  for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kSampled) {
+    sample.push_back(x[i]);
+  }
+  std::ranges::sort(sample);
+  const double low = quantile(sample, 0.01);
+  const double high = quantile(sample, 0.99);
+  if (!(high > low)) {
+    return 0.0;
+  }
+  std::array<double, kBins> sum{};
+  std::array<double, kBins> count{};
+  double whole = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double place = std::clamp((x[i] - low) / (high - low), 0.0, 1.0);
+    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(place * static_cast<double>(kBins)));
+    sum[bin] += signal[i];
+    count[bin] += 1.0;
+    whole += signal[i] * signal[i];
+  }
+  double between = 0.0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    between += count[bin] > 0.0 ? sum[bin] * sum[bin] / count[bin] : 0.0;
+  }
+  return whole > 0.0 ? between / whole : 0.0;
+}
+
+std::pair<std::vector<double>, std::vector<double>> output_and_signal(const FormRegression& regression, const Form& form) {
+  return {output_and_distortion(regression, form).first, centered_signal(regression)};
+}
+
+double explained_share(const FormRegression& regression, const Form& form) {
+  const auto [output, distortion] = output_and_distortion(regression, form);
+  const std::vector<double> signal = centered_signal(regression);
+  const double share = correlation_ratio(output, signal);
+  return form.has_direct() ? std::max(share, correlation_ratio(distortion, signal)) : share;
+}
+
+}  // namespace hotfire::explain
