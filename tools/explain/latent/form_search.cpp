@@ -22,15 +22,17 @@ constexpr std::size_t kArguments = model::kArgumentNames.size();
 constexpr std::size_t kLaid = 4;
 /// Forms that the screening leaves for the regression.
 constexpr std::size_t kScreenedStill = 6;
-constexpr std::size_t kScreenedMoving = 10;
+constexpr std::size_t kScreenedMoving = 24;
 /// Memories of one argument among them.
-constexpr int kMemoriesOfOne = 2;
+constexpr int kMemoriesOfOne = 4;
 /// A memory explains clearly more than its argument where it leaves less than this share of what that leaves.
 constexpr double kClearlyLess = 0.9;
+/// Forms over which curves are laid, of those with a memory and of those without.
+constexpr std::size_t kCurved = 6;
 /// Arguments without a memory whose kinks are tried.
 constexpr std::size_t kKinked = 3;
-/// Rounds in which a memory's parameter is refined, each with half the step.
-constexpr int kFormRefinements = 3;
+/// Steps in which a memory's parameter is refined.
+constexpr int kFormRefinements = 6;
 /// Memories that are tuned in the screening, and steps of that.
 constexpr std::size_t kTuned = 24;
 constexpr int kTunings = 8;
@@ -128,12 +130,14 @@ std::vector<Form> screened(const FormRegression& regression, const std::vector<F
 ScoredForm refined_form(const FormRegression& regression, ScoredForm best, unsigned threads) {
   double factor = 1.25;
   for (int i = 0; i < kFormRefinements; ++i) {
+    bool moved = false;
     for (ScoredForm& other : scored(regression, neighbours(best.form, factor), threads)) {
       if (other.score.criterion < best.score.criterion) {
         best = std::move(other);
+        moved = true;
       }
     }
-    factor = std::sqrt(factor);
+    factor = moved ? factor : std::sqrt(factor);
   }
   return best;
 }
@@ -155,20 +159,30 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   }
   const std::vector<Form> likely = screened(regression, plain, forms, threads);
 
-  std::vector<Form> laid;
-  std::size_t kinked = 0;
+  // A curve costs a regressor a point: it is laid for what a gain explains best and for what the signal is most a function of.
+  std::vector<ScoredForm> laid = scored(regression, likely, threads);
+  std::vector<ScoredForm> by_gain = laid;
+  keep_best(by_gain, kCurved);
+  std::vector<Form> shaped;
+  std::size_t still = 0;
+  std::size_t moving = 0;
   for (const Form& form : likely) {
-    laid.push_back(form);
-    if (form.memory.kind == model::Memory::none && kinked++ < kKinked) {
-      std::ranges::move(with_kinks(regression, form), std::back_inserter(laid));
-    }
-    for (const bool curve_first : {false, true}) {
-      if (auto curve = with_curve(regression, form, curve_first)) {
-        laid.push_back(std::move(*curve));
+    const bool is_still = form.memory.kind == model::Memory::none;
+    std::size_t& count = is_still ? still : moving;
+    const bool is_best = std::ranges::any_of(by_gain, [&](const ScoredForm& other) { return is_alike(other.form, form); });
+    if (count++ < kCurved || is_best) {
+      for (const bool curve_first : {false, true}) {
+        if (auto curve = with_curve(regression, form, curve_first)) {
+          shaped.push_back(std::move(*curve));
+        }
       }
     }
+    if (is_still && count <= kKinked) {
+      std::ranges::move(with_kinks(regression, form), std::back_inserter(shaped));
+    }
   }
-  std::vector<ScoredForm> best = best_of_each(scored(regression, std::move(laid), threads), kLaid);
+  std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
+  std::vector<ScoredForm> best = best_of_each(std::move(laid), kLaid);
   for (ScoredForm& form : best) {
     form = refined_form(regression, std::move(form), threads);
   }

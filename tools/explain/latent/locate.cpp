@@ -2,6 +2,7 @@
 #include "tools/explain/latent/locate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "model/declaration/sites.hpp"
@@ -90,15 +91,17 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
     });
   };
   close_to_best(policy().tied_share);
-  const Place& first = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; }).first;
-  located.is_single = std::ranges::all_of(first.leaves, [](double leaves) { return leaves < policy().left_by_single; });
+  // The likelihood compares places by how well their prior fits as well; what is left compares them by the records alone.
+  const auto most_left = [](const auto& t) { return t.first.leaves.empty() ? HUGE_VAL : std::ranges::max(t.first.leaves); };
+  const std::vector<double> least = std::ranges::min(tried, {}, most_left).first.leaves;
+  located.is_single = std::ranges::all_of(least, [](double leaves) { return leaves < policy().left_by_single; });
   if (!located.is_single) {
     close_to_best(policy().open_share);
   }
   for (auto& [place, input] : tried) {
     place.is_likely = !place.leaves.empty() &&
-                      (!located.is_single || std::ranges::equal(place.leaves, first.leaves, [](double one, double least) {
-                        return one <= policy().tied_leaves * std::max(1.0, least);
+                      (!located.is_single || std::ranges::equal(place.leaves, least, [](double one, double other) {
+                        return one <= policy().tied_leaves * std::max(1.0, other);
                       }));
   }
   std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first.gain; });

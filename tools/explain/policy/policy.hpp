@@ -43,8 +43,8 @@ struct Policy {
   /// Places are tied below this difference in log likelihood,
   double tied_gain = 150.0;
   /// ... or below this share of the best gain,
-  double tied_share = 0.01;
-  /// ... if they leave no more than this factor of the best place's mean square.
+  double tied_share = 0.05;
+  /// ... if they leave no more than this factor of the mean square of the place that leaves least.
   double tied_leaves = 1.25;
   /// Mean square over the noise that a single signal leaves at most.
   double left_by_single = 1.9;
