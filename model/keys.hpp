@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <compare>
 #include <string_view>
 #include <tuple>
 
@@ -13,6 +14,8 @@ struct Key {
   std::string_view section;
   bool is_effect;
   std::size_t effect_index;  ///< position in the effect list; 0 for a declared part
+
+  constexpr auto operator<=>(const Key&) const = default;
 };
 
 template <class S, class... Es, class F>

@@ -13,8 +13,6 @@ namespace {
 
 using namespace hotfire::explain;
 
-constexpr const char* kKey = "effects.leakage.coefficient";
-
 /// A leaking axis whose leak, searched in logarithms, is told to the relative deviation `told`: measured with noise that
 /// leaves it so. The declared leakage, which does the same, is free if `with_other`.
 struct LeakingAxis {
@@ -58,6 +56,7 @@ struct LeakingAxis {
     CHECK_TRUE(fit(evaluator, fitted, {30, 1, 1e-9, Slopes::exact, nullptr}));
   }
 
+  const Address& leak() const { return fitted.free.front().address; }
   double value() const { return fitted.free.front().value(fitted.u.front()); }
   Intervals profile() const { return profile_intervals(Evaluator<SimplexFamily>(data, Resolution::fine), fitted, 1); }
   double half_of_curvature() const {
@@ -96,7 +95,7 @@ TEST(Profile, OfAParameterThatIsSearchedInLogarithmsAndTellsInProportionTheInter
   const LeakingAxis axis(0.35, false);
   const Intervals intervals = axis.profile();
   CHECK_EQUAL(1U, intervals.size());
-  const auto [low, high] = intervals.at(kKey);
+  const auto [low, high] = intervals.at(axis.leak());
   const double ratio = (high - axis.value()) / (axis.value() - low);
   // Either end is found to 2 % of it; a tenth is left for what is not in proportion.
   DOUBLES_EQUAL(1.0, ratio, 0.14);
@@ -112,7 +111,7 @@ TEST(Profile, WhatAnotherParameterCanStandInForIsToldLess) {
   const LeakingAxis with_other(0.25, true);
   const auto width = [](const LeakingAxis& axis) {
     const auto intervals = axis.profile();
-    const auto [low, high] = intervals.at(kKey);
+    const auto [low, high] = intervals.at(axis.leak());
     return high - low;
   };
   CHECK_TRUE(width(with_other) > width(alone));

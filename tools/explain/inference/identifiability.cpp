@@ -60,7 +60,7 @@ class Identifiability {
   explicit Identifiability(const Fitted<Family>& fitted) : fitted_(fitted), covariance_(covariance_of(fitted.normal)) {
     for (std::size_t k = 0; k < fitted.free.size(); ++k) {
       const FreeParameter& parameter = fitted.free[k];
-      if (!parameter.is_ordinate && !parameter.is_initial_state() && parameter.value(fitted.u[k]) != 0.0) {
+      if (!parameter.is_ordinate() && !parameter.is_initial_state() && parameter.value(fitted.u[k]) != 0.0) {
         considered_.push_back(k);
       }
     }
