@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <compare>
 #include <string_view>
 #include <tuple>
 
@@ -15,7 +14,7 @@ struct Key {
   bool is_effect;
   std::size_t effect_index;  ///< position in the effect list; 0 for a declared part
 
-  constexpr auto operator<=>(const Key&) const = default;
+  bool operator==(const Key&) const = default;
 };
 
 template <class S, class... Es, class F>

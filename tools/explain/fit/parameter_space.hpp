@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,7 +20,11 @@ struct Address {
   std::string_view field;  ///< of the owner; for a point of a table the field of its ordinates
   int point = -1;          ///< of a table; -1: not of a table
 
-  auto operator<=>(const Address&) const = default;
+  bool operator==(const Address&) const = default;
+  bool operator<(const Address& other) const {
+    return std::tie(owner.section, owner.is_effect, owner.effect_index, field, point) <
+           std::tie(other.owner.section, other.owner.is_effect, other.owner.effect_index, other.field, other.point);
+  }
 
   bool is_of_effect() const { return owner.is_effect; }
   bool is_of_effect(std::size_t effect) const { return owner.is_effect && owner.effect_index == effect; }
