@@ -30,7 +30,7 @@ void visit_acting(Parameters& parameters, F&& f) {
   model::visit_effects(parameters, [&]<class E>(std::size_t, const auto& values) { options.push_back(values.option); });
   model::visit_parameters(parameters, [&](const model::Key& key, const auto& field, auto& value) {
     const bool acts = !key.is_effect || (parameters.effects.active[key.effect_index] &&
-                                         (field.options >> options[key.effect_index] & 1U) != 0);
+                                         model::is_used(field.options, options[key.effect_index]));
     if (acts) {
       f(std::string(model::KeyText(key, field.name).view()), value);
     }

@@ -55,7 +55,7 @@ void append_ordinates(const Parameters& base, const Candidate& candidate, const 
     if constexpr (requires { Values::tables(); }) {
       for (const auto& field : Values::tables()) {
         const auto& table = values.*field.member;
-        if (effect != candidate.effect || field.y_typical <= 0.0 || (field.options >> candidate.option & 1U) == 0) {
+        if (effect != candidate.effect || field.y_typical <= 0.0 || !model::is_used(field.options, candidate.option)) {
           continue;
         }
         for (int i = 0; i < table.points; ++i) {
@@ -121,7 +121,7 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
       }
       const auto fields = std::remove_cvref_t<decltype(values)>::fields();
       const bool any =
-          std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return (f.options >> option & 1U) != 0; });
+          std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return model::is_used(f.options, option); });
       if (any) {
         candidates.push_back(std::move(candidate));
       }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/checks.hpp"
 #include "model/key_text.hpp"
 #include "model/numerics/step_size.hpp"
 #include "tools/interface/plant/plant.hpp"
@@ -23,20 +24,6 @@ inline std::string_view meaning_of_channel(std::string_view channel) {
          : channel == "engine"   ? "engine angle as its sensor reads it"
          : channel == "position" ? "position of the mass as its sensor reads it"
                                  : "pressure across the piston as its sensor reads it";
-}
-
-/// The first broken relation between the values of an active effect; empty if there is none.
-template <class Parameters>
-std::string_view broken_effect(const Parameters& axis) {
-  std::string_view broken;
-  model::visit_effects(axis, [&]<class E>(std::size_t index, const auto& values) {
-    if constexpr (requires { E::broken_relation(values); }) {
-      if (broken.empty() && axis.effects.active[index]) {
-        broken = E::broken_relation(values);
-      }
-    }
-  });
-  return broken;
 }
 
 /// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
@@ -72,7 +59,7 @@ struct SimplexAdapter {
     model::visit_keys(parameters, visitor);
   }
 
-  static std::string_view broken(const Parameters& parameters) { return broken_effect(parameters); }
+  static std::string_view broken(const Parameters& parameters) { return model::broken_effect(parameters).relation; }
 
   static const Parameters& of_model(const Parameters& parameters) { return parameters; }
 
@@ -130,7 +117,7 @@ struct DirectAdapter {
     model::visit_keys(parameters, visitor);
   }
 
-  static std::string_view broken(const Parameters& parameters) { return broken_effect(parameters); }
+  static std::string_view broken(const Parameters& parameters) { return model::broken_effect(parameters).relation; }
 
   static const Parameters& of_model(const Parameters& parameters) { return parameters; }
 

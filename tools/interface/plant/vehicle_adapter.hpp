@@ -117,8 +117,8 @@ struct VehicleAdapter {
     std::string_view broken;
     const auto note = [&broken](std::string_view what) { broken = broken.empty() ? what : broken; };
     for (std::size_t e = 0; e < kEngines; ++e) {
-      note(broken_effect(vehicle.axes[2 * e]));
-      note(broken_effect(vehicle.axes[2 * e + 1]));
+      note(model::broken_effect(vehicle.axes[2 * e]).relation);
+      note(model::broken_effect(vehicle.axes[2 * e + 1]).relation);
       if (!vehicle.constant_arms[e]) {
         note(model::broken_relation(vehicle.attach[2 * e], vehicle.attach[2 * e + 1]));
       }
