@@ -248,7 +248,7 @@ TEST(Recording, FileThatExistsIsRefusedWithTheMendAndStaysAsItWas) {
     const auto failure = RecordingFile(path, 1 << 20).create(start);
     CHECK(failure.has_value());
     STRCMP_CONTAINS("run.hfr exists", failure->what.c_str());
-    STRCMP_CONTAINS("--overwrite", failure->mend.c_str());
+    STRCMP_CONTAINS("--overwrite", failure->remedy.c_str());
   }
   UNSIGNED_LONGS_EQUAL(3, std::filesystem::file_size(path));
   UNSIGNED_LONGS_EQUAL(1, files_beside(path));
@@ -351,7 +351,7 @@ TEST(Recording, FileThatCannotBeMadeIsRefusedWithTheMend) {
   const auto failure = nowhere.create(start);
   CHECK(failure.has_value());
   STRCMP_CONTAINS("none/run.hfr: No such file", failure->what.c_str());
-  STRCMP_CONTAINS("name a file", failure->mend.c_str());
+  STRCMP_CONTAINS("name a file", failure->remedy.c_str());
   CHECK(RecordingFile("/dev/null", 1 << 20).create(start).has_value());
 }
 

@@ -53,7 +53,7 @@ GpioSettings settings() {
 std::string refusal(const GpioSettings& wanted) {
   GpiodLines lines(wanted);
   const auto failure = lines.open();
-  return failure ? failure->what + "; " + failure->mend : std::string();
+  return failure ? failure->what + "; " + failure->remedy : std::string();
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ function(copy_tree)
   file(COPY ${ROOT}/README.md ${ROOT}/CONTRIBUTING.md ${ROOT}/CHANGELOG.md DESTINATION ${SCRATCH})
   file(COPY ${ROOT}/examples/README.md DESTINATION ${SCRATCH}/examples)
   file(COPY ${ROOT}/docs DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.md")
-  foreach(folder model hal firmware tools)
+  foreach(folder model hal firmware tools examples)
     file(COPY ${ROOT}/${folder} DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.js"
       PATTERN "*.py")
   endforeach()
@@ -65,6 +65,9 @@ expect_fault(tools/report/page/wrong.js "f(\"The data cannot tell\")" "tools/rep
 expect_fault(model/wrong.hpp "int f();\n/// What a model lacks." "model/wrong.hpp:2: 'lacks', write: is missing in")
 expect_fault(hal/wrong.hpp "int value = 0;  ///< what stands here" "hal/wrong.hpp:1: 'stands'")
 expect_fault(tools/interface/c/wrong.h "/* A value\n * that stands here. */" "tools/interface/c/wrong.h:2: 'stands'")
+expect_fault(tools/wrong "echo \"what the model lacks\"" "tools/wrong:1: 'lacks'")
+expect_fault(examples/cortex-m7/wrong.hpp "/// What stands here." "examples/cortex-m7/wrong.hpp:1: 'stands'")
+expect_fault(docs/wrong.md "It is exact, however much it costs." "'however much', write: at most")
 expect_fault(firmware/wrong.hpp "g(\"a[1]; Whoever runs it\");" "firmware/wrong.hpp:1: 'whoever'")
 
 expect_none(docs/right.md "Understand `mends` and StandsStill.\n```\nthe model lacks friction\n```\nbold")

@@ -13,13 +13,13 @@ namespace {
 
 using namespace hotfire::explain;
 
-/// A leaking axis whose leak, searched in logarithms, is told to the relative deviation `told`: measured with noise that
-/// leaves it so. The declared leakage, which does the same, is free if `with_other`.
+/// A leaking axis whose leak, searched in logarithms, is identified to the relative deviation `deviation`: the noise of the
+/// record is chosen for it. The declared leakage, which does the same, is free if `with_other`.
 struct LeakingAxis {
   Dataset data;
   Fitted<SimplexFamily> fitted;
 
-  LeakingAxis(double told, bool with_other) {
+  LeakingAxis(double deviation, bool with_other) {
     data.channels = {"piston", "engine", "load_pressure"};
     data.used = {true, true, false};
     data.noise = {1.0, 1.0, 1.0};
@@ -45,7 +45,7 @@ struct LeakingAxis {
     // No prior but the data's.
     fitted.free.front().prior_deviation = 0.0;
     fitted.u = {std::log(2e-11)};
-    measure(told);
+    measure(deviation);
     if (with_other) {
       const auto other = declared_parameters<SimplexFamily>(fitted.base, {{"actuator.leakage", 1.0}});
       fitted.free.insert(fitted.free.end(), other.begin(), other.end());
@@ -66,12 +66,12 @@ struct LeakingAxis {
   }
 
  private:
-  void measure(double told) {
+  void measure(double deviation) {
     const std::vector<std::size_t> all{0};
     Eigen::MatrixXd jacobian;
     const Evaluator<SimplexFamily> silent(data, Resolution::fine);
     CHECK_TRUE(silent.differentiate(fitted.base, fitted.free, fitted.u, all, 1, jacobian));
-    data.noise.assign(3, told * jacobian.norm());
+    data.noise.assign(3, deviation * jacobian.norm());
     data.experiments.front().noise = data.noise;
     Prediction truth;
     CHECK_TRUE(silent.predict(fitted.base, fitted.free, fitted.u, 1, truth));
@@ -90,7 +90,8 @@ struct LeakingAxis {
 TEST_GROUP(Profile){};
 
 // What an axis does answers a leak in proportion, so that the error is a parabola over the leak itself and its interval
-// symmetric there. Over its logarithm the curvature gives an interval that reaches twice as far up as down, exp(1.96 told).
+// symmetric there. Over its logarithm the curvature gives an interval that reaches twice as far up as down, exp(1.96
+// deviation).
 TEST(Profile, OfAParameterThatIsSearchedInLogarithmsAndTellsInProportionTheIntervalIsSymmetricInItself) {
   const LeakingAxis axis(0.35, false);
   const Intervals intervals = axis.profile();
@@ -102,11 +103,11 @@ TEST(Profile, OfAParameterThatIsSearchedInLogarithmsAndTellsInProportionTheInter
   CHECK_TRUE(std::exp(axis.half_of_curvature()) > 1.6);
 }
 
-TEST(Profile, AParameterThatIsToldToAPercentKeepsTheIntervalOfTheCurvature) {
+TEST(Profile, AParameterThatIsIdentifiedToAPercentKeepsTheIntervalOfTheCurvature) {
   CHECK_TRUE(LeakingAxis(0.01, false).profile().empty());
 }
 
-TEST(Profile, WhatAnotherParameterCanStandInForIsToldLess) {
+TEST(Profile, AnotherParameterOfTheSameEffectWidensTheInterval) {
   const LeakingAxis alone(0.25, false);
   const LeakingAxis with_other(0.25, true);
   const auto width = [](const LeakingAxis& axis) {

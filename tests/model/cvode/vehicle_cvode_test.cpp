@@ -73,16 +73,16 @@ TEST(VehicleAgreesWithCvode, WithFrictionThatVibrationLowers) {
 
 // The components of a bristle vector meet through the length of the slip alone: each axis can carry its own.
 TEST(VehicleAgreesWithCvode, WithTheFrictionOfTheBearingToldAxisByAxis) {
-  Taos::Parameters told = smooth();
-  told.modes = {};
-  told.gimbals[0].compliant = false;
-  auto& bearing = told.gimbals[0].friction;
+  Taos::Parameters rigid = smooth();
+  rigid.modes = {};
+  rigid.gimbals[0].compliant = false;
+  auto& bearing = rigid.gimbals[0].friction;
   bearing.option = 2;
   bearing.coulomb_torque = 1e4;
   bearing.static_ratio = 1.2;
   bearing.damping = 500.0;
-  const VehicleRows reference = run_reference<Taos>(told);
-  Taos::Parameters parameters = told;
+  const VehicleRows reference = run_reference<Taos>(rigid);
+  Taos::Parameters parameters = rigid;
   parameters.gimbals[0].friction.coulomb_torque = 0.0;
   constexpr std::size_t kFriction = index_in<model::GimbalFriction>(Taos::Effects{});
   for (auto& axis : parameters.axes) {

@@ -49,15 +49,15 @@ void examine(doctor::Patient patient, bool as_json) {
       list.push_back({{"check", finding.check},
                       {"level", finding.level == Level::bad ? "bad" : name_of(finding.level)},
                       {"what", finding.what},
-                      {"remedy", finding.mend}});
+                      {"remedy", finding.remedy}});
     }
     const Json result{{"verdict", good ? "good" : "bad"}, {"findings", list}};
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     for (const Finding& finding : findings) {
       std::cout << fmt::format("{:<6}  {:<16} {}\n", name_of(finding.level), finding.check, finding.what);
-      if (!finding.mend.empty()) {
-        std::cout << fmt::format("{:<25}remedy: {}\n", "", finding.mend);
+      if (!finding.remedy.empty()) {
+        std::cout << fmt::format("{:<25}remedy: {}\n", "", finding.remedy);
       }
     }
     std::cout << fmt::format("\nverdict: {} ({} bad, {} to consider)\n", good ? "good" : "BAD", count(Level::bad),
