@@ -62,7 +62,7 @@ Json describe_vehicle(const std::filesystem::path& path) {
         }
         return {{"kind", "vehicle"},
                 {"name", vehicle.name},
-                {"topology", Parameters::Vehicle::topology},
+                {"topology", std::is_same_v<Parameters, TaosParameters> ? "taos" : "masv"},
                 {"axes", parameters.axes.size()},
                 {"modes", parameters.modes.modes},
                 {"compliant_gimbal", parameters.gimbals.front().compliant},
