@@ -44,7 +44,7 @@ TEST(DoctorCan, HealthyInterfaceHasNothingButGoodFindings) {
   STRCMP_EQUAL("1000000 bit/s", found("can0 bit rate").what.c_str());
 }
 
-TEST(DoctorCan, MachineWithoutCanIsToldHowToTry) {
+TEST(DoctorCan, MachineWithoutCanIsShownHowToTry) {
   std::filesystem::remove_all(patient.root / "sys/class/net/can0");
   expect_remedy(found("CAN"), Level::advice, "no CAN interface", "modprobe vcan");
 }
@@ -104,7 +104,7 @@ TEST(DoctorCan, VirtualBusIsSaidToFitAnySchedule) {
   expect_remedy(found("can0 bit rate"), Level::advice, "virtual", "hotfire check");
 }
 
-TEST(DoctorCan, MachineWithoutIpIsToldToInstallIt) {
+TEST(DoctorCan, MachineWithoutIpIsAdvisedToInstallIt) {
   say("");
   expect_remedy(found("can0"), Level::advice, "reported nothing", "apt install iproute2");
   say("Object \"link\" is unknown");

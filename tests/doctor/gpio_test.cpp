@@ -51,7 +51,7 @@ TEST(DoctorGpio, LineInUseOrMissingIsBad) {
   expect_remedy(found("line stop"), Level::bad, "no GPIO line has this name", "gpio-line-names");
 }
 
-TEST(DoctorGpio, MachineWithoutGpioinfoIsToldToInstallIt) {
+TEST(DoctorGpio, MachineWithoutGpioinfoIsAdvisedToInstallIt) {
   patient.lines = {"estop"};
   files.said.clear();
   expect_remedy(found("lines"), Level::advice, "reported nothing", "apt install gpiod");

@@ -42,7 +42,7 @@ TEST(DoctorMachine, MachineThatIsSetUpWellHasNothingButGoodFindings) {
   }
 }
 
-TEST(DoctorMachine, MachineThatTellsNothingIsNotCalledGood) {
+TEST(DoctorMachine, MachineThatReportsNothingIsNotCalledGood) {
   test::PatientFiles nothing;
   Patient silent = nothing.patient();
   silent.root /= "nowhere";

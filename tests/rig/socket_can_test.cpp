@@ -335,7 +335,7 @@ TEST(SocketCan, CycleAllocatesNothing) {
   UNSIGNED_LONGS_EQUAL(0, guard.allocations());
 }
 
-TEST(SocketCan, WhatCannotWorkIsRefusedWithTheMend) {
+TEST(SocketCan, WhatCannotWorkIsRefusedWithTheRemedy) {
   const auto refusal = [](const std::string& interface, bool fd) {
     SocketCan other({interface, {}, {}, fd});
     const auto failure = other.open();

@@ -29,7 +29,7 @@ Fitted<SimplexFamily> axis(double along, double each) {
 
 TEST_GROUP(Identifiability){};
 
-TEST(Identifiability, OfANotchOnlyItsFrequencyIsTold) {
+TEST(Identifiability, OfANotchOnlyItsFrequencyIsIdentified) {
   const auto sentences = not_separated(axis(1e7, 0.0));
   CHECK_EQUAL(1U, sentences.size());
   STRCMP_CONTAINS("K_T R^2 / J", sentences.front().c_str());
@@ -41,7 +41,7 @@ TEST(Identifiability, OfANotchOnlyItsFrequencyIsTold) {
 
 TEST(Identifiability, NoSentenceWhereEachIsDetermined) { CHECK_TRUE(not_separated(axis(1e7, 1e6)).empty()); }
 
-TEST(Identifiability, WhereTheDataSayNothingTheDeclarationStands) {
+TEST(Identifiability, WhereTheDataSayNothingTheDeclarationRemains) {
   const auto sentences = not_separated(axis(0.0, 0.0));
   CHECK_EQUAL(1U, sentences.size());
   STRCMP_CONTAINS("say little about structure.stiffness, engine.inertia", sentences.front().c_str());

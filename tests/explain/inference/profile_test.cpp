@@ -92,7 +92,7 @@ TEST_GROUP(Profile){};
 // What an axis does answers a leak in proportion, so that the error is a parabola over the leak itself and its interval
 // symmetric there. Over its logarithm the curvature gives an interval that reaches twice as far up as down, exp(1.96
 // deviation).
-TEST(Profile, OfAParameterThatIsSearchedInLogarithmsAndTellsInProportionTheIntervalIsSymmetricInItself) {
+TEST(Profile, OfAParameterThatIsSearchedInLogarithmsAndIsKnownInProportionTheIntervalIsSymmetricInItself) {
   const LeakingAxis axis(0.35, false);
   const Intervals intervals = axis.profile();
   CHECK_EQUAL(1U, intervals.size());

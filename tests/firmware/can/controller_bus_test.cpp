@@ -57,7 +57,7 @@ TEST_GROUP(CanControllerBus) {
   hal::Command pistons;
 };
 
-TEST(CanControllerBus, WhatItCommandsIsWhatThePlantIsToldAndWhatThePlantReadsIsWhatItSees) {
+TEST(CanControllerBus, WhatItCommandsIsWhatThePlantReceivesAndWhatThePlantReadsIsWhatItSees) {
   hal::Reading commands;
   hal::Reading reading;
   hal::Command received;

@@ -72,7 +72,7 @@ TEST(VehicleAgreesWithCvode, WithFrictionThatVibrationLowers) {
 }
 
 // The components of a bristle vector meet through the length of the slip alone: each axis can carry its own.
-TEST(VehicleAgreesWithCvode, WithTheFrictionOfTheBearingToldAxisByAxis) {
+TEST(VehicleAgreesWithCvode, WithTheFrictionOfTheBearingGivenAxisByAxis) {
   Taos::Parameters rigid = smooth();
   rigid.modes = {};
   rigid.gimbals[0].compliant = false;

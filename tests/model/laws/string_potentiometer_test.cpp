@@ -33,7 +33,7 @@ TEST(StringPotentiometers, MeasureTheDistanceOfTheirTwoEnds) {
   }
 }
 
-TEST(StringPotentiometers, CannotTellTheStructuresMotionFromTheEngines) {
+TEST(StringPotentiometers, CannotSeparateTheStructuresMotionFromTheEngines) {
   const auto anchors = Strings::representative();
   const Strings strings(anchors);
   auto moved_anchors = anchors;
@@ -78,7 +78,7 @@ TEST(StringPotentiometers, ReadInStepsAndWithTheNoiseTheyAreGiven) {
   DOUBLES_EQUAL(0.123, ideal.read(state, 0.123, 5.0, 1e-3), 0.0);
 }
 
-TEST(StringPotentiometers, MustTellPitchFromYaw) {
+TEST(StringPotentiometers, MustSeparatePitchFromYaw) {
   CHECK_TRUE(Strings::broken_relation(Strings::representative()).empty());
   auto slack = Strings::representative();
   slack[2] = {0.5, 0.1, 0.2, 0.5, 0.1, 0.2};
