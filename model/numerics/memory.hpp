@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "model/numerics/operators.hpp"
 #include "model/numerics/scalar.hpp"
 
 namespace hotfire::model {
@@ -85,9 +86,9 @@ class MemoryState {
       case Memory::delay:
         return delayed(params.time, s, h);
       case Memory::lag:
-        return low_pass(params.time, s, h);
+        return lag_of_held(value_, s, params.time, h);
       case Memory::washout:
-        return s - low_pass(params.time, s, h);
+        return s - lag_of_held(value_, s, params.time, h);
       case Memory::resonance:
       case Memory::band_pass: {
         // Implicit midpoint rule: stable at any frequency.
@@ -129,7 +130,7 @@ class MemoryState {
     value_ = s;
     for (std::size_t k = 0; k < kMostStops; ++k) {
       if (static_cast<int>(k) < count) {
-        stops_[k] = clamp_symmetric<S>(stops_[k] + change, S(widths[k]));
+        stops_[k] = stop_after<S>(stops_[k], change, S(widths[k]));
       }
     }
     return stops_;
@@ -151,13 +152,6 @@ class MemoryState {
       since_ = 0.0;
       age_ = 0;
     }
-  }
-
-  S low_pass(const S& time, const S& s, double h) noexcept {
-    const S behind = value_ - s;
-    const S left = fading_exponential<S>(h / time);
-    value_ = s + behind * left;
-    return s + behind * (1.0 - left) * (time / h);
   }
 
   /// The argument `time` ago, between samples that are as many steps apart as the ring needs to reach so far.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/effects/unlisted/unlisted.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -73,12 +73,14 @@ struct UnlistedDeflection {
   static Spring<S> step(const Params<S>& params, State<S>& state, const Spring<S>& input) noexcept {
     Spring<S> output = input;
     if (params.option == 2) {
-      output.deflection = input.deflection - params.creep_share * relaxed(state, input, params.creep_time);
+      output.deflection =
+          input.deflection - params.creep_share * lag_of_moving(state.relaxed, input.deflection, params.creep_time, input.h);
     } else if (params.option == 4) {
       output.deflection =
-          input.deflection + params.damping_share * (input.deflection - relaxed(state, input, params.damping_time));
+          input.deflection + params.damping_share * (input.deflection - lag_of_moving(state.relaxed, input.deflection,
+                                                                                      params.damping_time, input.h));
     } else if (params.option == 5) {
-      state.stretch = clamp_symmetric<S>(state.stretch + (input.deflection - state.last), params.slip_width);
+      state.stretch = stop_after<S>(state.stretch, input.deflection - state.last, params.slip_width);
       state.last = input.deflection;
       output.deflection += params.slip_share * state.stretch;
     } else if (params.option == 3) {
@@ -87,15 +89,6 @@ struct UnlistedDeflection {
       output.deflection += unlisted::value_at<S>(params.table, params.option == 0 ? input.deflection : input.angle);
     }
     return output;
-  }
-
- private:
-  /// What follows the deflection with a time constant, mean over the step.
-  template <class S>
-  static S relaxed(State<S>& state, const Spring<S>& input, const S& time) noexcept {
-    const S start = state.relaxed;
-    state.relaxed = input.deflection + (start - input.deflection) * fading_exponential<S>(input.h / time);
-    return 0.5 * (start + state.relaxed);
   }
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/effects/unlisted/unlisted.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -53,9 +53,8 @@ struct UnlistedFlow {
   static S step(const Params<S>& params, State<S>& state, const Hydraulics<S>& input) noexcept {
     if (params.option == 3) {
       const S magnitude = input.flow * sign_of(input.flow);
-      const S start = state.recent;
-      state.recent = magnitude + (start - magnitude) * fading_exponential<S>(input.h / params.memory);
-      return input.flow * unlisted::value_at<S>(params.table, S(0.5 * (start + state.recent)));
+      const S remembered = lag_of_moving(state.recent, magnitude, params.memory, input.h);
+      return input.flow * unlisted::value_at<S>(params.table, remembered);
     }
     const Precise<S>& x = params.option == 0 ? input.load_pressure : params.option == 1 ? input.opening : input.time;
     return unlisted::value_at<S>(params.table, x);

@@ -6,7 +6,7 @@
 #include "model/effects/command/rate_limit.hpp"
 #include "model/effects/unlisted/unlisted.hpp"
 #include "model/numerics/delay_line.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -106,7 +106,7 @@ struct UnlistedSignal {
         return state.earlier.pass(input.value, value_of(delay) < 0.0 ? S{0.0} : delay, input.h);
       }
       if (params.option == 4) {
-        return lagged(state, input, params.lag_time);
+        return lag_of_held(state.lagged, input.value, params.lag_time, input.h);
       }
     }
     switch (params.option) {
@@ -117,16 +117,6 @@ struct UnlistedSignal {
       default:
         return input.value + unlisted::periodic(params, params.amplitude, input.time);
     }
-  }
-
- private:
-  /// What follows the signal with a time constant, mean over a step in which the signal is held.
-  template <class S>
-  static S lagged(State<S>& state, const Signal<S>& input, const S& time) noexcept {
-    const S behind = state.lagged - input.value;
-    const S left = fading_exponential<S>(input.h / time);
-    state.lagged = input.value + behind * left;
-    return input.value + behind * (1.0 - left) * (time / input.h);
   }
 };
 

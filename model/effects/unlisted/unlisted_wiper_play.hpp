@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/effects/unlisted/unlisted.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -41,8 +41,8 @@ struct UnlistedWiperPlay {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
-    state.distance = clamp_symmetric<S>(state.distance + (input.value - state.last),
-                                        params.option == 0 ? params.half_width : params.half_angle);
+    state.distance =
+        stop_after<S>(state.distance, input.value - state.last, params.option == 0 ? params.half_width : params.half_angle);
     state.last = input.value;
     return input.value - state.distance;
   }
