@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Writes replaced words into a scratch copy of the pages and the sources, and expects english.cmake to name each.
 cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/look.cmake)
 
 function(copy_tree)
   file(REMOVE_RECURSE ${SCRATCH})
@@ -13,15 +14,6 @@ function(copy_tree)
   endforeach()
 endfunction()
 
-function(look status output)
-  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${ROOT}/tools/style/english.cmake
-    RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  # CMake wraps its messages.
-  string(REGEX REPLACE "[ \n]+" " " text "${text}")
-  set(${status} ${result} PARENT_SCOPE)
-  set(${output} "${text}" PARENT_SCOPE)
-endfunction()
-
 # expect_fault(FILE TEXT FAULT): with TEXT at the end of FILE the check fails, and its message has FAULT.
 function(expect_fault file text fault)
   set(old "")
@@ -29,7 +21,7 @@ function(expect_fault file text fault)
     file(READ ${SCRATCH}/${file} old)
   endif()
   file(APPEND ${SCRATCH}/${file} "${text}\n")
-  look(status output)
+  look(english status output)
   file(WRITE ${SCRATCH}/${file} "${old}")
   string(FIND "${output}" "${fault}" position)
   if(status EQUAL 0 OR position EQUAL -1)
@@ -40,7 +32,7 @@ endfunction()
 # expect_none(FILE TEXT): a new FILE with TEXT is allowed.
 function(expect_none file text)
   file(WRITE ${SCRATCH}/${file} "${text}\n")
-  look(status output)
+  look(english status output)
   file(REMOVE ${SCRATCH}/${file})
   if(NOT status EQUAL 0)
     message(SEND_ERROR "${file} with '${text}' is allowed, but: ${output}")
@@ -48,10 +40,7 @@ function(expect_none file text)
 endfunction()
 
 copy_tree()
-look(status output)
-if(NOT status EQUAL 0)
-  message(FATAL_ERROR "the tree as it is: ${output}")
-endif()
+look_at_tree(english)
 
 expect_fault(docs/wrong.md "# A page\n\nThe effect is told by the record." "docs/wrong.md:3: 'told', write: identified")
 expect_fault(docs/trials.md "Mend the record; then go on." "'mend', write: fix")
