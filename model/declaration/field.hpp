@@ -51,6 +51,18 @@ struct Choice {
   int Owner::*member;
 };
 
+/// The `options` of a field that belongs to some laws or channels of its owner: `only(Law::dahl, Law::lugre)`.
+template <class Law, class... Laws>
+constexpr unsigned only(Law law, Laws... laws) {
+  return ((1U << static_cast<unsigned>(law)) | ... | (1U << static_cast<unsigned>(laws)));
+}
+
+/// The law, or the channel, that the parameters of effect E have chosen.
+template <class E, class Params>
+constexpr typename E::Law law_of(const Params& params) noexcept {
+  return static_cast<typename E::Law>(params.option);
+}
+
 /// True if the law or channel `option` of the owner uses a field or a curve with these options.
 constexpr bool is_used(unsigned options, int option) { return (options >> static_cast<unsigned>(option) & 1U) != 0; }
 

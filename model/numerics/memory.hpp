@@ -32,15 +32,6 @@ inline constexpr std::array<std::string_view, 13> kMemoryNames{"none",      "del
                                                                "band_pass", "stops",      "slew",    "hold",    "quantise",
                                                                "dead_zone", "saturation", "periodic"};
 
-/// A bit for each of the memories: which of them use a parameter.
-constexpr unsigned memories(std::initializer_list<Memory> kinds) noexcept {
-  unsigned bits = 0;
-  for (const Memory kind : kinds) {
-    bits |= 1U << static_cast<unsigned>(kind);
-  }
-  return bits;
-}
-
 template <class S>
 struct MemoryParameters {
   Memory kind = Memory::none;

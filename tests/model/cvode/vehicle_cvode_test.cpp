@@ -65,7 +65,7 @@ TEST(VehicleAgreesWithCvode, AtHotFireWithEveryEffect) {
 TEST(VehicleAgreesWithCvode, WithFrictionThatVibrationLowers) {
   Taos::Parameters parameters = hot_fire<Taos>();
   auto& friction = parameters.gimbals[0].friction;
-  friction.option = model::BearingFriction<double>::kVibrated;
+  friction.choose(model::BearingFriction<double>::Law::vibrated_lugre);
   friction.vibration_ratio = 0.4;
   friction.vibration_velocity = 0.02;
   check_agreement("hot fire, vibrated_lugre", parameters);
@@ -77,7 +77,7 @@ TEST(VehicleAgreesWithCvode, WithTheFrictionOfTheBearingGivenAxisByAxis) {
   rigid.modes = {};
   rigid.gimbals[0].compliant = false;
   auto& bearing = rigid.gimbals[0].friction;
-  bearing.option = 2;
+  bearing.choose(model::BearingFriction<double>::Law::lugre);
   bearing.coulomb_torque = 1e4;
   bearing.static_ratio = 1.2;
   bearing.damping = 500.0;

@@ -68,7 +68,7 @@ struct VehicleAdapter {
       add("vibration." + axis_name(i), "rad/s", "vibration of the bearing as slip velocity, held over a period", 0.0,
           -kLargest);
       // A law that has the vibration already and a recorded one would be the same physics twice.
-      if (parameters.vehicle.gimbals[i / 2].friction.option == model::BearingFriction<S>::kVibrated) {
+      if (parameters.vehicle.gimbals[i / 2].friction.law() == model::BearingFriction<S>::Law::vibrated_lugre) {
         variables.back().lower = 0.0;
         variables.back().upper = 0.0;
       }
