@@ -78,7 +78,7 @@ void add_doctor(CLI::App& program) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("doctor", "Is this machine fit for a real-time run? Each finding comes with its remedy");
+      program.add_subcommand("doctor", "Check that this machine is fit for a real-time run; each finding has a remedy");
   command->add_option("--cpu", options->patient.cpu, "the CPU that the loop will have")->check(CLI::Range(0, 1023));
   command->add_option("--can", options->patient.can, "CAN interface that must be there; default: look at all");
   command->add_option("--line", options->patient.lines, "GPIO line that must be there, by name");
