@@ -6,6 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "model/checks.hpp"
 #include "model/key_text.hpp"
 
 namespace hotfire::model {
@@ -45,14 +46,10 @@ class ImageFiller {
 
   template <class Options>
   constexpr void option(const KeyText& key, const Options& options, int& option) {
-    const std::string_view word = take(key.view(), {}).word;
-    for (std::size_t i = 0; i < options.size(); ++i) {
-      if (options[i] == word) {
-        option = static_cast<int>(i);
-        return;
-      }
+    option = option_named(options, take(key.view(), {}).word);
+    if (option < 0) {
+      image_word_is_none_of_the_options();
     }
-    image_word_is_none_of_the_options();
   }
 
   template <class Field, class Table>
@@ -62,10 +59,13 @@ class ImageFiller {
     while (is_next(x_key.view())) {
       const KeyText index("", static_cast<int>(points), "");
       const double x = take(x_key.view(), index.view()).value;
-      if (points == Table::kCapacity || (points > 0 && !(x > table.x[points - 1]))) {
+      if (points == Table::kCapacity) {
         image_table_is_too_long_or_does_not_rise();
       }
       table.x[points] = S(x);
+      if (!rises(table.x, points)) {
+        image_table_is_too_long_or_does_not_rise();
+      }
       table.y[points] = S(bounded(take(y_key.view(), index.view()), field.y_lower, field.y_upper));
       ++points;
     }
@@ -96,7 +96,7 @@ class ImageFiller {
   }
 
   static constexpr double bounded(const ImageEntry& entry, double lower, double upper) {
-    if (!(entry.value >= lower && entry.value <= upper)) {
+    if (!is_inside(entry.value, lower, upper)) {
       image_value_is_outside_its_bounds();
     }
     return entry.value;

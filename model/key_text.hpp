@@ -22,6 +22,8 @@ class KeyText {
     append(name);
   }
 
+  constexpr KeyText(const Key& owner, std::string_view name) : KeyText({}, owner.is_effect, owner.section, name) {}
+
   /// A name with a number from 0 to 99, "string1", and what follows it.
   constexpr KeyText(std::string_view name, int number, std::string_view end) {
     append(name);

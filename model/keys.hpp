@@ -13,6 +13,8 @@ struct Key {
   std::string_view section;
   bool is_effect;
   std::size_t effect_index;  ///< position in the effect list; 0 for a declared part
+
+  bool operator==(const Key&) const = default;
 };
 
 template <class S, class... Es, class F>

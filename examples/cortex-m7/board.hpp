@@ -6,7 +6,7 @@
 #include <span>
 
 /// What the example needs of a board, and no more. `board.cpp` has it for the MPS2 with the image AN500, a Cortex-M7, which
-/// QEMU runs. For another board, write these functions and the memory map in `board.ld` anew.
+/// QEMU runs. For another board, write these functions and the memory map in `board.ld`.
 namespace board {
 
 /// A file on the host of a debugger or of QEMU (semihosting). A board in a rig has its bus in its place.
@@ -36,7 +36,7 @@ void print(std::uint32_t number) noexcept;
 std::uint32_t now() noexcept;
 
 /// The instructions since a moment at most 160 million instructions ago, if QEMU runs with `-icount shift=10`: it then gives
-/// each instruction 1024 ns, and the timer of the MPS2 tells them at 25 MHz. On silicon this is a time, not a count.
+/// each instruction 1024 ns, and the timer of the MPS2 counts them at 25 MHz. On silicon this is a time, not a count.
 std::uint32_t instructions_since(std::uint32_t moment) noexcept;
 
 /// Paints the stack that is free, and how deep it has been since [bytes].

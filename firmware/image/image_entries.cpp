@@ -48,8 +48,7 @@ void read_list(Entries& entries, const std::string& key, double lower, double up
   for (std::size_t i = 0; i < values.size() && good; ++i) {
     char* end = nullptr;
     const double value = std::strtod(next, &end);
-    // Written so that NaN is refused as well.
-    good = end != next && value >= lower && value <= upper && *end == (i + 1 < values.size() ? ',' : '\0');
+    good = end != next && model::is_inside(value, lower, upper) && *end == (i + 1 < values.size() ? ',' : '\0');
     values[i] = good ? value : lower;
     next = end + 1;
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware/text/text.hpp"
+#include "model/checks.hpp"
 
 namespace hotfire::firmware {
 
@@ -103,12 +104,13 @@ int read_word(Entries& entries, const std::string& key, const Words& words) {
   if (entry == nullptr) {
     return 0;
   }
+  const int option = model::option_named(words, entry->value);
+  if (option >= 0) {
+    return option;
+  }
   std::string allowed = "allowed are";
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (entry->value == words[i]) {
-      return static_cast<int>(i);
-    }
-    allowed.append(" ").append(words[i]);
+  for (const std::string_view word : words) {
+    allowed.append(" ").append(word);
   }
   entries.refuse(*entry, allowed);
   return 0;

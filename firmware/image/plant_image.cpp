@@ -9,10 +9,13 @@
 
 #include "firmware/image/image_entries.hpp"
 #include "firmware/text/text.hpp"
+#include "model/checks.hpp"
 #include "model/vehicle_keys.hpp"
 
 namespace hotfire::firmware {
 namespace {
+
+constexpr double kLargest = std::numeric_limits<double>::max();
 
 /// Fills the parameters it is shown (`model::visit_keys`, `model::visit_vehicle_keys`) from the entries.
 class Filler {
@@ -43,8 +46,10 @@ class Filler {
       if (!entries_.has(x) && !entries_.has(y)) {
         return;
       }
-      const double lowest = i == 0 ? -HUGE_VAL : std::nextafter(table.x[i - 1], HUGE_VAL);
-      table.x[i] = read_bounded(entries_, x, lowest, 1.7e308, field.x_unit);
+      table.x[i] = read_bounded(entries_, x, -kLargest, kLargest, field.x_unit);
+      if (const Entry* entry = entries_.take(x); entry != nullptr && !model::rises(table.x, i)) {
+        entries_.refuse(*entry, "must be above the value before it");
+      }
       table.y[i] = read_bounded(entries_, y, field.y_lower, field.y_upper, field.y_unit);
       table.points = static_cast<int>(i) + 1;
     }
@@ -71,7 +76,6 @@ struct FaultyPlant {
 };
 
 PlayedFault read_fault(Entries& entries, const std::string& prefix, const FaultyPlant& plant) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
   constexpr double kForGood = std::numeric_limits<double>::infinity();
   PlayedFault fault;
   fault.kind = static_cast<PlayedKind>(read_word(entries, prefix + "kind", kPlayedKinds));
@@ -138,7 +142,7 @@ std::vector<PlayedFault> read_faults(Entries& entries, const FaultyPlant& plant)
   return faults;
 }
 
-/// Refuses what of some values contradicts the rest; `broken` is empty if nothing does.
+/// Refuses values that contradict each other; `broken` is empty if none do.
 void refuse_broken(Entries& entries, const std::string& key, std::string_view broken) {
   if (!broken.empty()) {
     entries.refuse(key + ": " + std::string(broken));
@@ -147,12 +151,8 @@ void refuse_broken(Entries& entries, const std::string& key, std::string_view br
 
 template <class Parameters>
 void refuse_broken_effects(Entries& entries, const std::string& prefix, const Parameters& axis) {
-  model::visit_effects(axis, [&]<class E>(std::size_t index, const auto& values) {
-    if constexpr (requires { E::broken_relation(values); }) {
-      refuse_broken(entries, prefix + "effects." + std::string(E::name),
-                    axis.effects.active[index] ? E::broken_relation(values) : std::string_view{});
-    }
-  });
+  const model::BrokenEffect broken = model::broken_effect(axis);
+  refuse_broken(entries, prefix + "effects." + std::string(broken.effect), broken.relation);
 }
 
 template <class Model>

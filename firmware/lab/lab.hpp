@@ -131,8 +131,8 @@ class Lab {
   /// A command that is not finite is a fault and is not sent; nor is it handed on, as the loop of a plant would end at it.
   void leave_out_what_is_not_finite() noexcept {
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
-      const double stands = std::isfinite(positions_[i]) ? positions_[i] / settings_.piston_per_command : 0.0;
-      outputs_.commands[i] = std::isfinite(outputs_.commands[i]) ? outputs_.commands[i] : stands;
+      const double present = std::isfinite(positions_[i]) ? positions_[i] / settings_.piston_per_command : 0.0;
+      outputs_.commands[i] = std::isfinite(outputs_.commands[i]) ? outputs_.commands[i] : present;
     }
   }
 

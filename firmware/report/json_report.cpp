@@ -89,7 +89,7 @@ void add_real_time(Json& json, const Session& session) {
   for (const hal::Failure& failure : session.failures) {
     json.open();
     json.add("what", failure.what);
-    json.add("remedy", failure.mend);
+    json.add("remedy", failure.remedy);
     json.close();
   }
   json.close_list();

@@ -13,7 +13,7 @@
 namespace hotfire::firmware {
 
 void complain(const hal::Failure& failure) {
-  std::fprintf(stderr, "hotfire-rt: %s\n  remedy: %s\n", failure.what.c_str(), failure.mend.c_str());
+  std::fprintf(stderr, "hotfire-rt: %s\n  remedy: %s\n", failure.what.c_str(), failure.remedy.c_str());
 }
 
 CanSession::CanSession(const Options& options, const can::NodeIds& ids)

@@ -82,7 +82,7 @@ constexpr OptionLine kLines[] = {
      "plant image; `hotfire plant --model M.toml` makes it from a model file. Without it\n"
      "`timing` runs the reference axis with every effect active",
      [](const std::string& value, Options& o) { return o.image = value, std::string(); }},
-    {"--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface, can0 say; default sim", read_bus},
+    {"--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface such as can0; default sim", read_bus},
     {"--gpio", "CHIP", "lab: the chip with its lines, by path, name or label",
      [](const std::string& value, Options& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }},
     {"--confirm", "DIGEST", "lab: the profile's digest, as `hotfire check` prints it to the person who has read the profile",
@@ -97,19 +97,19 @@ constexpr OptionLine kLines[] = {
      read_layout},
     {"--command-per-current", "X", "command that a servovalve current on a CAN bus represents [rad/A]; default 10",
      [](const std::string& value, Options& o) { return read_number(value, 1e-6, 1e6, o.command_per_current); }},
-    {"--command-age-ms", "X", "a command on a CAN bus that is older counts as none: no current; default 100",
+    {"--command-age-ms", "X", "greatest age of a command on a CAN bus; an older one gives no current; default 100",
      [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }},
     {"--heartbeat-age-ms", "X",
-     "plant: a controller whose HEARTBEAT has been heard and is older gets no current, whatever it commands; default 50",
+     "plant: greatest age of a HEARTBEAT, after the first one; with an older one no command gives a current; default 50",
      [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }},
     {"--key", "FILE",
      "commands and readings are authenticated with the key in this file, 32 hexadecimal digits; FD layouts only",
      [](const std::string& value, Options& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }},
     {"--freshness-ms", "X", "how far the clocks of two nodes that share a key may be apart; default 1000",
      [](const std::string& value, Options& o) { return read_number(value, 1.0, 60'000.0, o.freshness_ms); }},
-    {"--bit-rate", "N", "of the CAN bus, for the check of its load; default what the interface says",
+    {"--bit-rate", "N", "bit rate of the CAN bus, for the check of its load; default: that of the interface",
      [](const std::string& value, Options& o) { return read_number(value, 1e4, 1e6, o.bit_rate); }},
-    {"--data-bit-rate", "N", "of the data of FD frames; default what the interface says",
+    {"--data-bit-rate", "N", "bit rate of the data of FD frames; default: that of the interface",
      [](const std::string& value, Options& o) { return read_number(value, 1e4, 8e6, o.data_bit_rate); }},
     {"--max-lost", "N", "verdict: no more frames than this lost, repeated, refused or out of order on a CAN bus",
      [](const std::string& value, Options& o) {
@@ -118,7 +118,7 @@ constexpr OptionLine kLines[] = {
     {"--period-us", "N", "period, 250 to 10000; default 1000. Longer than 500 is split into equal steps", read_period},
     {"--cycles", "N", "end after N cycles, 0: when interrupted; default 0 for plant, 10000 for timing",
      [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.cycles); }},
-    {"--warm-up", "N", "cycles before those, counted apart; default 100",
+    {"--warm-up", "N", "cycles before those, counted separately; default 100",
      [](const std::string& value, Options& o) {
        return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.warm_up_cycles);
      }},
@@ -136,14 +136,14 @@ constexpr OptionLine kLines[] = {
        return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
      }},
     {"--actuators", "N",
-     "plants of a model of one axis, 1 to 8, each with a command of its own; default 1. A vehicle (taos,\n"
+     "number of plants of a model of one axis, 1 to 8, each with its own command; default 1. A vehicle (taos,\n"
      "masv) has as many as it has axes, and needs no --actuators",
      [](const std::string& value, Options& o) {
        o.actuators_given = true;
        return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
      }},
     {"--strings", "",
-     "plant on a CAN bus: string potentiometers too, four an engine, whose pitch and yaw are actuators\n"
+     "plant on a CAN bus: string potentiometers too, four for each engine. Its pitch and yaw are actuators\n"
      "1 and 2, 3 and 4 and so on",
      [](const std::string&, Options& o) { return o.strings = true, std::string(); }},
     {"--load-pressure", "",
@@ -155,16 +155,15 @@ constexpr OptionLine kLines[] = {
      [](const std::string& value, Options& o) {
        return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
      }},
-    {"--sync-patience-ms", "X",
-     "how long a late SYNC is waited for before its cycle is run without it; default half a period",
+    {"--sync-patience-ms", "X", "longest wait for a late SYNC; then its cycle runs without it; default half a period",
      [](const std::string& value, Options& o) { return read_number(value, 0.0, 1e6, o.sync_patience_ms.emplace()); }},
-    {"--lockstep", "", "controller: no cycle before the plant has answered the one before",
+    {"--lockstep", "", "controller: each cycle begins after the plant has answered the one before",
      [](const std::string&, Options& o) { return o.lockstep = true, std::string(); }},
     {"--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`",
      [](const std::string& value, Options& o) { return o.recording = value, std::string(); }},
     {"--overwrite", "", "replace an older file that --record names, which is refused otherwise",
      [](const std::string&, Options& o) { return o.overwrite = true, std::string(); }},
-    {"--record-buffer-s", "X", "how long the disk may stall before cycles are dropped; default 8",
+    {"--record-buffer-s", "X", "stall of the disk that the buffer covers; after it cycles are dropped; default 8",
      [](const std::string& value, Options& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }},
     {"--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384",
      [](const std::string& value, Options& o) {
@@ -172,15 +171,15 @@ constexpr OptionLine kLines[] = {
      }},
     {"--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0",
      [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped); }},
-    {"--command", "SHAPE", "what bus sim, or the controller, commands: steps (default), sine or rest",
+    {"--command", "SHAPE", "command of bus sim or of the controller: steps (default), sine or rest",
      [](const std::string& value, Options& o) {
        return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);
      }},
-    {"--amplitude", "X", "of the command, in the plant's unit (rad, or the record's force); default 0.01",
+    {"--amplitude", "X", "amplitude of the command, in the plant's unit (rad, or the record's force); default 0.01",
      [](const std::string& value, Options& o) { return read_number(value, -1e9, 1e9, o.source.amplitude); }},
-    {"--frequency", "HZ", "of the command; default 0.5",
+    {"--frequency", "HZ", "frequency of the command; default 0.5",
      [](const std::string& value, Options& o) { return read_number(value, 0.0, 1000.0, o.source.frequency); }},
-    {"--json", "", "print the result as JSON, shaped as cyclictest's",
+    {"--json", "", "print the result as JSON, in the form of cyclictest's",
      [](const std::string&, Options& o) { return o.json = true, std::string(); }}};
 
 }  // namespace

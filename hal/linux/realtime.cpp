@@ -81,16 +81,16 @@ WakefulCpus::~WakefulCpus() {
 }
 
 std::optional<Failure> WakefulCpus::hold() noexcept {
-  const std::string mend =
+  const std::string remedy =
       "allow writing /dev/cpu_dma_latency, or boot with processor.max_cstate=1; matters only where the "
       "wake-up latency is too long";
   file_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   if (file_ < 0) {
-    return failed_call("CPUs may fall into deep sleep: /dev/cpu_dma_latency", errno, mend);
+    return failed_call("CPUs may fall into deep sleep: /dev/cpu_dma_latency", errno, remedy);
   }
   const std::int32_t longest_us = 0;
   if (write(file_, &longest_us, sizeof longest_us) != sizeof longest_us) {
-    return failed_call("CPUs may fall into deep sleep: write to /dev/cpu_dma_latency", errno, mend);
+    return failed_call("CPUs may fall into deep sleep: write to /dev/cpu_dma_latency", errno, remedy);
   }
   return std::nullopt;
 }

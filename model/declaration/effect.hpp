@@ -15,7 +15,7 @@ namespace hotfire::model {
 /// An effect is what may be missing in a declared model: one file, one name, one site, a few parameters.
 ///
 /// - `Params<S>`: neutral by default, one scalar a field, and `option` (an index into `options`) if the effect has laws or
-///   channels to choose from.
+///   channels to choose from. `enum class Law` has them in the same order; `law_of<E>(params)` is the chosen one.
 /// - `State<S>`: what it remembers.
 /// - `step(params, state, input)`: advances the state over one step and returns the site's output. It never throws,
 ///   allocates or blocks.

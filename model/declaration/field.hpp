@@ -51,22 +51,31 @@ struct Choice {
   int Owner::*member;
 };
 
+/// The `options` of a field that belongs to some laws or channels of its owner: `only(Law::dahl, Law::lugre)`.
+template <class Law, class... Laws>
+constexpr unsigned only(Law law, Laws... laws) {
+  return ((1U << static_cast<unsigned>(law)) | ... | (1U << static_cast<unsigned>(laws)));
+}
+
+/// The law, or the channel, that the parameters of effect E have chosen.
+template <class E, class Params>
+constexpr typename E::Law law_of(const Params& params) noexcept {
+  return static_cast<typename E::Law>(params.option);
+}
+
+/// True if the law or channel `option` of the owner uses a field or a curve with these options.
+constexpr bool is_used(unsigned options, int option) { return (options >> static_cast<unsigned>(option) & 1U) != 0; }
+
 /// True if a search moves the field under an option: one without a typical value it does not.
 template <class Owner>
 constexpr bool is_searched(const Field<Owner>& field, int option) {
-  return field.typical != 0.0 && (field.options >> option & 1U) != 0;
+  return field.typical != 0.0 && is_used(field.options, option);
 }
 
 /// A bounded field whose range does not include negative values is searched in logarithms, others linearly.
 template <class Owner>
 constexpr bool searched_in_logarithms(const Field<Owner>& field) {
   return field.lower >= 0.0;
-}
-
-/// True if the value lies inside the field's bounds; false for NaN.
-template <class Owner>
-constexpr bool inside_bounds(const Field<Owner>& field, double value) {
-  return value >= field.lower && value <= field.upper;
 }
 
 }  // namespace hotfire::model

@@ -31,8 +31,9 @@ struct BearingFriction {
   using Scalar = S;
   static constexpr std::string_view name = "friction";
   static constexpr std::string_view option_key = "law";
+  enum class Law { coulomb, dahl, lugre, vibrated_lugre };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 4> options{"coulomb", "dahl", "lugre", "vibrated_lugre"};
-  int option = 2;
+  int option = static_cast<int>(Law::lugre);
   S coulomb_torque{0.0};
   S stiffness{1e7};
   S static_ratio{1.0};
@@ -46,25 +47,30 @@ struct BearingFriction {
   S exponent{1.0};
   static constexpr auto fields() {
     using P = BearingFriction;
+    constexpr unsigned kBristle = only(Law::dahl, Law::lugre, Law::vibrated_lugre);
+    constexpr unsigned kLugre = only(Law::lugre, Law::vibrated_lugre);
+    constexpr unsigned kVibrated = only(Law::vibrated_lugre);
     return std::array{
         Field<P>{"coulomb_torque", "N.m", 0.0, 1e7, 8e3, "friction torque of steady sliding, whatever the load",
                  &P::coulomb_torque},
-        Field<P>{"stiffness", "N.m/rad", 1e4, 1e11, 1e7, "bristle stiffness sigma0, before sliding", &P::stiffness, 0b1110},
-        Field<P>{"static_ratio", "1", 1.0, 5.0, 1.2, "break-away torque over sliding torque", &P::static_ratio, 0b1100},
+        Field<P>{"stiffness", "N.m/rad", 1e4, 1e11, 1e7, "bristle stiffness sigma0, before sliding", &P::stiffness,
+                 kBristle},
+        Field<P>{"static_ratio", "1", 1.0, 5.0, 1.2, "break-away torque over sliding torque", &P::static_ratio, kLugre},
         Field<P>{"stribeck_velocity", "rad/s", 1e-6, 1.0, 0.01, "speed at which static friction dies out",
-                 &P::stribeck_velocity, 0b1100},
-        Field<P>{"damping", "N.m.s/rad", 0.0, 1e8, 1e3, "bristle damping sigma1", &P::damping, 0b1100},
+                 &P::stribeck_velocity, kLugre},
+        Field<P>{"damping", "N.m.s/rad", 0.0, 1e8, 1e3, "bristle damping sigma1", &P::damping, kLugre},
         Field<P>{"vibration_ratio", "1", 0.0, 1.0, 0.5, "friction left at rest under vibration", &P::vibration_ratio,
-                 0b1000},
+                 kVibrated},
         Field<P>{"vibration_velocity", "rad/s", 1e-6, 1.0, 0.01, "speed at which the loss to vibration dies out",
-                 &P::vibration_velocity, 0b1000},
+                 &P::vibration_velocity, kVibrated},
         Field<P>{"coefficient", "1", 0.0, 1.0, 0.08, "friction coefficient mu of the bearing's ball", &P::coefficient},
         Field<P>{"radius", "m", 1e-3, 10.0, 0.13, "radius r of the bearing's ball", &P::radius},
-        Field<P>{"viscous", "N.m.s/rad", 0.0, 1e8, 1e3, "viscous friction sigma2 of the slip", &P::viscous, 0b1110},
-        Field<P>{"exponent", "1", 1.0, 4.0, 1.0, "Dahl's exponent: how late a bristle yields", &P::exponent, 0b0010}};
+        Field<P>{"viscous", "N.m.s/rad", 0.0, 1e8, 1e3, "viscous friction sigma2 of the slip", &P::viscous, kBristle},
+        Field<P>{"exponent", "1", 1.0, 4.0, 1.0, "Dahl's exponent: how late a bristle yields", &P::exponent,
+                 only(Law::dahl)}};
   }
-  static constexpr int kDahl = 1;
-  static constexpr int kVibrated = 3;
+  Law law() const noexcept { return static_cast<Law>(option); }
+  void choose(Law own) noexcept { option = static_cast<int>(own); }
 
   /// True if the bearing rubs under some load.
   bool rubs() const noexcept { return value_of(coulomb_torque) > 0.0 || value_of(coefficient) > 0.0; }
@@ -80,7 +86,7 @@ struct BearingFriction {
   /// there.
   Pair<S> torque(Pair<S>& deflection, const Slip<S>& slip, const BearingCondition<S>& condition = {}) const noexcept {
     const S sliding = sliding_torque(condition.load);
-    if (option == 0) {
+    if (law() == Law::coulomb) {
       return model::coulomb_torque<S>(slip, sliding);
     }
     // A level of zero is no friction: the bristle is not divided by it.
@@ -91,9 +97,9 @@ struct BearingFriction {
     const S left = 1.0 - (1.0 - vibration_ratio) * condition.vibration;
     const S guess = slip.velocity.length();
     // With its power held, Dahl's bristle is one whose deflection is divided, and whose stiffness is multiplied by it.
-    const S power = option == kDahl ? yielding(deflection, slip.velocity, guess, sliding) : S{1.0};
+    const S power = law() == Law::dahl ? yielding(deflection, slip.velocity, guess, sliding) : S{1.0};
     const Pair<S> start = S(1.0 / power) * deflection;
-    const Bristle<S> bristle{stiffness * power, option == kDahl ? S{0.0} : damping_at(guess, sliding, left), viscous};
+    const Bristle<S> bristle{stiffness * power, law() == Law::dahl ? S{0.0} : damping_at(guess, sliding, left), viscous};
     Pair<S> end;
     const auto torque_at = [&](const S& speed) {
       end = start;
@@ -111,10 +117,10 @@ struct BearingFriction {
 
  private:
   S level_at(const S& speed, const S& sliding, const S& left) const noexcept {
-    if (option == kDahl) {
+    if (law() == Law::dahl) {
       return sliding;
     }
-    if (option == 2) {
+    if (law() == Law::lugre) {
       return stribeck_level<S>(speed, sliding, static_ratio, stribeck_velocity);
     }
     return vibrated_stribeck_level<S>(speed, sliding, static_ratio, stribeck_velocity, left, vibration_velocity);
@@ -122,7 +128,7 @@ struct BearingFriction {
 
   /// The bound of passivity holds for the least level that the law reaches.
   S damping_at(const S& speed, const S& sliding, const S& left) const noexcept {
-    const S least = option == kVibrated ? sliding * left : sliding;
+    const S least = law() == Law::vibrated_lugre ? sliding * left : sliding;
     return value_of(least) > 0.0 ? passive_damping<S>(damping, least, speed) : S{0.0};
   }
 
@@ -244,7 +250,7 @@ std::string_view broken_relation(const GimbalParameters<S>& gimbal) {
     return "unloaded_structure has no meaning without rated_thrust; give it";
   }
   const bool vibrates = value_of(gimbal.vibration.pitch_velocity) > 0.0 || value_of(gimbal.vibration.yaw_velocity) > 0.0;
-  if (vibrates && gimbal.friction.option == BearingFriction<S>::kVibrated) {
+  if (vibrates && gimbal.friction.law() == BearingFriction<S>::Law::vibrated_lugre) {
     return "the law \"vibrated_lugre\" and a simulated vibration are two ways to the same physics; give one of them";
   }
   return {};

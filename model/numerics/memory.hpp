@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "model/numerics/operators.hpp"
 #include "model/numerics/scalar.hpp"
 
 namespace hotfire::model {
@@ -30,15 +31,6 @@ enum class Memory {
 inline constexpr std::array<std::string_view, 13> kMemoryNames{"none",      "delay",      "lag",     "washout", "resonance",
                                                                "band_pass", "stops",      "slew",    "hold",    "quantise",
                                                                "dead_zone", "saturation", "periodic"};
-
-/// A bit for each of the memories: which of them use a parameter.
-constexpr unsigned memories(std::initializer_list<Memory> kinds) noexcept {
-  unsigned bits = 0;
-  for (const Memory kind : kinds) {
-    bits |= 1U << static_cast<unsigned>(kind);
-  }
-  return bits;
-}
 
 template <class S>
 struct MemoryParameters {
@@ -85,9 +77,9 @@ class MemoryState {
       case Memory::delay:
         return delayed(params.time, s, h);
       case Memory::lag:
-        return low_pass(params.time, s, h);
+        return lag_of_held(value_, s, params.time, h);
       case Memory::washout:
-        return s - low_pass(params.time, s, h);
+        return s - lag_of_held(value_, s, params.time, h);
       case Memory::resonance:
       case Memory::band_pass: {
         // Implicit midpoint rule: stable at any frequency.
@@ -129,7 +121,7 @@ class MemoryState {
     value_ = s;
     for (std::size_t k = 0; k < kMostStops; ++k) {
       if (static_cast<int>(k) < count) {
-        stops_[k] = clamp_symmetric<S>(stops_[k] + change, S(widths[k]));
+        stops_[k] = stop_after<S>(stops_[k], change, S(widths[k]));
       }
     }
     return stops_;
@@ -151,13 +143,6 @@ class MemoryState {
       since_ = 0.0;
       age_ = 0;
     }
-  }
-
-  S low_pass(const S& time, const S& s, double h) noexcept {
-    const S behind = value_ - s;
-    const S left = fading_exponential<S>(h / time);
-    value_ = s + behind * left;
-    return s + behind * (1.0 - left) * (time / h);
   }
 
   /// The argument `time` ago, between samples that are as many steps apart as the ring needs to reach so far.

@@ -4,7 +4,7 @@
 namespace hotfire::doctor {
 
 using test::expect_good;
-using test::expect_mend;
+using test::expect_remedy;
 
 TEST_GROUP(DoctorGpio) {
   test::PatientFiles files;
@@ -26,16 +26,16 @@ TEST(DoctorGpio, ChipsThatMayBeUsedAreGood) { expect_good(found("GPIO")); }
 
 TEST(DoctorGpio, MachineWithoutAChipIsBadOnlyIfLinesAreNeeded) {
   std::filesystem::remove(patient.root / "dev/gpiochip0");
-  expect_mend(found("GPIO"), Level::advice, "no GPIO chip", "driver");
+  expect_remedy(found("GPIO"), Level::advice, "no GPIO chip", "driver");
   patient.lines = {"estop"};
-  expect_mend(found("GPIO"), Level::bad, "no GPIO chip", "driver");
+  expect_remedy(found("GPIO"), Level::bad, "no GPIO chip", "driver");
 }
 
 // A link to nowhere stands for a chip that this user may not open: the tests run as root too, who may open all that is
 // there.
 TEST(DoctorGpio, ChipThatCannotBeOpenedIsBad) {
   std::filesystem::create_symlink("nowhere", patient.root / "dev/gpiochip1");
-  expect_mend(found("GPIO"), Level::bad, "cannot be opened by this user: gpiochip1", "udev/rules.d/99-gpio.rules");
+  expect_remedy(found("GPIO"), Level::bad, "cannot be opened by this user: gpiochip1", "udev/rules.d/99-gpio.rules");
 }
 
 TEST(DoctorGpio, LineThatIsThereAndFreeIsGoodInBothFormatsOfGpioinfo) {
@@ -46,15 +46,15 @@ TEST(DoctorGpio, LineThatIsThereAndFreeIsGoodInBothFormatsOfGpioinfo) {
 
 TEST(DoctorGpio, LineInUseOrMissingIsBad) {
   patient.lines = {"enable", "fault", "stop"};
-  expect_mend(found("line enable"), Level::bad, "in use by another program", "gpioinfo");
-  expect_mend(found("line fault"), Level::bad, "in use by another program", "gpioinfo");
-  expect_mend(found("line stop"), Level::bad, "no GPIO line has this name", "gpio-line-names");
+  expect_remedy(found("line enable"), Level::bad, "in use by another program", "gpioinfo");
+  expect_remedy(found("line fault"), Level::bad, "in use by another program", "gpioinfo");
+  expect_remedy(found("line stop"), Level::bad, "no GPIO line has this name", "gpio-line-names");
 }
 
-TEST(DoctorGpio, MachineWithoutGpioinfoIsToldToInstallIt) {
+TEST(DoctorGpio, MachineWithoutGpioinfoIsAdvisedToInstallIt) {
   patient.lines = {"estop"};
   files.said.clear();
-  expect_mend(found("lines"), Level::advice, "reported nothing", "apt install gpiod");
+  expect_remedy(found("lines"), Level::advice, "reported nothing", "apt install gpiod");
 }
 
 }  // namespace hotfire::doctor

@@ -5,7 +5,7 @@
 namespace hotfire::doctor {
 
 using test::expect_good;
-using test::expect_mend;
+using test::expect_remedy;
 
 TEST_GROUP(DoctorMachine) {
   test::PatientFiles files;
@@ -42,7 +42,7 @@ TEST(DoctorMachine, MachineThatIsSetUpWellHasNothingButGoodFindings) {
   }
 }
 
-TEST(DoctorMachine, MachineThatTellsNothingIsNotCalledGood) {
+TEST(DoctorMachine, MachineThatReportsNothingIsNotCalledGood) {
   test::PatientFiles nothing;
   Patient silent = nothing.patient();
   silent.root /= "nowhere";
@@ -54,39 +54,39 @@ TEST(DoctorMachine, MachineThatTellsNothingIsNotCalledGood) {
 
 TEST(DoctorMachine, KernelWithoutPreemptRtIsNamedWithThePackage) {
   files.put("sys/kernel/realtime", "0");
-  expect_mend(found("kernel"), Level::bad, "6.1.0-rt-amd64 is no PREEMPT_RT", "apt install linux-image-rt-amd64");
+  expect_remedy(found("kernel"), Level::bad, "6.1.0-rt-amd64 is no PREEMPT_RT", "apt install linux-image-rt-amd64");
 }
 
 TEST(DoctorMachine, PreemptionIsFullChosenAtBootOrNone) {
   files.put("proc/version", "Linux version 6.1.0 #1 SMP PREEMPT_DYNAMIC Debian");
-  expect_mend(found("preemption"), Level::advice, "not booted with preempt=full", "boot with preempt=full");
+  expect_remedy(found("preemption"), Level::advice, "not booted with preempt=full", "boot with preempt=full");
   files.put("proc/cmdline", "quiet preempt=full");
   expect_good(found("preemption"));
   files.put("proc/version", "Linux version 6.1.0 #1 SMP Debian");
-  expect_mend(found("preemption"), Level::bad, "not preempted", "linux-image-rt");
+  expect_remedy(found("preemption"), Level::bad, "not preempted", "linux-image-rt");
 }
 
 TEST(DoctorMachine, CpuOfTheLoopHasToBeAmongTheIsolatedOnesAndWithoutTick) {
   patient.cpu = 3;
-  expect_mend(found("isolation"), Level::advice, "CPU 3 is not isolated (those are 1-2)", "isolcpus=3");
+  expect_remedy(found("isolation"), Level::advice, "CPU 3 is not isolated (those are 1-2)", "isolcpus=3");
   files.put("sys/devices/system/cpu/isolated", "");
-  expect_mend(found("isolation"), Level::advice, "none is", "isolcpus=3");
+  expect_remedy(found("isolation"), Level::advice, "none is", "isolcpus=3");
   files.put("sys/devices/system/cpu/isolated", "3");
-  expect_mend(found("isolation"), Level::advice, "has a timer tick", "nohz_full=3");
+  expect_remedy(found("isolation"), Level::advice, "has a timer tick", "nohz_full=3");
   patient.cpu.reset();
   files.put("sys/devices/system/cpu/isolated", "");
-  expect_mend(found("isolation"), Level::advice, "no CPU is isolated", "isolcpus=1");
+  expect_remedy(found("isolation"), Level::advice, "no CPU is isolated", "isolcpus=1");
 }
 
 TEST(DoctorMachine, CpuThatSharesItsCoreIsNamedWithItsSiblings) {
   files.put("sys/devices/system/cpu/smt/active", "1");
   files.put("sys/devices/system/cpu/cpu1/topology/thread_siblings_list", "1,5");
-  expect_mend(found("hyper-threads"), Level::advice, "CPU 1 shares its core (CPUs 1,5)", "smt/control");
+  expect_remedy(found("hyper-threads"), Level::advice, "CPU 1 shares its core (CPUs 1,5)", "smt/control");
 }
 
 TEST(DoctorMachine, GovernorThatFollowsTheLoadIsBadOnTheCpusThatMatter) {
   files.put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "powersave");
-  expect_mend(found("governor"), Level::bad, "cpu0 powersave", "cpupower frequency-set -g performance");
+  expect_remedy(found("governor"), Level::bad, "cpu0 powersave", "cpupower frequency-set -g performance");
   patient.cpu = 1;
   expect_good(found("governor"));
 }
@@ -95,8 +95,8 @@ TEST(DoctorMachine, LimitsOfMemoryAndPriorityAreMendedForAGroupOrMadeUpForByCapa
   files.put("proc/self/limits",
             "Max locked memory         8388608              8388608              bytes\n"
             "Max realtime priority     0                    0");
-  expect_mend(found("memory lock"), Level::bad, "8388608 bytes", "@realtime - memlock unlimited");
-  expect_mend(found("priority"), Level::bad, "up to 0 are allowed", "@realtime - rtprio 99");
+  expect_remedy(found("memory lock"), Level::bad, "8388608 bytes", "@realtime - memlock unlimited");
+  expect_remedy(found("priority"), Level::bad, "up to 0 are allowed", "@realtime - rtprio 99");
   // CAP_IPC_LOCK is 14, CAP_SYS_NICE 23.
   files.put("proc/self/status", "CapEff:\t0000000000804000");
   expect_good(found("memory lock"));
@@ -107,22 +107,22 @@ TEST(DoctorMachine, LimitsOfMemoryAndPriorityAreMendedForAGroupOrMadeUpForByCapa
 
 TEST(DoctorMachine, ThrottleThatLeavesNothingIsBadAndNoneAtAllIsToBeConsidered) {
   files.put("proc/sys/kernel/sched_rt_runtime_us", "0");
-  expect_mend(found("throttle"), Level::bad, "no time is left", "sched_rt_runtime_us=950000");
+  expect_remedy(found("throttle"), Level::bad, "no time is left", "sched_rt_runtime_us=950000");
   files.put("proc/sys/kernel/sched_rt_runtime_us", "-1");
-  expect_mend(found("throttle"), Level::advice, "off", "sched_rt_runtime_us=950000");
+  expect_remedy(found("throttle"), Level::advice, "off", "sched_rt_runtime_us=950000");
 }
 
 TEST(DoctorMachine, SlowClockSourceIsMendedByTheFastOneIfThereIsOne) {
   const std::string folder = "sys/devices/system/clocksource/clocksource0/";
   files.put(folder + "current_clocksource", "hpet");
-  expect_mend(found("clock source"), Level::bad, "hpet: reading the time", "echo tsc >");
+  expect_remedy(found("clock source"), Level::bad, "hpet: reading the time", "echo tsc >");
   files.put(folder + "available_clocksource", "hpet acpi_pm");
-  expect_mend(found("clock source"), Level::bad, "hpet", "tsc=reliable");
+  expect_remedy(found("clock source"), Level::bad, "hpet", "tsc=reliable");
 }
 
 TEST(DoctorMachine, SleepStatesThatCannotBeHeldOffAreToBeConsidered) {
   std::filesystem::remove(patient.root / "dev/cpu_dma_latency");
-  expect_mend(found("sleep states"), Level::advice, "/dev/cpu_dma_latency cannot be written", "udev/rules.d");
+  expect_remedy(found("sleep states"), Level::advice, "/dev/cpu_dma_latency cannot be written", "udev/rules.d");
   std::filesystem::remove_all(patient.root / "sys/devices/system/cpu/cpu0/cpuidle");
   expect_good(found("sleep states"));
 }

@@ -47,14 +47,14 @@ inline doctor::Finding finding_of(const std::vector<doctor::Finding>& findings, 
 
 inline void expect_good(const doctor::Finding& finding) {
   CHECK(finding.level == doctor::Level::good);
-  STRCMP_EQUAL("", finding.mend.c_str());
+  STRCMP_EQUAL("", finding.remedy.c_str());
 }
 
-/// A finding that is not good says what was found and what mends it.
-inline void expect_mend(const doctor::Finding& finding, doctor::Level level, const char* what, const char* mend) {
+/// A finding that is not good says what was found and its remedy.
+inline void expect_remedy(const doctor::Finding& finding, doctor::Level level, const char* what, const char* remedy) {
   CHECK(finding.level == level);
   STRCMP_CONTAINS(what, finding.what.c_str());
-  STRCMP_CONTAINS(mend, finding.mend.c_str());
+  STRCMP_CONTAINS(remedy, finding.remedy.c_str());
 }
 
 }  // namespace hotfire::test

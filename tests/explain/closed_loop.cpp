@@ -24,7 +24,7 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-std::string joined(const std::set<std::string>& names) {
+std::string joined(const std::multiset<std::string>& names) {
   std::string text;
   for (const std::string& name : names) {
     text += (text.empty() ? "" : " + ") + name;
@@ -47,8 +47,8 @@ bool explain_case(const std::string& archive, const std::filesystem::path& folde
   const auto result = hotfire::explain::explain(declared, records, {2, 4, {}});
 
   const auto truth = nlohmann::json::parse(std::ifstream(root / "kept/truth.json"));
-  const std::set<std::string> wanted = truth["effects"];
-  std::set<std::string> found;
+  const std::multiset<std::string> wanted = truth["effects"];
+  std::multiset<std::string> found;  // a name that is found twice is not right
   for (const auto& effect : result.result.effects) {
     found.insert(effect.name);
   }

@@ -96,7 +96,7 @@ bool mts(const fs::path& archive, const fs::path& folder, const std::vector<std:
   options.threads = 2;
   options.kept_back = {imported("15Hz0x5A")};
   const auto result = hotfire::explain::explain(hotfire::load_model(logs / "declared.toml"), records, options);
-  std::set<std::string> found;
+  std::multiset<std::string> found;
   for (const auto& effect : result.result.effects) {
     found.insert(effect.name);
     std::printf("found %s\n", effect.name.c_str());
@@ -110,7 +110,7 @@ bool mts(const fs::path& archive, const fs::path& folder, const std::vector<std:
   std::printf("%s\n", result.result.sentence.c_str());
   std::printf("declared %.4f, calibrated %.4f, linear black box %.4f thousandths\n", 1e3 * piston.declared.rms,
               1e3 * piston.calibrated.rms, 1e3 * piston.black_box.value().rms);
-  const std::set<std::string> wanted{"valve_asymmetry", "valve_deadband"};
+  const std::multiset<std::string> wanted{"valve_asymmetry", "valve_deadband"};
   return check("test record", left, 0.014) && found == wanted;
 }
 

@@ -92,7 +92,7 @@ TEST(Command, without_what_it_needs_is_wrong_use) {
   LONGS_EQUAL(2, status_of("simulate --model m --input i --output o --fit-start=-3"));
 }
 
-TEST(Command, help_has_an_example_and_every_command_tells_its_version) {
+TEST(Command, help_has_an_example_and_every_command_prints_its_version) {
   for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "stiffness ", "hammer ", "quiescent ",
                                     "strings ", "findings ", "import ", "header "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));

@@ -7,18 +7,18 @@ namespace hotfire::hal {
 
 TEST_GROUP(Realtime){};
 
-TEST(Realtime, PriorityThatNoMachineHasIsRefusedWithTheMend) {
+TEST(Realtime, PriorityThatNoMachineHasIsRefusedWithTheRemedy) {
   const auto failure = schedule_first(1000);
   CHECK(failure.has_value());
   STRCMP_CONTAINS("priority 1000", failure->what.c_str());
-  STRCMP_CONTAINS("ulimit -r", failure->mend.c_str());
+  STRCMP_CONTAINS("ulimit -r", failure->remedy.c_str());
 }
 
-TEST(Realtime, CpuThatDoesNotExistIsRefusedWithTheMend) {
+TEST(Realtime, CpuThatDoesNotExistIsRefusedWithTheRemedy) {
   const auto failure = run_on_cpu(1023);
   CHECK(failure.has_value());
   STRCMP_CONTAINS("CPU 1023", failure->what.c_str());
-  STRCMP_CONTAINS("taskset", failure->mend.c_str());
+  STRCMP_CONTAINS("taskset", failure->remedy.c_str());
   CHECK(run_on_cpu(-1).has_value());
 }
 

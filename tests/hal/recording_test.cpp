@@ -147,7 +147,7 @@ TEST(Recording, HeaderIsSearchedForItsEndUpToALimit) {
   STRCMP_CONTAINS("the file is cut off", opened(std::string(kRecordingMark) + "version 1\n").error().c_str());
 }
 
-TEST(Recording, HeaderThatLacksSomethingOrIsForeignIsRefusedWithTheReason) {
+TEST(Recording, HeaderThatIsIncompleteOrForeignIsRefusedWithTheReason) {
   const auto refused = [](const std::string& text, const char* reason) {
     STRCMP_CONTAINS(reason, parse_header(with_right_hash(text)).error.c_str());
   };
@@ -190,7 +190,7 @@ TEST(Recording, ClosedRecordingGivesItsCyclesAndItsDrops) {
   UNSIGNED_LONGS_EQUAL(4, reader.dropped());
 }
 
-TEST(Recording, CyclesThatTheLoopLeftOutAreToldFromThoseThatAreNotInTheFile) {
+TEST(Recording, CyclesThatTheLoopLeftOutAreDistinguishedFromThoseThatAreNotInTheFile) {
   RecordingReader reader = opened(start + block({0, 1, 2}) + block({7, 8}, 3));
   RecordedCycle cycle;
   for (int i = 0; i < 4; ++i) {
@@ -242,13 +242,13 @@ TEST(Recording, FileHasItsNameOnlyWithItsHeaderAndReplacesAnOlderOneThatItMayOve
   UNSIGNED_LONGS_EQUAL(1, files_beside(path));
 }
 
-TEST(Recording, FileThatExistsIsRefusedWithTheMendAndStaysAsItWas) {
+TEST(Recording, FileThatExistsIsRefusedWithTheRemedyAndStaysAsItWas) {
   const std::string path = scratch.write("run.hfr", "old").string();
   {
     const auto failure = RecordingFile(path, 1 << 20).create(start);
     CHECK(failure.has_value());
     STRCMP_CONTAINS("run.hfr exists", failure->what.c_str());
-    STRCMP_CONTAINS("--overwrite", failure->mend.c_str());
+    STRCMP_CONTAINS("--overwrite", failure->remedy.c_str());
   }
   UNSIGNED_LONGS_EQUAL(3, std::filesystem::file_size(path));
   UNSIGNED_LONGS_EQUAL(1, files_beside(path));
@@ -322,7 +322,7 @@ TEST(Recording, LinkIsRefusedAndWhatItLeadsToStaysAsItWas) {
 }
 
 // What a program killed while it made a file leaves, or what somebody has put there.
-TEST(Recording, TemporaryThatStandsThereIsNeitherFollowedNorReplaced) {
+TEST(Recording, TemporaryThatExistsIsNeitherFollowedNorReplaced) {
   const std::string target = scratch.write("target", "old").string();
   const std::string path = scratch.path("run.hfr").string();
   std::filesystem::create_symlink(target, path + "." + std::to_string(getpid()) + ".part");
@@ -346,12 +346,12 @@ TEST(Recording, FileThatWouldGrowBeyondItsLimitRefusesTheBlockWhole) {
   UNSIGNED_LONGS_EQUAL(start.size() + one.size(), std::filesystem::file_size(path));
 }
 
-TEST(Recording, FileThatCannotBeMadeIsRefusedWithTheMend) {
+TEST(Recording, FileThatCannotBeMadeIsRefusedWithTheRemedy) {
   RecordingFile nowhere(scratch.path("none/run.hfr").string(), 1 << 20);
   const auto failure = nowhere.create(start);
   CHECK(failure.has_value());
   STRCMP_CONTAINS("none/run.hfr: No such file", failure->what.c_str());
-  STRCMP_CONTAINS("name a file", failure->mend.c_str());
+  STRCMP_CONTAINS("name a file", failure->remedy.c_str());
   CHECK(RecordingFile("/dev/null", 1 << 20).create(start).has_value());
 }
 

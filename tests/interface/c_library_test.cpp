@@ -274,22 +274,22 @@ TEST(CLibrary, ATunableParameterChangesTheRunAsADeclaredOneDoes) {
   Case declared = own;
   declared.text += "[engine]\ninertia = 8000.0\n";
   const Model tuned = open(own);
-  const Model told = open(declared);
+  const Model from_file = open(declared);
   std::size_t inertia = 0;
   hotfire_find(tuned.get(), HOTFIRE_PARAMETER, "engine.inertia", &inertia);
   const double value = 8000.0;
   hotfire_start(tuned.get(), 0.0);
-  hotfire_start(told.get(), 0.0);
+  hotfire_start(from_file.get(), 0.0);
   LONGS_EQUAL(HOTFIRE_OK, hotfire_set(tuned.get(), HOTFIRE_PARAMETER, &inertia, &value, 1));
   Drive drive_tuned(own, tuned.get());
-  Drive drive_told(own, told.get());
+  Drive drive_from_file(own, from_file.get());
   for (std::size_t period = 0; period < 200; ++period) {
     drive_tuned.set(period);
-    drive_told.set(period);
+    drive_from_file.set(period);
     hotfire_step(tuned.get());
-    hotfire_step(told.get());
+    hotfire_step(from_file.get());
   }
-  check_same_bits(outputs_of(told.get()), outputs_of(tuned.get()));
+  check_same_bits(outputs_of(from_file.get()), outputs_of(tuned.get()));
 }
 
 TEST(CLibrary, RefusesWithTheWordsOfTheCommand) {

@@ -112,7 +112,7 @@ def test_a_gradient_is_the_limit_of_differences():
             assert np.std(error) < 1e-5 * np.std(difference), (key, channel)
 
 
-def test_gradients_are_by_all_that_acts_unless_told(model, record):
+def test_gradients_are_by_all_that_acts_by_default(model, record):
     assert set(hotfire.gradients(model, record).keys) == set(model.parameters)
     with pytest.raises(hotfire.UsageError, match="no parameter that acts"):
         hotfire.gradients(model, record, ["effects.backlash.half_width"])

@@ -19,7 +19,7 @@ using nlohmann::json;
 
 constexpr const char* kHostile = "</script><script>document.title='owned'</script><img src=x onerror=alert(1)>&\"'";
 
-/// What a channel of the stand-in record follows: gain on the motion, rms noise, and the error that each model leaves.
+/// What a channel of the sample record follows: gain on the motion, rms noise, and the error that each model leaves.
 struct Shape {
   std::string name;
   std::string unit;
@@ -137,7 +137,7 @@ Sample explained_actuator() {
     sample.series.records.push_back(record_of(name, shapes, 10'000, 0.002, seed));
   }
   sample.report = frame("explained",
-                        "The declared model lacks friction in the gimbal bearing (LuGre, 12.0 kN\u00b7m) and a soft "
+                        "Missing in the declared model: friction in the gimbal bearing (LuGre, 12.0 kN\u00b7m) and a soft "
                         "actuator stiffness below 23 kN.");
   json& report = sample.report;
   report["name"] = "single-axis TVC actuator";
@@ -157,10 +157,9 @@ Sample explained_actuator() {
                            {"actuator.bulk_modulus", calibrated(1.034e9, 0.72e9, 4e7, 0.1, "Pa", true)},
                            {"engine.inertia", calibrated(9490.0, 9512.0, 31.0, 0.01, "kg.m^2", false)}};
   report["effects"] = {friction(), soft_stiffness()};
-  report["trace"] = {
-      {"site", "engine_torque"},
-      {"points", reconstructed_points()},
-      {"text", "The torque that the declared model lacks follows the sign of the gimbal rate: 91 % of its variance."}};
+  report["trace"] = {{"site", "engine_torque"},
+                     {"points", reconstructed_points()},
+                     {"text", "The missing torque follows the sign of the gimbal rate: 91 % of its variance."}};
   report["residual"] = {{"white", true},
                         {"unexplained_percent", 3.1},
                         {"next_experiment",

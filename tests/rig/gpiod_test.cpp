@@ -53,7 +53,7 @@ GpioSettings settings() {
 std::string refusal(const GpioSettings& wanted) {
   GpiodLines lines(wanted);
   const auto failure = lines.open();
-  return failure ? failure->what + "; " + failure->mend : std::string();
+  return failure ? failure->what + "; " + failure->remedy : std::string();
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ TEST(Gpiod, ChipIsFoundByNameAndPathToo) {
   STRCMP_EQUAL("", refusal(by_name).c_str());
 }
 
-TEST(Gpiod, LinesThatAreMissingOrHeldAreRefusedWithTheMendAndNothingIsDriven) {
+TEST(Gpiod, LinesThatAreMissingOrHeldAreRefusedWithTheRemedyAndNothingIsDriven) {
   STRCMP_CONTAINS("the inputs of GPIO chip rig are refused", refusal(settings()).c_str());
   STRCMP_CONTAINS("gpioinfo rig", refusal(settings()).c_str());
   lines.reset();

@@ -86,15 +86,15 @@ TEST_GROUP(Lab) {
     return node->commands;
   }
 
-  /// Brings a running lab to a fault and mends it: nothing is sent until it is armed again, which it then is.
-  template <class Provoke, class Mend>
-  void goes_safe(Provoke && provoke, Mend && mend) {
+  /// Brings a running lab to a fault and removes its cause: nothing is sent until it is armed again, which it then is.
+  template <class Provoke, class Remedy>
+  void goes_safe(Provoke && provoke, Remedy && remedy) {
     run_profile();
     provoke();
     provoked.push_back(now_ns());
     const std::uint64_t sent = commands_at_fault();
     wait_for_beats(5);
-    mend();
+    remedy();
     wait_for_beats(10);
     CHECK(carries(test::kFaultLine));
     UNSIGNED_LONGS_EQUAL(sent, node->commands);
@@ -369,7 +369,7 @@ TEST(Lab, RecorderFull) {
   const std::uint64_t sent = commands_at_fault();
   wait_for_beats(10);
   UNSIGNED_LONGS_EQUAL(sent, node->commands);
-  // A recording that has ended does not go on: no arming mends it.
+  // A recording that has ended does not go on: arming does not restart it.
   press();
   CHECK(!carries(test::kSupplyLine));
   lab->signal(SIGTERM);

@@ -335,11 +335,11 @@ TEST(SocketCan, CycleAllocatesNothing) {
   UNSIGNED_LONGS_EQUAL(0, guard.allocations());
 }
 
-TEST(SocketCan, WhatCannotWorkIsRefusedWithTheMend) {
+TEST(SocketCan, WhatCannotWorkIsRefusedWithTheRemedy) {
   const auto refusal = [](const std::string& interface, bool fd) {
     SocketCan other({interface, {}, {}, fd});
     const auto failure = other.open();
-    return failure ? failure->what + "; " + failure->mend : std::string();
+    return failure ? failure->what + "; " + failure->remedy : std::string();
   };
   STRCMP_CONTAINS("no interface can7; see 'ip -brief link'", refusal("can7", false).c_str());
   STRCMP_CONTAINS("no interface a-name-that-is-too-long", refusal("a-name-that-is-too-long", false).c_str());

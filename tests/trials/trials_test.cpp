@@ -106,7 +106,7 @@ TEST(Trials, TheStiffnessOfASoftActuatorRisesWithTheAmplitudeToThatUnderALargeLo
   model::visit_effects(axis, [&]<class E>(std::size_t index, auto& law) {
     if constexpr (std::is_same_v<E, model::SoftStiffness>) {
       axis.effects.active[index] = true;
-      law.option = 2;
+      law.option = static_cast<int>(E::Law::table);
       law.table.points = 2;
       law.table.x = {0.0, 2e4};
       law.table.y = {4e7, 1.6e8};

@@ -30,7 +30,7 @@ AngleCalibration::AngleCalibration(std::span<const SettledAngles> settled) {
       !(angles.col(1).maxCoeff() > angles.col(1).minCoeff())) {
     throw std::invalid_argument("a calibration needs at least five settled poses that turn about both angles");
   }
-  // Two strings on one line across the engine tell nearly the same: the least solution shares between them.
+  // Two strings on one line across the engine measure nearly the same: the least solution divides between them.
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(1e-9);
   solver.compute(lengths);

@@ -20,7 +20,7 @@ constexpr double kRight = 20.0;
 constexpr double kTop = 44.0;
 constexpr double kGap = 26.0;
 constexpr double kBottom = 48.0;
-// Told apart by colour-blind readers: Okabe and Ito.
+// Distinguished by colour-blind readers: Okabe and Ito.
 constexpr std::array<const char*, 7> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
 
 struct Range {

@@ -55,8 +55,8 @@ class Interface {
   }
 
  private:
-  void add(Level level, const std::string& what_is, const std::string& what, const std::string& mend = "") {
-    findings_.push_back({name_ + " " + what_is, level, what, mend});
+  void add(Level level, const std::string& what_is, const std::string& what, const std::string& remedy = "") {
+    findings_.push_back({name_ + " " + what_is, level, what, remedy});
   }
 
   bool is_virtual() const { return text(at(link_, {"linkinfo", "info_kind"})) != "can"; }

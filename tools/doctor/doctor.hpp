@@ -17,8 +17,8 @@ enum class Level { good, advice, bad };
 struct Finding {
   std::string check;  ///< "governor"
   Level level = Level::good;
-  std::string what;  ///< what was found, with the value
-  std::string mend;  ///< the command or line that is the remedy; empty if good
+  std::string what;    ///< what was found, with the value
+  std::string remedy;  ///< the command or line that is the remedy; empty if good
 };
 
 /// What is to be looked at, and through which eyes.

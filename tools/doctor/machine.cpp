@@ -48,19 +48,19 @@ Finding isolation(const Patient& patient) {
   const std::string isolated = text_of(patient.root / "sys/devices/system/cpu/isolated").value_or("");
   const std::string nohz = text_of(patient.root / "sys/devices/system/cpu/nohz_full").value_or("");
   const std::string wanted = patient.cpu ? std::to_string(*patient.cpu) : "1";
-  const std::string mend = fmt::format(
+  const std::string remedy = fmt::format(
       "boot with isolcpus={0} nohz_full={0} rcu_nocbs={0} irqaffinity=0 and run with --cpu {0}: {1}", wanted, kBootOptions);
   if (patient.cpu && !list_has(isolated, *patient.cpu)) {
     return {"isolation", Level::advice,
             fmt::format("CPU {} is not isolated ({}): other processes run on it", *patient.cpu,
                         isolated.empty() ? "none is" : "those are " + isolated),
-            mend};
+            remedy};
   }
   if (isolated.empty()) {
-    return {"isolation", Level::advice, "no CPU is isolated: the loop shares its CPU with other processes", mend};
+    return {"isolation", Level::advice, "no CPU is isolated: the loop shares its CPU with other processes", remedy};
   }
   if (patient.cpu && !list_has(nohz, *patient.cpu)) {
-    return {"isolation", Level::advice, fmt::format("CPU {} is isolated but has a timer tick", *patient.cpu), mend};
+    return {"isolation", Level::advice, fmt::format("CPU {} is isolated but has a timer tick", *patient.cpu), remedy};
   }
   return {"isolation", Level::good, "isolated CPUs: " + isolated, ""};
 }

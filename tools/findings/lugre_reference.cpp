@@ -23,7 +23,7 @@ Mass::Parameters textbook(double spring, bool stribeck) {
   Mass::Parameters parameters;
   parameters.mass = {1.0, 0.0, spring};
   auto& friction = effect_of<model::SlidingFriction>(parameters);
-  friction.option = 2;
+  friction.option = static_cast<int>(model::SlidingFriction::Law::lugre);
   friction.coulomb_forward = friction.coulomb_backward = 1.0;
   friction.viscous_forward = friction.viscous_backward = 0.4;
   friction.stiffness = 1e5;

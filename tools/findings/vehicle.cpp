@@ -73,7 +73,7 @@ void set_modes(Stage& stage, Modes kind) {
 /// Piston and engine of one axis, it alone commanded.
 std::vector<trials::ChannelSweep> sweep_of(const Stage& stage, const std::string& axis, double lowest, double highest,
                                            int count) {
-  // Structural damping of half a percent: two seconds settle a mode of 10 Hz to 2 dB short of nothing left to tell.
+  // Structural damping of half a percent: two seconds settle a mode of 10 Hz to 2 dB short of its steady value.
   const auto command = trials::stepped_sines({{trials::radians(0.05), trials::spaced(lowest, highest, count)}}, 3.0);
   return swept(stage.vehicle, axis, command, lowest, highest);
 }

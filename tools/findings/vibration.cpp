@@ -134,7 +134,7 @@ Outcome friction_under_vibration(const Bench& bench) {
   // [GF]'s law for what vibration does on the mean.
   TaosParameters averaged = hot;
   auto& friction = averaged.gimbals[0].friction;
-  friction.option = Friction::kVibrated;
+  friction.choose(Friction::Law::vibrated_lugre);
   friction.vibration_ratio = bench.has(Physics::vibration) ? 0.4 : 1.0;
   friction.vibration_velocity = 0.02;
   for (const double rate : {0.01, 0.04}) {

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "model/checks.hpp"
 #include "model/key_text.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -28,7 +29,7 @@ class Lister {
  public:
   template <class Field>
   void number(const model::KeyText& key, const Field& field, double value) {
-    if ((field.options >> static_cast<unsigned>(option_) & 1U) != 0) {
+    if (model::is_used(field.options, option_)) {
       parameters.emplace_back(std::string(key.view()), value, std::string(field.unit), field.lower, field.upper,
                               std::string(field.meaning));
     }
@@ -71,10 +72,10 @@ class Setter {
   template <class Field>
   void number(const model::KeyText& key, const Field& field, double& value) {
     const auto given = values_.find(std::string(key.view()));
-    if (given == values_.end() || (field.options >> static_cast<unsigned>(option_) & 1U) == 0) {
+    if (given == values_.end() || !model::is_used(field.options, option_)) {
       return;
     }
-    if (!model::inside_bounds(field, given->second)) {
+    if (!model::is_inside(field, given->second)) {
       throw FileError(fmt::format("{} = {}: outside its bounds; allowed: {:g} to {:g} {}", key.view(), given->second,
                                   field.lower, field.upper, field.unit));
     }

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <span>
 
-#include "model/keys.hpp"
+#include "model/key_text.hpp"
 #include "model/numerics/step_size.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -23,10 +23,6 @@ namespace {
 constexpr int kAtOnce = 4;
 using Dual = ceres::Jet<double, kAtOnce>;
 
-std::string text_of(const model::Key& key, std::string_view field) {
-  return fmt::format("{}{}.{}", key.is_effect ? "effects." : "", key.section, field);
-}
-
 /// Calls `f(key, value)` for every scalar parameter that acts.
 template <class Parameters, class F>
 void visit_acting(Parameters& parameters, F&& f) {
@@ -34,9 +30,9 @@ void visit_acting(Parameters& parameters, F&& f) {
   model::visit_effects(parameters, [&]<class E>(std::size_t, const auto& values) { options.push_back(values.option); });
   model::visit_parameters(parameters, [&](const model::Key& key, const auto& field, auto& value) {
     const bool acts = !key.is_effect || (parameters.effects.active[key.effect_index] &&
-                                         (field.options >> options[key.effect_index] & 1U) != 0);
+                                         model::is_used(field.options, options[key.effect_index]));
     if (acts) {
-      f(text_of(key, field.name), value);
+      f(std::string(model::KeyText(key, field.name).view()), value);
     }
   });
 }

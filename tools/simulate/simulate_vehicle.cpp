@@ -106,7 +106,7 @@ class Disturbances {
         force_(inputs, kForce, names_of_directions(), steps),
         thrust_(thrust_channels<Plant>(inputs, names_of_engines())) {
     for (const auto& signal : vibration_.signals()) {
-      if (parameters.gimbals[signal.place / 2].friction.option == model::BearingFriction<double>::kVibrated) {
+      if (parameters.gimbals[signal.place / 2].friction.law() == model::BearingFriction<double>::Law::vibrated_lugre) {
         throw FileError(
             fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a recorded vibration are two ways "
                         "to the same physics; give one of them",

@@ -85,7 +85,7 @@ class Band {
     std::vector<double> errors;
     errors.reserve(static_cast<std::size_t>(attach_points()));
     for (int port = 0; port < attach_points(); ++port) {
-      // A port that nothing moves has nothing to lack.
+      // A port that nothing moves has no error.
       const double size = size_[static_cast<std::size_t>(port)];
       errors.push_back(size > 0.0 ? rms(port, cut, 0.0) / size : 0.0);
     }

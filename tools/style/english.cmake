@@ -26,6 +26,11 @@ set(replaced
   "mend|fix, correct, remedy"
   "mends|fixes, corrects"
   "goes no faster|limited speed"
+  "however much|at most"
+  "is asked of|is required of"
+  "untold|not identified, not known"
+  "telling|identifying, which reports"
+  "configures with|configure with"
   "for good|permanent"
   "anew|again"
   "rooms|folders"
@@ -95,12 +100,16 @@ foreach(page IN LISTS pages)
 endforeach()
 
 set(sources "")
-foreach(folder model hal firmware tools)
-  foreach(pattern *.hpp *.h *.cpp *.js *.py)
+foreach(folder model hal firmware tools examples)
+  foreach(pattern *.hpp *.h *.c *.cpp *.js *.py)
     file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/${folder}/${pattern})
     list(APPEND sources ${found})
   endforeach()
 endforeach()
+# Scripts have no ending.
+file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/tools/*)
+list(FILTER found INCLUDE REGEX "^([^.]*/)?[^./]+$")
+list(APPEND sources ${found})
 foreach(source IN LISTS sources)
   read_lines(${source} "${words}" lines)
   set(number 0)

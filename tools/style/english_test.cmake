@@ -1,25 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 # Writes replaced words into a scratch copy of the pages and the sources, and expects english.cmake to name each.
 cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/look.cmake)
 
 function(copy_tree)
   file(REMOVE_RECURSE ${SCRATCH})
   file(COPY ${ROOT}/README.md ${ROOT}/CONTRIBUTING.md ${ROOT}/CHANGELOG.md DESTINATION ${SCRATCH})
   file(COPY ${ROOT}/examples/README.md DESTINATION ${SCRATCH}/examples)
   file(COPY ${ROOT}/docs DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.md")
-  foreach(folder model hal firmware tools)
+  foreach(folder model hal firmware tools examples)
     file(COPY ${ROOT}/${folder} DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.js"
       PATTERN "*.py")
   endforeach()
-endfunction()
-
-function(look status output)
-  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${ROOT}/tools/style/english.cmake
-    RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  # CMake wraps its messages.
-  string(REGEX REPLACE "[ \n]+" " " text "${text}")
-  set(${status} ${result} PARENT_SCOPE)
-  set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
 # expect_fault(FILE TEXT FAULT): with TEXT at the end of FILE the check fails, and its message has FAULT.
@@ -29,7 +21,7 @@ function(expect_fault file text fault)
     file(READ ${SCRATCH}/${file} old)
   endif()
   file(APPEND ${SCRATCH}/${file} "${text}\n")
-  look(status output)
+  look(english status output)
   file(WRITE ${SCRATCH}/${file} "${old}")
   string(FIND "${output}" "${fault}" position)
   if(status EQUAL 0 OR position EQUAL -1)
@@ -40,7 +32,7 @@ endfunction()
 # expect_none(FILE TEXT): a new FILE with TEXT is allowed.
 function(expect_none file text)
   file(WRITE ${SCRATCH}/${file} "${text}\n")
-  look(status output)
+  look(english status output)
   file(REMOVE ${SCRATCH}/${file})
   if(NOT status EQUAL 0)
     message(SEND_ERROR "${file} with '${text}' is allowed, but: ${output}")
@@ -48,10 +40,7 @@ function(expect_none file text)
 endfunction()
 
 copy_tree()
-look(status output)
-if(NOT status EQUAL 0)
-  message(FATAL_ERROR "the tree as it is: ${output}")
-endif()
+look_at_tree(english)
 
 expect_fault(docs/wrong.md "# A page\n\nThe effect is told by the record." "docs/wrong.md:3: 'told', write: identified")
 expect_fault(docs/trials.md "Mend the record; then go on." "'mend', write: fix")
@@ -65,6 +54,9 @@ expect_fault(tools/report/page/wrong.js "f(\"The data cannot tell\")" "tools/rep
 expect_fault(model/wrong.hpp "int f();\n/// What a model lacks." "model/wrong.hpp:2: 'lacks', write: is missing in")
 expect_fault(hal/wrong.hpp "int value = 0;  ///< what stands here" "hal/wrong.hpp:1: 'stands'")
 expect_fault(tools/interface/c/wrong.h "/* A value\n * that stands here. */" "tools/interface/c/wrong.h:2: 'stands'")
+expect_fault(tools/wrong "echo \"what the model lacks\"" "tools/wrong:1: 'lacks'")
+expect_fault(examples/cortex-m7/wrong.hpp "/// What stands here." "examples/cortex-m7/wrong.hpp:1: 'stands'")
+expect_fault(docs/wrong.md "It is exact, however much it costs." "'however much', write: at most")
 expect_fault(firmware/wrong.hpp "g(\"a[1]; Whoever runs it\");" "firmware/wrong.hpp:1: 'whoever'")
 
 expect_none(docs/right.md "Understand `mends` and StandsStill.\n```\nthe model lacks friction\n```\nbold")

@@ -1,22 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Breaks each rule of layering.cmake once, in a scratch copy of the tree, and expects the check to name it.
 cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/look.cmake)
 
 function(copy_tree)
   file(REMOVE_RECURSE ${SCRATCH})
   foreach(room model hal firmware tools tests)
     file(COPY ${ROOT}/${room} DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.cpp")
   endforeach()
-endfunction()
-
-function(look status output)
-  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${ROOT}/tools/style/layering.cmake
-    RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  # CMake wraps its messages; a semicolon would make a list of what is expected.
-  string(REGEX REPLACE "[ \n]+" " " text "${text}")
-  string(REPLACE ";" "," text "${text}")
-  set(${status} ${result} PARENT_SCOPE)
-  set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
 # expect_fault(FILE CODE WORDS): with CODE in FILE the check fails, and its message has WORDS. The name of the file gets a number,
@@ -45,7 +36,9 @@ endfunction()
 
 # Runs the check over all that is expected to be refused, then removes it.
 function(look_for_faults)
-  look(status text)
+  look(layering status text)
+  # A semicolon would make a list of what is expected.
+  string(REPLACE ";" "," text "${text}")
   get_property(expected GLOBAL PROPERTY expected)
   foreach(words IN LISTS expected)
     string(FIND "${text}" "${words}" position)
@@ -60,10 +53,7 @@ function(look_for_faults)
 endfunction()
 
 copy_tree()
-look(status text)
-if(NOT status EQUAL 0)
-  message(FATAL_ERROR "the tree as it is: ${text}")
-endif()
+look_at_tree(layering)
 
 expect_fault(model/wrong.hpp "#include \"hal/clock.hpp\"" "includes hal/clock.hpp")
 expect_fault(model/wrong.hpp "#include <tools/files/text/error.hpp>" "includes tools/files/text/error.hpp")
@@ -105,7 +95,7 @@ file(WRITE ${SCRATCH}/tools/explain/search/right_4.cpp "#include \"tools/explain
 file(WRITE ${SCRATCH}/tools/explain/right_5.cpp "#include \"tools/explain/search/search.hpp\"")
 file(WRITE ${SCRATCH}/tools/files/right_6.cpp "#include \"hal/sim/plant_bus.hpp\"\n#include <vector>")
 file(WRITE ${SCRATCH}/tests/right_7.cpp "#include \"firmware/loop/loop.hpp\"\n#include \"hal/linux/posix_clock.hpp\"")
-look(status text)
+look(layering status text)
 if(NOT status EQUAL 0)
   message(SEND_ERROR "all of it is allowed, but: ${text}")
 endif()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Breaks each rule of safety_case.cmake once, in a scratch copy of what it reads, and expects a fault.
 cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/look.cmake)
 
 function(copy_tree)
   file(REMOVE_RECURSE ${SCRATCH})
@@ -8,14 +9,6 @@ function(copy_tree)
   file(COPY ${ROOT}/firmware/interlock/faults.hpp DESTINATION ${SCRATCH}/firmware/interlock)
   file(COPY ${ROOT}/tests/rig/cases DESTINATION ${SCRATCH}/tests/rig)
   file(COPY ${ROOT}/tests DESTINATION ${SCRATCH} FILES_MATCHING PATTERN "*_test.cpp" PATTERN "CMakeLists.txt")
-endfunction()
-
-function(look status output)
-  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${ROOT}/tools/style/safety_case.cmake
-    RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
-  string(REGEX REPLACE "[ \n]+" " " text "${text}")
-  set(${status} ${result} PARENT_SCOPE)
-  set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
 # expect_fault(FILE BEFORE AFTER WORDS): with BEFORE replaced by AFTER in FILE the check fails, and says WORDS.
@@ -26,7 +19,7 @@ function(expect_fault file before after words)
     message(SEND_ERROR "${file} has no '${before}'")
   endif()
   file(WRITE ${SCRATCH}/${file} "${broken}")
-  look(status text)
+  look(safety_case status text)
   file(WRITE ${SCRATCH}/${file} "${whole}")
   string(FIND "${text}" "${words}" position)
   if(status EQUAL 0 OR position EQUAL -1)
@@ -35,10 +28,7 @@ function(expect_fault file before after words)
 endfunction()
 
 copy_tree()
-look(status text)
-if(NOT status EQUAL 0)
-  message(FATAL_ERROR "the tree as it is: ${text}")
-endif()
+look_at_tree(safety_case)
 
 set(page docs/safety-case.md)
 expect_fault(${page} "`service_sandbox`" "" "R19 has no test")

@@ -12,6 +12,7 @@ namespace hotfire::model {
 struct Leakage {
   static constexpr std::string_view name = "leakage";
   static constexpr Site site = Site::flow;
+  enum class Law { laminar, orifice };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 2> options{"laminar", "orifice"};
   static constexpr std::string_view option_key = "law";
 
@@ -31,7 +32,7 @@ struct Leakage {
 
   template <class S>
   static S step(const Params<S>& params, State<S>&, const Hydraulics<S>& input) noexcept {
-    if (params.option == 0) {
+    if (law_of<Leakage>(params) == Law::laminar) {
       return -params.coefficient * input.load_pressure;
     }
     const S magnitude = input.load_pressure * sign_of(input.load_pressure);

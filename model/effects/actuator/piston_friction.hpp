@@ -16,6 +16,7 @@ namespace hotfire::model {
 struct PistonFriction {
   static constexpr std::string_view name = "piston_friction";
   static constexpr Site site = Site::piston;
+  enum class Law { elastoplastic, lugre };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 2> options{"elastoplastic", "lugre"};
   static constexpr std::string_view option_key = "law";
 
@@ -46,7 +47,7 @@ struct PistonFriction {
   static S step(const Params<S>& params, State<S>& state, const Motion<S>& input) noexcept {
     const S level = stribeck_level<S>(input.velocity, params.coulomb_force, params.static_ratio, params.stribeck_velocity);
     // A level of zero is no friction: the bristle is not divided by it.
-    if (params.option == 1 && value_of(level) > 0.0) {
+    if (law_of<PistonFriction>(params) == Law::lugre && value_of(level) > 0.0) {
       return bristle_force<S>(state.deflection, input, level, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
     }
     return elastoplastic_force<S>(state.deflection, input, level, params.stiffness);

@@ -21,18 +21,18 @@ namespace hotfire::model {
 struct GimbalFriction {
   static constexpr std::string_view name = "gimbal_friction";
   static constexpr Site site = Site::engine_torque;
+  enum class Law { coulomb, dahl, lugre, vibrated_lugre, vector_lugre };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 5> options{"coulomb", "dahl", "lugre", "vibrated_lugre", "vector_lugre"};
   static constexpr std::string_view option_key = "law";
-  static constexpr unsigned kBristle = 0b11110;
-  static constexpr unsigned kLugre = 0b11100;
-  static constexpr unsigned kVibrated = 0b01000;
-  static constexpr int kVector = 4;
-  static constexpr unsigned options_of_two_axes = 1U << kVector;  ///< alone, `vector_lugre` is `lugre`
+  static constexpr unsigned kBristle = only(Law::dahl, Law::lugre, Law::vibrated_lugre, Law::vector_lugre);
+  static constexpr unsigned kLugre = only(Law::lugre, Law::vibrated_lugre, Law::vector_lugre);
+  static constexpr unsigned kVibrated = only(Law::vibrated_lugre);
+  static constexpr unsigned options_of_two_axes = only(Law::vector_lugre);  ///< alone, `vector_lugre` is `lugre`
 
   template <class S>
   struct Params {
     using Scalar = S;
-    int option = 2;
+    int option = static_cast<int>(Law::lugre);
     S coulomb_torque{0.0};
     S stiffness{1e7};
     S static_ratio{1.0};
@@ -65,18 +65,19 @@ struct GimbalFriction {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Motion<S>& input) noexcept {
-    if (params.option == 0) {
+    const Law law = law_of<GimbalFriction>(params);
+    if (law == Law::coulomb) {
       return coulomb_force<S>(input, params.coulomb_torque);
     }
     // A level of zero is no friction: the bristle is not divided by it.
     if (!(value_of(params.coulomb_torque) > 0.0)) {
       return S{0.0};
     }
-    if (params.option == 1) {
+    if (law == Law::dahl) {
       return bristle_force<S>(state.deflection, input, params.coulomb_torque, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
     }
-    const S speed = speed_of<S>(input.velocity, params.option == kVector ? input.other_rate : S{0.0});
-    if (params.option == 2 || params.option == kVector) {
+    const S speed = speed_of<S>(input.velocity, law == Law::vector_lugre ? input.other_rate : S{0.0});
+    if (law == Law::lugre || law == Law::vector_lugre) {
       const S level = stribeck_level<S>(speed, params.coulomb_torque, params.static_ratio, params.stribeck_velocity);
       return lugre(params, state, input, speed, level, params.coulomb_torque);
     }

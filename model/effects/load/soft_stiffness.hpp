@@ -24,10 +24,11 @@ namespace hotfire::model {
 struct SoftStiffness {
   static constexpr std::string_view name = "soft_stiffness";
   static constexpr Site site = Site::load_spring;
+  enum class Law { compliance, stiffness, table, saturation };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 4> options{"compliance", "stiffness", "table", "saturation"};
   static constexpr std::string_view option_key = "law";
   static constexpr std::size_t kTablePoints = 16;
-  static constexpr unsigned kSmooth = 0b1011;
+  static constexpr unsigned kSmooth = only(Law::compliance, Law::stiffness, Law::saturation);
 
   template <class S>
   struct Params {
@@ -45,7 +46,7 @@ struct SoftStiffness {
     static constexpr auto tables() {
       return std::array{TableField<Params, Table<S, kTablePoints>>{"load", "N", "table_stiffness", "N/m", 1e5, 1e12,
                                                                    "tangent stiffness of the actuator at a load",
-                                                                   &Params::table, 0b100}};
+                                                                   &Params::table, only(Law::table)}};
     }
   };
 
@@ -56,10 +57,10 @@ struct SoftStiffness {
 
   template <class S>
   static std::string_view broken_relation(const Params<S>& params) noexcept {
-    if (params.option == 2 && params.table.points < 2) {
+    if (law_of<SoftStiffness>(params) == Law::table && params.table.points < 2) {
       return "law \"table\" needs at least two points in load and table_stiffness";
     }
-    if (params.option == 2 && !(value_of(params.table.x[0]) >= 0.0)) {
+    if (law_of<SoftStiffness>(params) == Law::table && !(value_of(params.table.x[0]) >= 0.0)) {
       return "load must not be negative: the curve is odd";
     }
     return {};
@@ -70,18 +71,19 @@ struct SoftStiffness {
     const double direction = sign_of(input.deflection);
     const S deflection = input.deflection * direction;
     Spring<S> output = input;
-    if (params.option == 2) {
+    if (law_of<SoftStiffness>(params) == Law::table) {
       output.deflection = table_force(params, input, deflection) * direction / input.stiffness;
       return output;
     }
     const S low = params.low_stiffness < input.actuator_stiffness ? params.low_stiffness : input.actuator_stiffness;
     const Curve<double> plain{value_of(low), value_of(params.load_scale), value_of(input.actuator_stiffness),
-                              value_of(input.load_stiffness), params.option};
+                              value_of(input.load_stiffness), law_of<SoftStiffness>(params)};
     double force = state.magnitude;
     for (int i = 0; i < 3; ++i) {
       force = plain.newton(force, value_of(deflection));
     }
-    const Curve<S> curve{low, params.load_scale, input.actuator_stiffness, input.load_stiffness, params.option};
+    const Curve<S> curve{low, params.load_scale, input.actuator_stiffness, input.load_stiffness,
+                         law_of<SoftStiffness>(params)};
     const S solved = curve.newton(S(force), deflection);
     state.magnitude = value_of(solved);
     output.deflection = solved * direction / input.stiffness;
@@ -96,7 +98,7 @@ struct SoftStiffness {
     T scale;
     T actuator;
     T load;
-    int option;
+    Law law;
 
     T newton(const T& force, const T& deflection) const noexcept {
       using std::log;
@@ -104,10 +106,10 @@ struct SoftStiffness {
       T own{0.0};
       T compliance{0.0};
       const T further = 1.0 / low - 1.0 / actuator;
-      if (option == 0) {
+      if (law == Law::compliance) {
         own = force / actuator + further * scale * (1.0 - fading);
         compliance = 1.0 / actuator + further * fading;
-      } else if (option == 3) {
+      } else if (law == Law::saturation) {
         const T saturated = (1.0 - fading * fading) / (1.0 + fading * fading);
         own = force / actuator + further * scale * saturated;
         compliance = 1.0 / actuator + further * (1.0 - saturated * saturated);

@@ -13,6 +13,7 @@ namespace hotfire::model {
 struct SlidingFriction {
   static constexpr std::string_view name = "sliding_friction";
   static constexpr Site site = Site::mass_force;
+  enum class Law { coulomb, dahl, lugre };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 3> options{"coulomb", "dahl", "lugre"};
   static constexpr std::string_view option_key = "law";
 
@@ -29,22 +30,23 @@ struct SlidingFriction {
     S stribeck_velocity{0.01};
     S damping{0.0};
     static constexpr auto fields() {
-      return std::array{Field<Params>{"coulomb_forward", "force", 0.0, 1e9, 0.2, "friction of steady forward sliding",
-                                      &Params::coulomb_forward},
-                        Field<Params>{"coulomb_backward", "force", 0.0, 1e9, 0.2, "friction of steady backward sliding",
-                                      &Params::coulomb_backward},
-                        Field<Params>{"viscous_forward", "force.time/position", 0.0, 1e12, 0.1, "viscous slope, forward",
-                                      &Params::viscous_forward},
-                        Field<Params>{"viscous_backward", "force.time/position", 0.0, 1e12, 0.1, "viscous slope, backward",
-                                      &Params::viscous_backward},
-                        Field<Params>{"stiffness", "force/position", 1e-6, 1e15, 100.0, "bristle stiffness sigma0",
-                                      &Params::stiffness, 0b110},
-                        Field<Params>{"static_ratio", "1", 1.0, 5.0, 1.2, "break-away over sliding friction",
-                                      &Params::static_ratio, 0b100},
-                        Field<Params>{"stribeck_velocity", "position/time", 1e-9, 1e6, 0.05,
-                                      "speed at which static friction dies out", &Params::stribeck_velocity, 0b100},
-                        Field<Params>{"damping", "force.time/position", 0.0, 1e12, 0.1, "bristle damping sigma1",
-                                      &Params::damping, 0b100}};
+      return std::array{
+          Field<Params>{"coulomb_forward", "force", 0.0, 1e9, 0.2, "friction of steady forward sliding",
+                        &Params::coulomb_forward},
+          Field<Params>{"coulomb_backward", "force", 0.0, 1e9, 0.2, "friction of steady backward sliding",
+                        &Params::coulomb_backward},
+          Field<Params>{"viscous_forward", "force.time/position", 0.0, 1e12, 0.1, "viscous slope, forward",
+                        &Params::viscous_forward},
+          Field<Params>{"viscous_backward", "force.time/position", 0.0, 1e12, 0.1, "viscous slope, backward",
+                        &Params::viscous_backward},
+          Field<Params>{"stiffness", "force/position", 1e-6, 1e15, 100.0, "bristle stiffness sigma0", &Params::stiffness,
+                        only(Law::dahl, Law::lugre)},
+          Field<Params>{"static_ratio", "1", 1.0, 5.0, 1.2, "break-away over sliding friction", &Params::static_ratio,
+                        only(Law::lugre)},
+          Field<Params>{"stribeck_velocity", "position/time", 1e-9, 1e6, 0.05, "speed at which static friction dies out",
+                        &Params::stribeck_velocity, only(Law::lugre)},
+          Field<Params>{"damping", "force.time/position", 0.0, 1e12, 0.1, "bristle damping sigma1", &Params::damping,
+                        only(Law::lugre)}};
     }
   };
 
@@ -58,15 +60,16 @@ struct SlidingFriction {
     // A body at rest takes the direction in which it is about to move.
     const bool forward =
         value_of(input.velocity) > 0.0 || (value_of(input.velocity) == 0.0 && value_of(input.free_velocity) >= 0.0);
+    const Law law = law_of<SlidingFriction>(params);
     const S& coulomb = forward ? params.coulomb_forward : params.coulomb_backward;
     const S& viscous = forward ? params.viscous_forward : params.viscous_backward;
-    if (params.option == 0) {
+    if (law == Law::coulomb) {
       return coulomb_with_viscous(input, coulomb, viscous);
     }
     if (!(value_of(coulomb) > 0.0)) {
       return viscous * input.free_velocity / (1.0 + input.compliance * viscous);
     }
-    if (params.option == 1) {
+    if (law == Law::dahl) {
       return bristle_force<S>(state.deflection, input, coulomb, Bristle<S>{params.stiffness, S{0.0}, viscous});
     }
     const S level = stribeck_level<S>(input.velocity, coulomb, params.static_ratio, params.stribeck_velocity);

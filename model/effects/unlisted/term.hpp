@@ -74,6 +74,7 @@ struct Term {
   static constexpr bool is_unlisted = true;
   static constexpr bool is_term = true;
   static constexpr int sensor_channel = channel;
+  using Law = Memory;  ///< in the order of `options`
   static constexpr auto options = kMemoryNames;
   static constexpr std::string_view option_key = "memory";
 
@@ -100,18 +101,17 @@ struct Term {
       using enum Memory;
       return std::array{
           Field<Params>{"gain", "", -1e18, 1e18, 1.0, "what is added for a unit of the memory's output, without points",
-                        &Params::gain, ~memories({stops})},
+                        &Params::gain, ~only(stops)},
           Field<Params>{"direct", "", -1e18, 1e18, 1.0, "what is added for a unit of the argument itself", &Params::direct,
-                        ~memories({none})},
+                        ~only(none)},
           Field<Params>{"time", "s", 1e-5, 1e3, 0.02, "delay, time constant or sampling period", &Params::time,
-                        memories({delay, lag, washout, hold})},
+                        only(delay, lag, washout, hold)},
           Field<Params>{"frequency", "Hz", 1e-3, 1e4, 5.0, "natural frequency", &Params::frequency,
-                        memories({resonance, band_pass})},
-          Field<Params>{"damping", "1", 1e-3, 10.0, 0.5, "damping ratio", &Params::damping,
-                        memories({resonance, band_pass})},
+                        only(resonance, band_pass)},
+          Field<Params>{"damping", "1", 1e-3, 10.0, 0.5, "damping ratio", &Params::damping, only(resonance, band_pass)},
           Field<Params>{"width", "", 1e-15, 1e15, 1.0,
                         "limit, quantum, half width or pitch in the argument's unit; of slew, of its rate", &Params::width,
-                        memories({slew, quantise, dead_zone, saturation, periodic})}};
+                        only(slew, quantise, dead_zone, saturation, periodic)}};
     }
     static constexpr auto tables() {
       return std::array{TableField<Params, UnlistedTable<S>>{"at", "", "added", Names::unit, -1e18, 1e18,
@@ -184,7 +184,7 @@ struct Term {
     const bool has_curve = params.table.points > 0;
     if constexpr (std::is_same_v<Input, Motion<S>>) {
       constexpr Argument kRate = at == Site::piston ? Argument::rate : Argument::angle_rate;
-      if (has_curve && params.option == static_cast<int>(Memory::none) && argument == kRate && params.factor == 0) {
+      if (has_curve && law_of<Term>(params) == Memory::none && argument == kRate && params.factor == 0) {
         return unlisted::force_at_rate<S>(params.table, input);
       }
     }
@@ -192,7 +192,7 @@ struct Term {
     if (params.factor > 0) {
       s = s * quantity<S>(static_cast<Argument>(params.factor - 1), input);
     }
-    const auto kind = static_cast<Memory>(params.option);
+    const auto kind = law_of<Term>(params);
     if (kind == Memory::stops) {
       const auto& stops = state.memory.stop(params.table.x, params.table.points, s);
       S sum = params.direct * s;

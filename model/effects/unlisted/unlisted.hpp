@@ -22,17 +22,7 @@ namespace unlisted {
 
 template <class S, class X>
 S value_at(const UnlistedTable<S>& table, const X& x) noexcept {
-  if (table.points == 0) {
-    return S{0.0};
-  }
-  S value = table.y[0];
-  for (int i = 1; i < table.points; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const S share((x - table.x[k - 1]) / (table.x[k] - table.x[k - 1]));
-    const S inside = value_of(share) < 1.0 ? share : S{1.0};
-    value += (table.y[k] - table.y[k - 1]) * (value_of(inside) > 0.0 ? inside : S{0.0});
-  }
-  return value;
+  return curve_value<S>(table.x, table.y, static_cast<std::size_t>(table.points), x);
 }
 
 /// Force of a table over the velocity, solved together with velocity = free_velocity - compliance * force: the first

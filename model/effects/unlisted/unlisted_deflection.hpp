@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/effects/unlisted/unlisted.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -15,6 +15,7 @@ struct UnlistedDeflection {
   static constexpr std::string_view name = "unlisted_deflection";
   static constexpr Site site = Site::load_spring;
   static constexpr bool is_unlisted = true;
+  enum class Law { deflection, angle, creep, stiffness_along_time, deflection_rate, slip };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 6> options{"deflection",           "angle",           "creep",
                                                            "stiffness_along_time", "deflection_rate", "slip"};
   static constexpr std::string_view option_key = "depends_on";
@@ -33,25 +34,27 @@ struct UnlistedDeflection {
     static constexpr auto fields() {
       return std::array{
           Field<Params>{"creep_share", "1", 0.0, 0.95, 0.1, "share of the deflection that relaxes", &Params::creep_share,
-                        0b100},
-          Field<Params>{"creep_time", "s", 1e-3, 1e3, 0.5, "time constant of the relaxation", &Params::creep_time, 0b100},
+                        only(Law::creep)},
+          Field<Params>{"creep_time", "s", 1e-3, 1e3, 0.5, "time constant of the relaxation", &Params::creep_time,
+                        only(Law::creep)},
           Field<Params>{"damping_share", "1", 0.0, 10.0, 0.3, "stiffness of the spring that relaxes over that of the other",
-                        &Params::damping_share, 0b10000},
+                        &Params::damping_share, only(Law::deflection_rate)},
           Field<Params>{"damping_time", "s", 1e-4, 1.0, 0.01, "time constant of its relaxation", &Params::damping_time,
-                        0b10000},
+                        only(Law::deflection_rate)},
           Field<Params>{"slip_share", "1", 0.0, 10.0, 0.3, "stiffness of the joint that sticks over that of the spring",
-                        &Params::slip_share, 0b100000},
+                        &Params::slip_share, only(Law::slip)},
           Field<Params>{"slip_width", "m", 1e-9, 1.0, 1e-4, "stretch at which the joint slips", &Params::slip_width,
-                        0b100000}};
+                        only(Law::slip)}};
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
       return std::array{T{"deflection", "m", "added_at_deflection", "m", -1.0, 1.0, "what is added at a deflection",
-                          &Params::table, 0b01, 5e-5},
+                          &Params::table, only(Law::deflection), 5e-5},
                         T{"angle", "rad", "added_at_angle", "m", -1.0, 1.0, "what is added at an engine angle",
-                          &Params::table, 0b10, 5e-5},
+                          &Params::table, only(Law::angle), 5e-5},
                         T{"time", "s", "stiffness_at_time", "1", -0.95, 10.0,
-                          "share by which the spring is stiffer at a time of the record", &Params::table, 0b1000, 0.1}};
+                          "share by which the spring is stiffer at a time of the record", &Params::table,
+                          only(Law::stiffness_along_time), 0.1}};
     }
   };
 
@@ -72,30 +75,24 @@ struct UnlistedDeflection {
   template <class S>
   static Spring<S> step(const Params<S>& params, State<S>& state, const Spring<S>& input) noexcept {
     Spring<S> output = input;
-    if (params.option == 2) {
-      output.deflection = input.deflection - params.creep_share * relaxed(state, input, params.creep_time);
-    } else if (params.option == 4) {
+    const Law law = law_of<UnlistedDeflection>(params);
+    if (law == Law::creep) {
       output.deflection =
-          input.deflection + params.damping_share * (input.deflection - relaxed(state, input, params.damping_time));
-    } else if (params.option == 5) {
-      state.stretch = clamp_symmetric<S>(state.stretch + (input.deflection - state.last), params.slip_width);
+          input.deflection - params.creep_share * lag_of_moving(state.relaxed, input.deflection, params.creep_time, input.h);
+    } else if (law == Law::deflection_rate) {
+      output.deflection =
+          input.deflection + params.damping_share * (input.deflection - lag_of_moving(state.relaxed, input.deflection,
+                                                                                      params.damping_time, input.h));
+    } else if (law == Law::slip) {
+      state.stretch = stop_after<S>(state.stretch, input.deflection - state.last, params.slip_width);
       state.last = input.deflection;
       output.deflection += params.slip_share * state.stretch;
-    } else if (params.option == 3) {
+    } else if (law == Law::stiffness_along_time) {
       output.deflection = input.deflection * (1.0 + unlisted::value_at<S>(params.table, input.time));
     } else {
-      output.deflection += unlisted::value_at<S>(params.table, params.option == 0 ? input.deflection : input.angle);
+      output.deflection += unlisted::value_at<S>(params.table, law == Law::deflection ? input.deflection : input.angle);
     }
     return output;
-  }
-
- private:
-  /// What follows the deflection with a time constant, mean over the step.
-  template <class S>
-  static S relaxed(State<S>& state, const Spring<S>& input, const S& time) noexcept {
-    const S start = state.relaxed;
-    state.relaxed = input.deflection + (start - input.deflection) * fading_exponential<S>(input.h / time);
-    return 0.5 * (start + state.relaxed);
   }
 };
 

@@ -19,6 +19,19 @@ struct UnlistedMotion {
   static constexpr Site site = at;
   static constexpr bool is_unlisted = true;
   static constexpr bool has_load = at != Site::mass_force;
+  enum class Law {
+    position,
+    rate,
+    friction_along_position,
+    damping_along_position,
+    time,
+    periodic,
+    friction_along_distance,
+    damping_along_distance,
+    friction_along_time,
+    damping_along_time,
+    friction_along_load
+  };  ///< in the order of `options`
   static constexpr auto options = [] {
     constexpr std::array<std::string_view, 11> all{"position",
                                                    "rate",
@@ -47,36 +60,40 @@ struct UnlistedMotion {
     S phase{0.0};
     UnlistedTable<S> table{};
     static constexpr auto fields() {
-      return std::array{
-          Field<Params>{"stiffness", Names::stiffness_unit, 1e-6, 1e15, Names::typical_stiffness,
-                        "stiffness of the friction before it slides", &Params::stiffness, 0b10101000100},
-          Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100000},
-          Field<Params>{"amplitude", Names::unit, 0.0, 1e12, Names::typical, "amplitude of the sinusoid", &Params::amplitude,
-                        0b100000},
-          unlisted::phase_field<Params>(0b100000)};
+      return std::array{Field<Params>{"stiffness", Names::stiffness_unit, 1e-6, 1e15, Names::typical_stiffness,
+                                      "stiffness of the friction before it slides", &Params::stiffness,
+                                      only(Law::friction_along_position, Law::friction_along_distance,
+                                           Law::friction_along_time, Law::friction_along_load)},
+                        Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency,
+                                      only(Law::periodic)},
+                        Field<Params>{"amplitude", Names::unit, 0.0, 1e12, Names::typical, "amplitude of the sinusoid",
+                                      &Params::amplitude, only(Law::periodic)},
+                        unlisted::phase_field<Params>(only(Law::periodic))};
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
       const std::array without_load{
           T{"position", Names::position_unit, "force_at_position", Names::unit, -1e12, 1e12,
-            "force against positive motion at a position", &Params::table, 0b00001, Names::typical},
+            "force against positive motion at a position", &Params::table, only(Law::position), Names::typical},
           T{"rate", Names::rate_unit, "force_at_rate", Names::unit, -1e12, 1e12, "force against positive motion at a rate",
-            &Params::table, 0b00010, Names::typical},
+            &Params::table, only(Law::rate), Names::typical},
           T{"position_of_friction", Names::position_unit, "friction_at_position", Names::unit, -1e12, 1e12,
-            "level of dry friction at a position; none where negative", &Params::table, 0b00100, Names::typical},
-          T{"position_of_damping", Names::position_unit, "damping_at_position", Names::damping_unit, -1e12, 1e12,
-            "damping at a position", &Params::table, 0b01000, Names::typical_damping},
-          T{"distance_of_friction", Names::position_unit, "friction_at_distance", Names::unit, -1e12, 1e12,
-            "level of dry friction at a distance from zero; none where negative", &Params::table, 0b1000000, Names::typical},
-          T{"distance_of_damping", Names::position_unit, "damping_at_distance", Names::damping_unit, -1e12, 1e12,
-            "damping at a distance from zero", &Params::table, 0b10000000, Names::typical_damping},
-          T{"time", "s", "force_at_time", Names::unit, -1e12, 1e12, "force against positive motion at a time of the record",
-            &Params::table, 0b10000, Names::typical},
-          T{"time_of_friction", "s", "friction_at_time", Names::unit, -1e12, 1e12,
-            "level of dry friction at a time of the record; none where negative", &Params::table, 0b100000000,
+            "level of dry friction at a position; none where negative", &Params::table, only(Law::friction_along_position),
             Names::typical},
+          T{"position_of_damping", Names::position_unit, "damping_at_position", Names::damping_unit, -1e12, 1e12,
+            "damping at a position", &Params::table, only(Law::damping_along_position), Names::typical_damping},
+          T{"distance_of_friction", Names::position_unit, "friction_at_distance", Names::unit, -1e12, 1e12,
+            "level of dry friction at a distance from zero; none where negative", &Params::table,
+            only(Law::friction_along_distance), Names::typical},
+          T{"distance_of_damping", Names::position_unit, "damping_at_distance", Names::damping_unit, -1e12, 1e12,
+            "damping at a distance from zero", &Params::table, only(Law::damping_along_distance), Names::typical_damping},
+          T{"time", "s", "force_at_time", Names::unit, -1e12, 1e12, "force against positive motion at a time of the record",
+            &Params::table, only(Law::time), Names::typical},
+          T{"time_of_friction", "s", "friction_at_time", Names::unit, -1e12, 1e12,
+            "level of dry friction at a time of the record; none where negative", &Params::table,
+            only(Law::friction_along_time), Names::typical},
           T{"time_of_damping", "s", "damping_at_time", Names::damping_unit, -1e12, 1e12, "damping at a time of the record",
-            &Params::table, 0b1000000000, Names::typical_damping}};
+            &Params::table, only(Law::damping_along_time), Names::typical_damping}};
       if constexpr (has_load) {
         std::array<T, without_load.size() + 1> all{};
         std::copy(without_load.begin(), without_load.end(), all.begin());
@@ -88,7 +105,7 @@ struct UnlistedMotion {
                        1e12,
                        "level of dry friction under a size of the load; none where negative",
                        &Params::table,
-                       0b10000000000,
+                       only(Law::friction_along_load),
                        Names::typical};
         return all;
       } else {
@@ -104,30 +121,31 @@ struct UnlistedMotion {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Motion<S>& input) noexcept {
-    switch (params.option) {
-      case 0:
+    switch (law_of<UnlistedMotion>(params)) {
+      case Law::position:
         return unlisted::value_at<S>(params.table, input.position);
-      case 1:
+      case Law::rate:
         return unlisted::force_at_rate<S>(params.table, input);
-      case 2:
+      case Law::friction_along_position:
         return friction(params, state, input, input.position);
-      case 3:
+      case Law::damping_along_position:
         return damping(params, input, input.position);
-      case 4:
+      case Law::time:
         return unlisted::value_at<S>(params.table, input.time);
-      case 5:
+      case Law::periodic:
         return unlisted::periodic(params, params.amplitude, input.time);
-      case 6:
+      case Law::friction_along_distance:
         return friction(params, state, input, S(input.position * sign_of(input.position)));
-      case 7:
+      case Law::damping_along_distance:
         return damping(params, input, S(input.position * sign_of(input.position)));
-      case 8:
+      case Law::friction_along_time:
         return friction(params, state, input, input.time);
-      case 9:
+      case Law::damping_along_time:
         return damping(params, input, input.time);
-      default:
+      case Law::friction_along_load:
         return friction(params, state, input, S(input.load * sign_of(input.load)));
     }
+    return S{0.0};
   }
 
  private:

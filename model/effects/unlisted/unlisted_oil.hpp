@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/effects/unlisted/unlisted.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -13,6 +13,7 @@ struct UnlistedFlow {
   static constexpr std::string_view name = "unlisted_flow";
   static constexpr Site site = Site::flow;
   static constexpr bool is_unlisted = true;
+  enum class Law { load_pressure, opening, time, recent_flow };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 4> options{"load_pressure", "opening", "time", "recent_flow"};
   static constexpr std::string_view option_key = "depends_on";
 
@@ -24,18 +25,19 @@ struct UnlistedFlow {
     UnlistedTable<S> table{};
     static constexpr auto fields() {
       return std::array{Field<Params>{"memory", "s", 1e-3, 1e3, 0.2, "time constant over which flow is remembered",
-                                      &Params::memory, 0b1000}};
+                                      &Params::memory, only(Law::recent_flow)}};
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
-      return std::array{T{"load_pressure", "Pa", "flow_at_pressure", "m^3/s", -1.0, 1.0, "further flow at a load pressure",
-                          &Params::table, 0b001, 5e-5},
-                        T{"opening", "1", "flow_at_opening", "m^3/s", -1.0, 1.0, "further flow at a spool position",
-                          &Params::table, 0b010, 5e-5},
-                        T{"time", "s", "flow_at_time", "m^3/s", -1.0, 1.0, "further flow at a time of the record",
-                          &Params::table, 0b100, 5e-5},
-                        T{"recent_flow", "m^3/s", "share_at_recent_flow", "1", -1.0, 10.0,
-                          "share by which the valve's flow grows with the flow of late", &Params::table, 0b1000, 0.1}};
+      return std::array{
+          T{"load_pressure", "Pa", "flow_at_pressure", "m^3/s", -1.0, 1.0, "further flow at a load pressure", &Params::table,
+            only(Law::load_pressure), 5e-5},
+          T{"opening", "1", "flow_at_opening", "m^3/s", -1.0, 1.0, "further flow at a spool position", &Params::table,
+            only(Law::opening), 5e-5},
+          T{"time", "s", "flow_at_time", "m^3/s", -1.0, 1.0, "further flow at a time of the record", &Params::table,
+            only(Law::time), 5e-5},
+          T{"recent_flow", "m^3/s", "share_at_recent_flow", "1", -1.0, 10.0,
+            "share by which the valve's flow grows with the flow of late", &Params::table, only(Law::recent_flow), 0.1}};
     }
   };
 
@@ -51,13 +53,13 @@ struct UnlistedFlow {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Hydraulics<S>& input) noexcept {
-    if (params.option == 3) {
+    const Law law = law_of<UnlistedFlow>(params);
+    if (law == Law::recent_flow) {
       const S magnitude = input.flow * sign_of(input.flow);
-      const S start = state.recent;
-      state.recent = magnitude + (start - magnitude) * fading_exponential<S>(input.h / params.memory);
-      return input.flow * unlisted::value_at<S>(params.table, S(0.5 * (start + state.recent)));
+      const S remembered = lag_of_moving(state.recent, magnitude, params.memory, input.h);
+      return input.flow * unlisted::value_at<S>(params.table, remembered);
     }
-    const Precise<S>& x = params.option == 0 ? input.load_pressure : params.option == 1 ? input.opening : input.time;
+    const Precise<S>& x = law == Law::load_pressure ? input.load_pressure : law == Law::opening ? input.opening : input.time;
     return unlisted::value_at<S>(params.table, x);
   }
 };
@@ -80,7 +82,7 @@ struct UnlistedPressure {
     static constexpr auto tables() {
       return std::array{TableField<Params, UnlistedTable<S>>{
           "load_pressure", "Pa", "compressibility_at_pressure", "1", -0.5, 1000.0,
-          "share by which the oil is more compressible than declared at a load pressure", &Params::table, 0b1, 0.2}};
+          "share by which the oil is more compressible than declared at a load pressure", &Params::table, ~0U, 0.2}};
     }
   };
 

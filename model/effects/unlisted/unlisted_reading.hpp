@@ -10,6 +10,7 @@ struct UnlistedReading {
   static constexpr std::string_view name = "unlisted_reading";
   static constexpr Site site = Site::sensor;
   static constexpr bool is_unlisted = true;
+  enum class Law { piston, engine };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 2> options{"piston", "engine"};
   static constexpr std::string_view option_key = "channel";
 
@@ -22,9 +23,9 @@ struct UnlistedReading {
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
       return std::array{T{"position", "m", "error_at_position", "m", -1.0, 1.0, "what the sensor adds at a piston position",
-                          &Params::table, 0b01, 1e-4},
+                          &Params::table, only(Law::piston), 1e-4},
                         T{"angle", "rad", "error_at_angle", "rad", -1.0, 1.0, "what the sensor adds at an engine angle",
-                          &Params::table, 0b10, 1e-4}};
+                          &Params::table, only(Law::engine), 1e-4}};
     }
   };
 
@@ -42,6 +43,7 @@ struct UnlistedDrift {
   static constexpr std::string_view name = "unlisted_drift";
   static constexpr Site site = Site::sensor;
   static constexpr bool is_unlisted = true;
+  enum class Law { piston, engine };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 2> options{"piston", "engine"};
   static constexpr std::string_view option_key = "channel";
 
@@ -54,9 +56,9 @@ struct UnlistedDrift {
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
       return std::array{T{"time_of_piston", "s", "piston_error_at_time", "m", -1.0, 1.0,
-                          "what the piston's sensor adds at a time of the record", &Params::table, 0b01, 1e-4},
+                          "what the piston's sensor adds at a time of the record", &Params::table, only(Law::piston), 1e-4},
                         T{"time_of_engine", "s", "engine_error_at_time", "rad", -1.0, 1.0,
-                          "what the engine's sensor adds at a time of the record", &Params::table, 0b10, 1e-4}};
+                          "what the engine's sensor adds at a time of the record", &Params::table, only(Law::engine), 1e-4}};
     }
   };
 

@@ -6,7 +6,7 @@
 #include "model/effects/command/rate_limit.hpp"
 #include "model/effects/unlisted/unlisted.hpp"
 #include "model/numerics/delay_line.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -19,6 +19,7 @@ struct UnlistedSignal {
   static constexpr Site site = at;
   static constexpr bool is_unlisted = true;
   static constexpr bool can_be_late = at == Site::command;
+  enum class Law { value, time, periodic, delay_along_distance, lag };  ///< in the order of `options`
   static constexpr auto options = [] {
     if constexpr (can_be_late) {
       return std::array<std::string_view, 5>{"value", "time", "periodic", "delay_along_distance", "lag"};
@@ -38,12 +39,13 @@ struct UnlistedSignal {
     S lag_time{0.0};
     UnlistedTable<S> table{};
     static constexpr auto fields() {
-      constexpr std::array kAll{
-          Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid", &Params::frequency, 0b100},
-          Field<Params>{"amplitude", Names::unit, 0.0, Names::largest, Names::typical, "amplitude of the sinusoid",
-                        &Params::amplitude, 0b100},
-          unlisted::phase_field<Params>(0b100),
-          Field<Params>{"lag_time", "s", 0.0, 10.0, 5e-3, "time constant of the command's lag", &Params::lag_time, 0b10000}};
+      constexpr std::array kAll{Field<Params>{"frequency", "Hz", 1e-3, 1e3, 0.5, "frequency of the sinusoid",
+                                              &Params::frequency, only(Law::periodic)},
+                                Field<Params>{"amplitude", Names::unit, 0.0, Names::largest, Names::typical,
+                                              "amplitude of the sinusoid", &Params::amplitude, only(Law::periodic)},
+                                unlisted::phase_field<Params>(only(Law::periodic)),
+                                Field<Params>{"lag_time", "s", 0.0, 10.0, 5e-3, "time constant of the command's lag",
+                                              &Params::lag_time, only(Law::lag)}};
       std::array<Field<Params>, can_be_late ? kAll.size() : kAll.size() - 1> own{};
       std::copy_n(kAll.begin(), own.size(), own.begin());
       return own;
@@ -58,7 +60,7 @@ struct UnlistedSignal {
                          Names::largest,
                          "what is added at a value of the signal",
                          &Params::table,
-                         0b001,
+                         only(Law::value),
                          Names::typical};
       constexpr T kTime{"time",
                         "s",
@@ -68,12 +70,13 @@ struct UnlistedSignal {
                         Names::largest,
                         "what is added at a time of the record",
                         &Params::table,
-                        0b010,
+                        only(Law::time),
                         Names::typical};
       if constexpr (can_be_late) {
-        return std::array{kValue, kTime,
-                          T{"distance_of_delay", Names::unit, "delay_at_distance", "s", 0.0, kLongestCommandDelay,
-                            "delay of the signal at a distance from zero", &Params::table, 0b1000, 5e-3}};
+        return std::array{
+            kValue, kTime,
+            T{"distance_of_delay", Names::unit, "delay_at_distance", "s", 0.0, kLongestCommandDelay,
+              "delay of the signal at a distance from zero", &Params::table, only(Law::delay_along_distance), 5e-3}};
       } else {
         return std::array{kValue, kTime};
       }
@@ -99,34 +102,25 @@ struct UnlistedSignal {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
+    const Law law = law_of<UnlistedSignal>(params);
     if constexpr (can_be_late) {
-      if (params.option == 3) {
+      if (law == Law::delay_along_distance) {
         const S distance = input.value * sign_of(input.value);
         const S delay = unlisted::value_at<S>(params.table, distance);
         return state.earlier.pass(input.value, value_of(delay) < 0.0 ? S{0.0} : delay, input.h);
       }
-      if (params.option == 4) {
-        return lagged(state, input, params.lag_time);
+      if (law == Law::lag) {
+        return lag_of_held(state.lagged, input.value, params.lag_time, input.h);
       }
     }
-    switch (params.option) {
-      case 0:
+    switch (law) {
+      case Law::value:
         return input.value + unlisted::value_at<S>(params.table, input.value);
-      case 1:
+      case Law::time:
         return input.value + unlisted::value_at<S>(params.table, input.time);
       default:
         return input.value + unlisted::periodic(params, params.amplitude, input.time);
     }
-  }
-
- private:
-  /// What follows the signal with a time constant, mean over a step in which the signal is held.
-  template <class S>
-  static S lagged(State<S>& state, const Signal<S>& input, const S& time) noexcept {
-    const S behind = state.lagged - input.value;
-    const S left = fading_exponential<S>(input.h / time);
-    state.lagged = input.value + behind * left;
-    return input.value + behind * (1.0 - left) * (time / input.h);
   }
 };
 
@@ -137,6 +131,7 @@ struct UnlistedOpening {
   static constexpr std::string_view name = "unlisted_valve";
   static constexpr Site site = Site::valve;
   static constexpr bool is_unlisted = true;
+  enum class Law { value, gain_along_time, slew };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 3> options{"value", "gain_along_time", "slew"};
   static constexpr std::string_view option_key = "depends_on";
 
@@ -148,14 +143,15 @@ struct UnlistedOpening {
     UnlistedTable<S> table{};
     static constexpr auto fields() {
       return std::array{Field<Params>{"slew_rate", "1/s", 1e-3, RateLimit::kNoLimit, 10.0, "largest rate of the spool",
-                                      &Params::slew_rate, 0b100}};
+                                      &Params::slew_rate, only(Law::slew)}};
     }
     static constexpr auto tables() {
       using T = TableField<Params, UnlistedTable<S>>;
-      return std::array{T{"value", "1", "added_at_value", "1", -10.0, 10.0, "what is added at a spool position",
-                          &Params::table, 0b01, 0.02},
-                        T{"time", "s", "gain_at_time", "1", -1.0, 10.0,
-                          "share by which the opening grows at a time of the record", &Params::table, 0b10, 0.05}};
+      return std::array{
+          T{"value", "1", "added_at_value", "1", -10.0, 10.0, "what is added at a spool position", &Params::table,
+            only(Law::value), 0.02},
+          T{"time", "s", "gain_at_time", "1", -1.0, 10.0, "share by which the opening grows at a time of the record",
+            &Params::table, only(Law::gain_along_time), 0.05}};
     }
   };
 
@@ -171,11 +167,12 @@ struct UnlistedOpening {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
-    if (params.option == 2) {
+    const Law law = law_of<UnlistedOpening>(params);
+    if (law == Law::slew) {
       return RateLimit::step<S>({0, params.slew_rate}, state.slewed, input);
     }
-    return params.option == 0 ? S(input.value + unlisted::value_at<S>(params.table, input.value))
-                              : S(input.value * (1.0 + unlisted::value_at<S>(params.table, input.time)));
+    return law == Law::value ? S(input.value + unlisted::value_at<S>(params.table, input.value))
+                             : S(input.value * (1.0 + unlisted::value_at<S>(params.table, input.time)));
   }
 };
 

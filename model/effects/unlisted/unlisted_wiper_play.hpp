@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/effects/unlisted/unlisted.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -12,6 +12,7 @@ struct UnlistedWiperPlay {
   static constexpr std::string_view name = "unlisted_wiper_play";
   static constexpr Site site = Site::sensor;
   static constexpr bool is_unlisted = true;
+  enum class Law { piston, engine };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 2> options{"piston", "engine"};
   static constexpr std::string_view option_key = "channel";
 
@@ -22,8 +23,9 @@ struct UnlistedWiperPlay {
     S half_width{0.0};
     S half_angle{0.0};
     static constexpr auto fields() {
-      return std::array{Field<Params>{"half_width", "m", 0.0, 1.0, 1e-4, "half of the play", &Params::half_width, 0b01},
-                        Field<Params>{"half_angle", "rad", 0.0, 1.0, 2e-4, "half of the play", &Params::half_angle, 0b10}};
+      return std::array{
+          Field<Params>{"half_width", "m", 0.0, 1.0, 1e-4, "half of the play", &Params::half_width, only(Law::piston)},
+          Field<Params>{"half_angle", "rad", 0.0, 1.0, 2e-4, "half of the play", &Params::half_angle, only(Law::engine)}};
     }
   };
 
@@ -41,8 +43,8 @@ struct UnlistedWiperPlay {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
-    state.distance = clamp_symmetric<S>(state.distance + (input.value - state.last),
-                                        params.option == 0 ? params.half_width : params.half_angle);
+    state.distance = stop_after<S>(state.distance, input.value - state.last,
+                                   law_of<UnlistedWiperPlay>(params) == Law::piston ? params.half_width : params.half_angle);
     state.last = input.value;
     return input.value - state.distance;
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/declaration/effect.hpp"
-#include "model/numerics/scalar.hpp"
+#include "model/numerics/operators.hpp"
 
 namespace hotfire::model {
 
@@ -34,8 +34,8 @@ struct ValveHysteresis {
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
     const S half_change = 0.5 * input.change;
-    const S start = clamp_symmetric<S>(state.distance + (input.value - half_change - state.last), params.half_width);
-    const S end = clamp_symmetric<S>(start + input.change, params.half_width);
+    const S start = stop_after<S>(state.distance, input.value - half_change - state.last, params.half_width);
+    const S end = stop_after<S>(start, input.change, params.half_width);
     // The share of the step after which the play is taken up.
     const bool moves = value_of(input.change) != 0.0;
     const S share = moves ? S((end - start) / input.change) : S{0.0};

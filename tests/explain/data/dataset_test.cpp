@@ -82,7 +82,7 @@ TEST(Dataset, AnExclusionThatNamesNoRecordOrNoTimeIsRefusedWithItsForm) {
   }
 }
 
-TEST(Dataset, WhatLacksOrIsWrongInExcludedRowsIsBridgedAndTheCommandHolds) {
+TEST(Dataset, WhatIsMissingOrWrongInExcludedRowsIsBridgedAndTheCommandHolds) {
   std::vector<double> command(5000);
   std::vector<double> piston(5000);
   for (std::size_t row = 0; row < command.size(); ++row) {
@@ -105,7 +105,7 @@ TEST(Dataset, WhatLacksOrIsWrongInExcludedRowsIsBridgedAndTheCommandHolds) {
   }
 }
 
-TEST(Dataset, AValueThatLacksBesideAnExclusionIsRefusedWithItsTime) {
+TEST(Dataset, AMissingValueBesideAnExclusionIsRefusedWithItsTime) {
   std::vector<double> piston(5000, 0.001);
   piston[1500] = std::nan("");
   try {

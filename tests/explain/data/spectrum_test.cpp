@@ -37,7 +37,7 @@ TEST_GROUP(Spectrum){};
 // A sinusoid of 1.4 times the noise's rms in 45,000 fitted rows has its frequency told to sqrt(6) / (pi T) / (snr
 // sqrt(rows)) (Rife and Boorstyn 1974), 4e-5 Hz; what is asked is that a fit can start from it: a twentieth of a cycle over
 // the longest record, 8e-4 Hz, where the averaged spectrum's bins are 0.125 Hz apart.
-TEST(Spectrum, ASinusoidIsToldToASmallPartOfACycleOverTheLongestRecord) {
+TEST(Spectrum, ASinusoidIsIdentifiedToASmallPartOfACycleOverTheLongestRecord) {
   hotfire::ModelFile model;
   model.parameters = hotfire::SimplexParameters{};
   model.noise = {{"piston", kNoise}};

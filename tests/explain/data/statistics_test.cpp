@@ -32,7 +32,7 @@ std::vector<double> coloured_noise(std::size_t count, double a) {
 
 TEST_GROUP(Statistics){};
 
-TEST(Statistics, NoiseIsToldFromDifferencesUnderASignalAThousandTimesLarger) {
+TEST(Statistics, NoiseIsEstimatedFromDifferencesUnderASignalAThousandTimesLarger) {
   std::vector<double> values = white_noise(20000, 8e-6);
   for (std::size_t i = 0; i < values.size(); ++i) {
     values[i] += 8e-3 * std::sin(2.0 * 3.14159265 * 1.0 * static_cast<double>(i) * 0.002);

@@ -113,7 +113,7 @@ TEST(Zeros, DerivativesAreOfTheWhitenedResiduals) {
 
 /// A constant of the plant is told by what it does to the motion, not by where a sensor reads zero: with free zeros a shift
 /// of the command leaves no derivative but what the prior holds, sqrt(n) noise / deviation of it.
-TEST(Zeros, AShiftThatAZeroCanBeIsNotTold) {
+TEST(Zeros, AShiftThatAZeroCanBeIsNotIdentified) {
   Dataset free_zero = moving_axis(kDeviation);
   Dataset known_zero = moving_axis(0.0);
   Eigen::VectorXd shift[2];

@@ -54,7 +54,7 @@ TEST(CommonBias, ZerosThatDifferBetweenRecordsOrChannelsAreTheSensors) {
   CHECK(!common_valve_bias(two_records(), zeros, axis));
 }
 
-TEST(CommonBias, ZerosBelowTheNoiseOfOneReadingAndSingleRecordsTellNone) {
+TEST(CommonBias, ZerosBelowTheNoiseOfOneReadingAndSingleRecordsIdentifyNone) {
   const PlainParameters<SimplexFamily> axis;
   CHECK(!common_valve_bias(two_records(), of_bias(axis, 1e-4), axis));
   Dataset one = two_records();

@@ -10,7 +10,7 @@ namespace {
 using namespace hotfire::explain;
 
 /// An axis whose load spring and inertia are known to 5 and 2 %, and what its data add to that: `along` counts how well they
-/// tell the notch, `each` every coordinate by itself.
+/// identify the notch, `each` every coordinate by itself.
 Fitted<SimplexFamily> axis(double along, double each) {
   Fitted<SimplexFamily> fitted;
   fitted.free = declared_parameters<SimplexFamily>(fitted.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
@@ -29,8 +29,8 @@ Fitted<SimplexFamily> axis(double along, double each) {
 
 TEST_GROUP(Identifiability){};
 
-TEST(Identifiability, OfANotchOnlyItsFrequencyIsTold) {
-  const auto sentences = not_told_apart(axis(1e7, 0.0));
+TEST(Identifiability, OfANotchOnlyItsFrequencyIsIdentified) {
+  const auto sentences = not_separated(axis(1e7, 0.0));
   CHECK_EQUAL(1U, sentences.size());
   STRCMP_CONTAINS("K_T R^2 / J", sentences.front().c_str());
   STRCMP_CONTAINS("engine.inertia (", sentences.front().c_str());
@@ -39,10 +39,10 @@ TEST(Identifiability, OfANotchOnlyItsFrequencyIsTold) {
   STRCMP_CONTAINS("to 0.032 %. They do not identify its factors separately", sentences.front().c_str());
 }
 
-TEST(Identifiability, WhereEachIsToldThereIsNothingToSay) { CHECK_TRUE(not_told_apart(axis(1e7, 1e6)).empty()); }
+TEST(Identifiability, NoSentenceWhereEachIsDetermined) { CHECK_TRUE(not_separated(axis(1e7, 1e6)).empty()); }
 
-TEST(Identifiability, WhereTheDataSayNothingTheDeclarationStands) {
-  const auto sentences = not_told_apart(axis(0.0, 0.0));
+TEST(Identifiability, WhereTheDataSayNothingTheDeclarationRemains) {
+  const auto sentences = not_separated(axis(0.0, 0.0));
   CHECK_EQUAL(1U, sentences.size());
   STRCMP_CONTAINS("say little about structure.stiffness, engine.inertia", sentences.front().c_str());
 }
@@ -52,11 +52,11 @@ TEST(Identifiability, ParametersOfWhichOneMakesUpForTheOtherAreNamedWithTheirRat
   fitted.free =
       declared_parameters<SimplexFamily>(fitted.base, {{"engine.viscous_damping", 0.3}, {"actuator.piston_damping", 0.3}});
   fitted.u.assign(2, 0.0);
-  // The sum of their coordinates is told a hundred times better than either: with one larger the other is smaller by as
-  // much.
+  // The sum of their coordinates is identified a hundred times better than either: with one larger the other is smaller by
+  // as much.
   const Eigen::Vector2d sum(1.0, 1.0);
   fitted.normal = 1e4 * sum * sum.transpose() + Eigen::Matrix2d::Identity();
-  const auto sentences = not_told_apart(fitted);
+  const auto sentences = not_separated(fitted);
   CHECK_EQUAL(1U, sentences.size());
   STRCMP_CONTAINS("With actuator.piston_damping larger by 1 %, engine.viscous_damping smaller by 1 %",
                   sentences.front().c_str());

@@ -13,15 +13,13 @@ namespace {
 
 using namespace hotfire::explain;
 
-constexpr const char* kKey = "effects.leakage.coefficient";
-
-/// A leaking axis whose leak, searched in logarithms, is told to the relative deviation `told`: measured with noise that
-/// leaves it so. The declared leakage, which does the same, is free if `with_other`.
+/// A leaking axis whose leak, searched in logarithms, is identified to the relative deviation `deviation`: the noise of the
+/// record is chosen for it. The declared leakage, which does the same, is free if `with_other`.
 struct LeakingAxis {
   Dataset data;
   Fitted<SimplexFamily> fitted;
 
-  LeakingAxis(double told, bool with_other) {
+  LeakingAxis(double deviation, bool with_other) {
     data.channels = {"piston", "engine", "load_pressure"};
     data.used = {true, true, false};
     data.noise = {1.0, 1.0, 1.0};
@@ -47,7 +45,7 @@ struct LeakingAxis {
     // No prior but the data's.
     fitted.free.front().prior_deviation = 0.0;
     fitted.u = {std::log(2e-11)};
-    measure(told);
+    measure(deviation);
     if (with_other) {
       const auto other = declared_parameters<SimplexFamily>(fitted.base, {{"actuator.leakage", 1.0}});
       fitted.free.insert(fitted.free.end(), other.begin(), other.end());
@@ -58,6 +56,7 @@ struct LeakingAxis {
     CHECK_TRUE(fit(evaluator, fitted, {30, 1, 1e-9, Slopes::exact, nullptr}));
   }
 
+  const Address& leak() const { return fitted.free.front().address; }
   double value() const { return fitted.free.front().value(fitted.u.front()); }
   Intervals profile() const { return profile_intervals(Evaluator<SimplexFamily>(data, Resolution::fine), fitted, 1); }
   double half_of_curvature() const {
@@ -67,12 +66,12 @@ struct LeakingAxis {
   }
 
  private:
-  void measure(double told) {
+  void measure(double deviation) {
     const std::vector<std::size_t> all{0};
     Eigen::MatrixXd jacobian;
     const Evaluator<SimplexFamily> silent(data, Resolution::fine);
     CHECK_TRUE(silent.differentiate(fitted.base, fitted.free, fitted.u, all, 1, jacobian));
-    data.noise.assign(3, told * jacobian.norm());
+    data.noise.assign(3, deviation * jacobian.norm());
     data.experiments.front().noise = data.noise;
     Prediction truth;
     CHECK_TRUE(silent.predict(fitted.base, fitted.free, fitted.u, 1, truth));
@@ -91,28 +90,29 @@ struct LeakingAxis {
 TEST_GROUP(Profile){};
 
 // What an axis does answers a leak in proportion, so that the error is a parabola over the leak itself and its interval
-// symmetric there. Over its logarithm the curvature gives an interval that reaches twice as far up as down, exp(1.96 told).
-TEST(Profile, OfAParameterThatIsSearchedInLogarithmsAndTellsInProportionTheIntervalIsSymmetricInItself) {
+// symmetric there. Over its logarithm the curvature gives an interval that reaches twice as far up as down, exp(1.96
+// deviation).
+TEST(Profile, OfAParameterThatIsSearchedInLogarithmsAndIsKnownInProportionTheIntervalIsSymmetricInItself) {
   const LeakingAxis axis(0.35, false);
   const Intervals intervals = axis.profile();
   CHECK_EQUAL(1U, intervals.size());
-  const auto [low, high] = intervals.at(kKey);
+  const auto [low, high] = intervals.at(axis.leak());
   const double ratio = (high - axis.value()) / (axis.value() - low);
   // Either end is found to 2 % of it; a tenth is left for what is not in proportion.
   DOUBLES_EQUAL(1.0, ratio, 0.14);
   CHECK_TRUE(std::exp(axis.half_of_curvature()) > 1.6);
 }
 
-TEST(Profile, AParameterThatIsToldToAPercentKeepsTheIntervalOfTheCurvature) {
+TEST(Profile, AParameterThatIsIdentifiedToAPercentKeepsTheIntervalOfTheCurvature) {
   CHECK_TRUE(LeakingAxis(0.01, false).profile().empty());
 }
 
-TEST(Profile, WhatAnotherParameterCanStandInForIsToldLess) {
+TEST(Profile, AnotherParameterOfTheSameEffectWidensTheInterval) {
   const LeakingAxis alone(0.25, false);
   const LeakingAxis with_other(0.25, true);
   const auto width = [](const LeakingAxis& axis) {
     const auto intervals = axis.profile();
-    const auto [low, high] = intervals.at(kKey);
+    const auto [low, high] = intervals.at(axis.leak());
     return high - low;
   };
   CHECK_TRUE(width(with_other) > width(alone));

@@ -62,7 +62,7 @@ ModelFile with_effect(std::initializer_list<double> values, int option = 0) {
       effect.option = option;
       auto value = values.begin();
       for (const auto& field : std::remove_cvref_t<decltype(effect)>::fields()) {
-        if (value != values.end() && (field.options >> option & 1U) != 0) {
+        if (value != values.end() && model::is_used(field.options, option)) {
           effect.*field.member = *value++;
         }
       }

@@ -26,8 +26,8 @@ Value value_of(double value, const std::string& unit, const std::optional<explai
 
 /// Names and sites. With other noise or fewer rows a term without a name may be a gain in one answer and a curve in the
 /// other.
-std::set<std::string> finds_of(const Answer& answer, Agreement agreement) {
-  std::set<std::string> finds;
+std::multiset<std::string> finds_of(const Answer& answer, Agreement agreement) {
+  std::multiset<std::string> finds;
   for (const Find& find : answer.finds) {
     const bool says_law = agreement != Agreement::other || find.name != "unlisted";
     finds.insert(fmt::format("{} {} at {}", find.name, says_law ? find.law : "", find.site));

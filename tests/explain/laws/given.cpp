@@ -118,7 +118,7 @@ Given whole() { return recorded_of(rig()); }
 
 Given soft() {
   return recorded_of(rig_with<model::SoftStiffness>([](auto& values) {
-    values.option = 3;  // saturation
+    values.option = static_cast<int>(model::SoftStiffness::Law::saturation);
     values.low_stiffness = 3e7;
     values.load_scale = 1e4;
   }));

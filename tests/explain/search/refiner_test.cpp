@@ -149,7 +149,7 @@ TEST(Refiner, AParameterThatTheDataDoNotTellFromTheEndOfItsRangeIsLeftOutWithIts
     auto lugre = strokes.refiner.ranked(guided_mass(strokes.data, strokes.scales, "lugre", 0.1), explain::kRanking);
     for (std::size_t k = 0; k < lugre.model.free.size(); ++k) {
       const explain::FreeParameter& parameter = lugre.model.free[k];
-      if (parameter.key.ends_with("static_ratio")) {
+      if (parameter.address.field == "static_ratio") {
         lugre.model.u[k] = std::max(lugre.model.u[k], parameter.coordinate(1.0002 * parameter.lower));
       }
     }

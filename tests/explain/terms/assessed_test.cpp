@@ -34,7 +34,7 @@ TEST(Assessed, WhatClearsTheWorstChannelCountsByTheRmsOverAll) {
   DOUBLES_EQUAL(std::sqrt(10.0 / 901.0), held_out_ratio(leaving({3.0, 1.0}), leaving({30.0, 1.0})), 1e-12);
 }
 
-TEST(Assessed, ADeclaredParameterSixTolerancesOffStandsInForSomethingAndAnEffectsOwnDoesNot) {
+TEST(Assessed, ADeclaredParameterSixTolerancesOffReplacesSomethingAndAnEffectsOwnDoesNot) {
   Fitted<SimplexFamily> model;
   model.free = declared_parameters<SimplexFamily>(model.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
   model.u = {2.0, -4.0};

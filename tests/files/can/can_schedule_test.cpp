@@ -101,7 +101,7 @@ TEST(CanSchedule, fd_layout_of_eight_actuators_at_1_khz_fits_1_and_5_Mbit) {
   CHECK(schedule.load() < hal::kLargestBusLoad);
 }
 
-TEST(CanSchedule, what_is_wrong_is_refused_with_line_key_and_mend) {
+TEST(CanSchedule, what_is_wrong_is_refused_with_line_key_and_remedy) {
   const std::string bus = "schema = 1\n[bus]\nbit_rate = 1e6\n[frames]\n";
   expect_message(refused(bus + "PISTON_3 = 0.001\n"), {"bus.toml:5", "frames.PISTON_3", "did you mean \"PISTON_1\""});
   expect_message(refused(bus + "SYNC = 1e-6\n"), {"bus.toml:5", "frames.SYNC", "allowed: 0.00025 to 10 s"});

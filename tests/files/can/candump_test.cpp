@@ -121,12 +121,12 @@ TEST(Candump, readings_of_two_nodes_make_one_row_and_a_lost_one_is_refused) {
     const auto row = [&](std::uint8_t i, const char* reading, double value) {
       return line(5.0 + 0.001 * i, node + reading + end, i, {{piston, value}});
     };
-    const auto told = [&](std::uint8_t i) {
+    const auto sync = [&](std::uint8_t i) {
       return line(5.0005 + 0.001 * i, fd ? "SERVOVALVE_COMMAND_FD" : "SERVOVALVE_COMMAND", i, {{"current_2", 0.01}});
     };
     const std::string two =
-        told(0) + row(0, "A", 0.01) + row(0, "B", 0.03) + told(1) + row(1, "A", 0.02) + row(1, "B", 0.04);
-    const Record record = load(two + told(2) + row(2, "A", 0.05), {2, 0.0});
+        sync(0) + row(0, "A", 0.01) + row(0, "B", 0.03) + sync(1) + row(1, "A", 0.02) + row(1, "B", 0.04);
+    const Record record = load(two + sync(2) + row(2, "A", 0.05), {2, 0.0});
     expect_values(record, "piston", {0.02, 0.03}, 1e-12);
     expect_message(refused(two + row(2, "A", 0.0) + row(3, "A", 0.0) + row(3, "B", 0.0), {2, 0.0}),
                    {"run.log:8", "B", "lost"});

@@ -10,7 +10,7 @@ using namespace hotfire::test;
 
 TEST_GROUP(Guess) { Scratch scratch; };
 
-TEST(Guess, AMapOfNamedColumnsReadsTheLogAsItStands) {
+TEST(Guess, AMapOfNamedColumnsReadsTheLogAsItIs) {
   std::string log = "Stand 3\nt (ms);BETA CMD [deg];stroke [mm];note\n";
   for (int i = 0; i < 20; ++i) {
     log += std::to_string(2 * i) + ";0.5;" + std::to_string(i) + ";word\n";
@@ -23,7 +23,7 @@ TEST(Guess, AMapOfNamedColumnsReadsTheLogAsItStands) {
   CHECK(record.find("command") != nullptr);
 }
 
-TEST(Guess, WhatNamesDoNotSayStandsAsAComment) {
+TEST(Guess, WhatNamesDoNotSayBecomesAComment) {
   const auto source =
       scratch.write("daq.txt",
                     "Sampling Interval:  0.001\nSample Number, CHANNEL0, Events\n1, -0.5, DAQ Start\n2, 0.25\n3, "

@@ -73,8 +73,8 @@ std::string log(int rows = 4) {
   return text;
 }
 
-std::string with(std::string text, const std::string& old, const std::string& mended) {
-  return text.replace(text.find(old), old.size(), mended);
+std::string with(std::string text, const std::string& old, const std::string& corrected) {
+  return text.replace(text.find(old), old.size(), corrected);
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ TEST(ImportCandump, log_of_our_own_frames_gives_what_convert_reads_of_it) {
   }
 }
 
-TEST(ImportCandump, log_without_a_dbc_file_is_refused_with_the_mend) {
+TEST(ImportCandump, log_without_a_dbc_file_is_refused_with_the_remedy) {
   const auto source = scratch.write("rig.log", log());
   try {
     import_source(source, "");

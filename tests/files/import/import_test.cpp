@@ -60,7 +60,7 @@ TEST(Import, TakesTheColumnsOfTheMapWithTheirUnitsAndSigns) {
   DOUBLES_EQUAL(7 * 0.0254, record.find("piston")->values[7], 1e-12);
 }
 
-TEST(Import, APeriodStandsForATimeColumn) {
+TEST(Import, APeriodReplacesATimeColumn) {
   const Record record = imported("schema = 1\nperiod = \"4 ms\"\n[channels.engine]\ncolumn = \"b\"\nunit = \"rad\"\n",
                                  "a,b\n1,0.25\n2,0.5\n3,0.75\n");
   DOUBLES_EQUAL(4e-3, record.period, 1e-12);
@@ -76,7 +76,7 @@ TEST(Import, ARaggedRowAndAWordAreRefusedWithTheirLine) {
   expect_message(refused(kMap, table("t;spare;BETA CMD;XP") + "40;1;n/a;2\n"), {"run.txt:24", "BETA CMD", "n/a"});
 }
 
-TEST(Import, ADeclaredDropOutKeepsWhatTheTableLacks) {
+TEST(Import, ADeclaredDropOutKeepsWhatIsMissingInTheTable) {
   std::string source = table("t;spare;BETA CMD;XP");
   const std::string row = "10 ; 9.5; 2.500000;-5\n";
   source.replace(source.find(row), row.size(), "10 ; ;  ;NaN\n");
@@ -99,7 +99,7 @@ TEST(Import, WhatMakesNoRecordIsRefusedAndLeavesNoFile) {
   CHECK(!std::filesystem::exists(scratch.path("run.csv")));
 }
 
-TEST(Import, AMapIsRefusedWithLineKeyAndMend) {
+TEST(Import, AMapIsRefusedWithLineKeyAndRemedy) {
   expect_message(refused("schema = 1\nperiod = \"2 ms\"\n", ""), {"map.toml", "channels", "missing"});
   expect_message(refused("schema = 1\n[channels.piston]\ncolumn = \"x\"\nunit = \"m\"\n", ""), {"time", "period"});
   expect_message(refused("schema = 1\nperiod = \"2 ms\"\n[channels.piston]\ncolum = \"x\"\n", ""),

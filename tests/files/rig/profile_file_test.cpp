@@ -126,7 +126,7 @@ TEST(ProfileFile, InterlockAndLinesThatNeedNotBeSaidAreReadWhereTheyAre) {
   refused("[interlock]\nstart_hold = 0.5\n" + rest, {"interlock.start_hold", "1 to 60 s"});
 }
 
-TEST(ProfileFile, DigestIsOfAllThatTheRealTimeSideIsTold) {
+TEST(ProfileFile, DigestIsOfAllThatTheRealTimeSideReads) {
   const std::string rest = "[[profile]]\nkind = \"rest\"\nduration = 1\n";
   const auto digest = [&] { return load_profile(scratch.write("p.toml", head + rest)).digest; };
   const std::uint64_t before = digest();

@@ -190,15 +190,15 @@ TEST(Authentication, PlantAndControllerOfOneKeyUnderstandEachOtherAndAStrangerMo
     PlantBus plant(plant_node, clock, {layout, kActuators, 1, 5.0, kMillisecond, kAge, kAge, &receiver});
     hal::Reading commands;
     hal::Reading reading;
-    hal::Command told;
+    hal::Command received;
     hal::Command pistons;
     for (std::uint64_t cycle = 0; cycle < 600; ++cycle) {
       commands.values[3] = 1e-4 * static_cast<double>(cycle % 100 + 1);
       reading.values[3] = -1e-3;
       commands.sequence = reading.sequence = cycle;
       CHECK(controller.try_send_reading(commands));
-      CHECK(plant.try_receive_command(told));
-      DOUBLES_EQUAL(commands.values[3], told.values[3], 5e-6);
+      CHECK(plant.try_receive_command(received));
+      DOUBLES_EQUAL(commands.values[3], received.values[3], 5e-6);
       CHECK(plant.try_send_reading(reading));
       CHECK(controller.try_receive_command(pistons));
       clock.advance_ns(kMillisecond);
@@ -211,8 +211,8 @@ TEST(Authentication, PlantAndControllerOfOneKeyUnderstandEachOtherAndAStrangerMo
     // Right id, check, counter and data id; no key.
     ControllerBus stranger(node, clock, {layout, kActuators, 5.0, kMillisecond});
     CHECK(stranger.try_send_reading(commands));
-    plant.try_receive_command(told);
-    DOUBLES_EQUAL(0.0, told.values[3], 0.0);
+    plant.try_receive_command(received);
+    DOUBLES_EQUAL(0.0, received.values[3], 0.0);
     UNSIGNED_LONGS_EQUAL(1, plant.commands().unauthentic);
   }
 }

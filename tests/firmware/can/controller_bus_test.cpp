@@ -57,10 +57,10 @@ TEST_GROUP(CanControllerBus) {
   hal::Command pistons;
 };
 
-TEST(CanControllerBus, WhatItCommandsIsWhatThePlantIsToldAndWhatThePlantReadsIsWhatItSees) {
+TEST(CanControllerBus, WhatItCommandsIsWhatThePlantReceivesAndWhatThePlantReadsIsWhatItSees) {
   hal::Reading commands;
   hal::Reading reading;
-  hal::Command told;
+  hal::Command received;
   for (std::uint64_t cycle = 0; cycle < 600; ++cycle) {
     for (std::size_t i = 0; i < kActuators; ++i) {
       commands.values[i] = 1e-4 * static_cast<double>(cycle % 100 + i);
@@ -68,11 +68,11 @@ TEST(CanControllerBus, WhatItCommandsIsWhatThePlantIsToldAndWhatThePlantReadsIsW
     }
     commands.sequence = reading.sequence = cycle;
     CHECK(controller.try_send_reading(commands));
-    CHECK(plant.try_receive_command(told));
+    CHECK(plant.try_receive_command(received));
     CHECK(plant.try_send_reading(reading));
     CHECK(controller.try_receive_command(pistons));
     for (std::size_t i = 0; i < kActuators; ++i) {
-      DOUBLES_EQUAL(commands.values[i], told.values[i], 5e-6);
+      DOUBLES_EQUAL(commands.values[i], received.values[i], 5e-6);
       DOUBLES_EQUAL(reading.values[i], pistons.values[i], 1e-7);
     }
     UNSIGNED_LONGS_EQUAL(cycle, pistons.sequence);

@@ -246,7 +246,7 @@ TEST(CommandEcho, NodeThatDoesNotHearCommandsIsFoundOutAfterTheirAgeLimit) {
   });
 }
 
-TEST(CommandEcho, EchoOfACounterThatStandsStillIsNoAnswerThoughItComesRoundAgain) {
+TEST(CommandEcho, EchoOfACounterThatDoesNotMoveIsNoAnswerThoughItComesRoundAgain) {
   can::CommandEcho echo(1);
   for (unsigned cycle = 0; cycle < 1000; ++cycle) {
     echo.note_sent(static_cast<std::uint8_t>(cycle), cycle);

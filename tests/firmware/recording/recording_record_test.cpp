@@ -110,7 +110,7 @@ TEST(RecordingAsRecord, RecordWrittenAsCsvIsReadBackTheSame) {
   }
 }
 
-TEST(RecordingAsRecord, SeveralActuatorsAreRefusedWithTheMendAndOneCanBeChosen) {
+TEST(RecordingAsRecord, SeveralActuatorsAreRefusedWithTheRemedyAndOneCanBeChosen) {
   record_axis(3);
   STRCMP_CONTAINS("3 actuators, and a record is of one; write the record of one with 'hotfire replay",
                   refusal([&] { load_record(path); }).c_str());

@@ -132,7 +132,7 @@ TEST(LabReplay, LoadPressuresThatTheLabWasGivenDecideItsCyclesAgainToTheSameBits
       [](hal::CycleHead&, std::vector<double>& values) { values[1 + kLoadPressure] += 1.0; }, test_lab::kRunningCycle + 1);
 }
 
-TEST(LabReplay, RecordingWithoutLoadPressuresIsWhatItWasAndOneThatLacksThemIsRefused) {
+TEST(LabReplay, RecordingWithoutLoadPressuresIsWhatItWasAndOneWithoutThemIsRefused) {
   record();
   hal::RecordingReader reader(path);
   UNSIGNED_LONGS_EQUAL(6, reader.header().channels.size());

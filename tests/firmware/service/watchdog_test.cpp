@@ -85,7 +85,7 @@ TEST(Watchdog, HeartThatBeatsIsReadyOnceAndThenFeedsTheWatchdog) {
   STRCMP_EQUAL("STOPPING=1", socket.next(kPatienceMs).c_str());
 }
 
-TEST(Watchdog, HeartThatStandsStillIsSilentThoughTheThreadLives) {
+TEST(Watchdog, HeartThatDoesNotMoveIsSilentThoughTheThreadLives) {
   const test::NotifySocket socket(scratch.path("notify"));
   Watchdog watchdog(hal::ServiceManager(socket.address(), kIntervalUs), heartbeat);
   CHECK(!watchdog.start());

@@ -98,7 +98,7 @@ TEST(Options, KeyIsAFileOfItsDigitsThatNobodyElseMayUse) {
   }
   STRCMP_CONTAINS("No such file", read_key(path).refused->what.c_str());
   STRCMP_CONTAINS("not a file", read_key("/tmp").refused->what.c_str());
-  STRCMP_CONTAINS("openssl rand -hex 16", read_key("/dev/zero").refused->mend.c_str());
+  STRCMP_CONTAINS("openssl rand -hex 16", read_key("/dev/zero").refused->remedy.c_str());
 }
 
 TEST(Options, WhatABusCannotDoIsRefused) {

@@ -88,7 +88,7 @@ inline void tell_gimbal(const model::GimbalParameters<double>& gimbal, Reference
   }
   const auto& law = gimbal.friction;
   if (law.coulomb_torque > 0.0) {
-    const bool vibrated = law.option == model::BearingFriction<double>::kVibrated;
+    const bool vibrated = law.law() == model::BearingFriction<double>::Law::vibrated_lugre;
     const double least = vibrated ? law.coulomb_torque * law.vibration_ratio : law.coulomb_torque;
     engine.friction = {law.coulomb_torque,    law.stiffness, law.static_ratio,
                        law.stribeck_velocity, law.damping,   2.0 * std::sqrt(2.0 * std::numbers::e) * least / law.damping};

@@ -65,24 +65,24 @@ TEST(VehicleAgreesWithCvode, AtHotFireWithEveryEffect) {
 TEST(VehicleAgreesWithCvode, WithFrictionThatVibrationLowers) {
   Taos::Parameters parameters = hot_fire<Taos>();
   auto& friction = parameters.gimbals[0].friction;
-  friction.option = model::BearingFriction<double>::kVibrated;
+  friction.choose(model::BearingFriction<double>::Law::vibrated_lugre);
   friction.vibration_ratio = 0.4;
   friction.vibration_velocity = 0.02;
   check_agreement("hot fire, vibrated_lugre", parameters);
 }
 
 // The components of a bristle vector meet through the length of the slip alone: each axis can carry its own.
-TEST(VehicleAgreesWithCvode, WithTheFrictionOfTheBearingToldAxisByAxis) {
-  Taos::Parameters told = smooth();
-  told.modes = {};
-  told.gimbals[0].compliant = false;
-  auto& bearing = told.gimbals[0].friction;
-  bearing.option = 2;
+TEST(VehicleAgreesWithCvode, WithTheFrictionOfTheBearingGivenAxisByAxis) {
+  Taos::Parameters rigid = smooth();
+  rigid.modes = {};
+  rigid.gimbals[0].compliant = false;
+  auto& bearing = rigid.gimbals[0].friction;
+  bearing.choose(model::BearingFriction<double>::Law::lugre);
   bearing.coulomb_torque = 1e4;
   bearing.static_ratio = 1.2;
   bearing.damping = 500.0;
-  const VehicleRows reference = run_reference<Taos>(told);
-  Taos::Parameters parameters = told;
+  const VehicleRows reference = run_reference<Taos>(rigid);
+  Taos::Parameters parameters = rigid;
   parameters.gimbals[0].friction.coulomb_torque = 0.0;
   constexpr std::size_t kFriction = index_in<model::GimbalFriction>(Taos::Effects{});
   for (auto& axis : parameters.axes) {

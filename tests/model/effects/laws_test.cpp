@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "model/checks.hpp"
 #include "tests/model/support/every_effect.hpp"
 #include "tests/support/allocation_guard.hpp"
 
@@ -49,8 +50,8 @@ TEST(EveryEffect, HasItsDefaultsAndItsTypicalValuesInsideTheBounds) {
     for (const auto& field : ParamsOf<E, double>::fields()) {
       const std::string where = label<E>(option) + " " + std::string(field.name);
       CHECK_TRUE_TEXT(field.lower < field.upper, where.c_str());
-      CHECK_TRUE_TEXT(model::inside_bounds(field, params.*field.member), where.c_str());
-      CHECK_TRUE_TEXT(model::inside_bounds(field, field.typical), where.c_str());
+      CHECK_TRUE_TEXT(model::is_inside(field, params.*field.member), where.c_str());
+      CHECK_TRUE_TEXT(model::is_inside(field, field.typical), where.c_str());
     }
   });
 }
@@ -59,9 +60,9 @@ TEST(EveryEffect, RefusesANumberThatIsNotOneInAnyField) {
   for_each_law([]<class E>(int option) {
     for (const auto& field : ParamsOf<E, double>::fields()) {
       const std::string where = label<E>(option) + " " + std::string(field.name);
-      CHECK_FALSE_TEXT(model::inside_bounds(field, std::numeric_limits<double>::quiet_NaN()), where.c_str());
-      CHECK_FALSE_TEXT(model::inside_bounds(field, std::numeric_limits<double>::infinity()), where.c_str());
-      CHECK_FALSE_TEXT(model::inside_bounds(field, -std::numeric_limits<double>::infinity()), where.c_str());
+      CHECK_FALSE_TEXT(model::is_inside(field, std::numeric_limits<double>::quiet_NaN()), where.c_str());
+      CHECK_FALSE_TEXT(model::is_inside(field, std::numeric_limits<double>::infinity()), where.c_str());
+      CHECK_FALSE_TEXT(model::is_inside(field, -std::numeric_limits<double>::infinity()), where.c_str());
     }
   });
 }

@@ -21,7 +21,7 @@ Plant::Parameters textbook(double spring) {
   Plant::Parameters parameters;
   parameters.mass = {1.0, 0.0, spring};
   ParamsOf<model::SlidingFriction, double> friction;
-  friction.option = 2;
+  friction.option = static_cast<int>(model::SlidingFriction::Law::lugre);
   friction.coulomb_forward = 1.0;
   friction.coulomb_backward = 1.0;
   friction.viscous_forward = 0.4;

@@ -33,7 +33,7 @@ TEST(StringPotentiometers, MeasureTheDistanceOfTheirTwoEnds) {
   }
 }
 
-TEST(StringPotentiometers, CannotTellTheStructuresMotionFromTheEngines) {
+TEST(StringPotentiometers, CannotSeparateTheStructuresMotionFromTheEngines) {
   const auto anchors = Strings::representative();
   const Strings strings(anchors);
   auto moved_anchors = anchors;
@@ -43,13 +43,13 @@ TEST(StringPotentiometers, CannotTellTheStructuresMotionFromTheEngines) {
     anchor.vehicle_y += moved.y();
     anchor.vehicle_z += moved.z();
   }
-  const auto told = strings.lengths(0.0, 0.0, moved);
+  const auto measured = strings.lengths(0.0, 0.0, moved);
   for (std::size_t k = 0; k < 4; ++k) {
     const auto& before = anchors[k];
     const auto& after = moved_anchors[k];
     const double exact = (after.engine() - after.vehicle()).norm() - (before.engine() - before.vehicle()).norm();
     // First order: a millimetre squared over a length of more than a metre.
-    DOUBLES_EQUAL(exact, told[k], 2e-6);
+    DOUBLES_EQUAL(exact, measured[k], 2e-6);
   }
 }
 
@@ -78,7 +78,7 @@ TEST(StringPotentiometers, ReadInStepsAndWithTheNoiseTheyAreGiven) {
   DOUBLES_EQUAL(0.123, ideal.read(state, 0.123, 5.0, 1e-3), 0.0);
 }
 
-TEST(StringPotentiometers, MustTellPitchFromYaw) {
+TEST(StringPotentiometers, MustSeparatePitchFromYaw) {
   CHECK_TRUE(Strings::broken_relation(Strings::representative()).empty());
   auto slack = Strings::representative();
   slack[2] = {0.5, 0.1, 0.2, 0.5, 0.1, 0.2};

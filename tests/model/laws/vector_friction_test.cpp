@@ -26,6 +26,7 @@ Slip imposed(const Pair& velocity) { return {velocity, velocity, {}, kStep}; }
 Slip resisted(const Pair& free_velocity) { return {free_velocity, free_velocity, {3e-8, 2e-8, 5e-9}, kStep}; }
 
 Friction law(int option) { return {option, 8e3, 1e8, 1.2, 0.01, 1e3, 0.5, 0.02}; }
+Friction law(Friction::Law own) { return law(static_cast<int>(own)); }
 
 /// Mean friction over its level under a slip `velocity(t)`, along pitch, over `periods` periods of `duration` after one
 /// more.
@@ -159,7 +160,7 @@ TEST(VectorFriction, TakesNoEnergyOutOfARoundTrip) {
 
 // F11, closed forms of physics.md section 3 for rigid friction: a sine along the motion gives (2/pi) asin(v/V).
 TEST(VectorFriction, LosesToASineAlongTheMotionWhatTheClosedFormSays) {
-  const Friction rigid = law(0);
+  const Friction rigid = law(Friction::Law::coulomb);
   for (const double ratio : {0.1, 0.3, 0.5, 0.8, 0.95}) {
     const double mean = mean_friction(rigid, 0.1, 1, [&](double t) {
       return Pair{0.1 * ratio + 0.1 * std::sin(2.0 * std::numbers::pi * 10.0 * t), 0.0};
@@ -172,7 +173,7 @@ TEST(VectorFriction, LosesToASineAlongTheMotionWhatTheClosedFormSays) {
 // Gaussian vibration, a new draw each step: erf along the motion; in two dimensions sqrt(pi/8) (v/s) e^-q (I0(q) + I1(q)),
 // q = v^2 / (4 s^2). The standard error of a mean over a million draws is below 0.1 % of the level.
 TEST(VectorFriction, LosesToGaussianVibrationWhatTheClosedFormsSay) {
-  const Friction rigid = law(0);
+  const Friction rigid = law(Friction::Law::coulomb);
   Random random(13);
   const auto gaussian = [&] {
     return std::sqrt(-2.0 * std::log(random.uniform(1e-300, 1.0))) *
@@ -196,7 +197,7 @@ TEST(VectorFriction, LosesToGaussianVibrationWhatTheClosedFormsSay) {
 // deflection it is rigid friction; the same velocity at a hundred times the frequency stays within it, and the bristle's
 // path gives v / mean |v + w|.
 TEST(VectorFriction, LosesToFastVibrationWithinTheBristleWhatItsPathSays) {
-  Friction bristle = law(1);
+  Friction bristle = law(Friction::Law::dahl);
   bristle.stiffness = 8e3 / 0.1;  // yields at 0.1 rad; the vibration moves by 1.6e-3
   const double ratio = 0.5;
   const double mean = mean_friction(bristle, 10.0, 1, [&](double t) {
@@ -207,7 +208,7 @@ TEST(VectorFriction, LosesToFastVibrationWithinTheBristleWhatItsPathSays) {
 }
 
 TEST(VectorFriction, IsLoweredAtLowSpeedByTheVibrationLaw) {
-  Friction vibrated = law(Friction::kVibrated);
+  Friction vibrated = law(Friction::Law::vibrated_lugre);
   vibrated.static_ratio = 1.0;
   for (const double speed : {1e-4, 0.02, 0.2}) {
     const double mean = mean_friction(vibrated, 5.0, 1, [&](double) { return Pair{speed, 0.0}; });
@@ -217,10 +218,10 @@ TEST(VectorFriction, IsLoweredAtLowSpeedByTheVibrationLaw) {
 
 TEST(VectorFriction, IsEitherSimulatedUnderVibrationOrLoweredByItsLaw) {
   model::GimbalParameters<double> gimbal;
-  gimbal.friction = law(2);
+  gimbal.friction = law(Friction::Law::lugre);
   gimbal.vibration = {0.01, 0.0, 200.0};
   CHECK_TRUE(model::broken_relation(gimbal).empty());
-  gimbal.friction.option = Friction::kVibrated;
+  gimbal.friction.choose(Friction::Law::vibrated_lugre);
   CHECK_TRUE(model::broken_relation(gimbal).find("two ways to the same physics") != std::string_view::npos);
   gimbal.vibration = {};
   CHECK_TRUE(model::broken_relation(gimbal).empty());

@@ -56,7 +56,7 @@ using InputOf = typename model::SiteInput<E::site, S>::type;
 /// True if the law or channel `option` of the owner uses the field.
 template <class Field>
 bool used_by(const Field& field, int option) {
-  return (field.options >> static_cast<unsigned>(option) & 1U) != 0;
+  return model::is_used(field.options, option);
 }
 
 template <class E>
@@ -87,7 +87,7 @@ template <class E, class S>
 void lay_table(ParamsOf<E, S>& params, int option, double size) {
   if constexpr (requires { ParamsOf<E, S>::tables(); }) {
     for (const auto& field : ParamsOf<E, S>::tables()) {
-      if ((field.options >> static_cast<unsigned>(option) & 1U) == 0) {
+      if (!model::is_used(field.options, option)) {
         continue;
       }
       const double reach = field.x_name == "load_pressure"       ? 4e6

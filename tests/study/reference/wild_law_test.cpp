@@ -146,7 +146,7 @@ TEST(WildMemories, AHoldKeepsEveryTenthRow) {
 }
 
 // At 1.5 Hz the signal moves by 9.4 a second, so that an output that follows at 1e4 per second is 1e-3 behind.
-TEST(WildMemories, APlayStopsUntilItIsTakenUpAndAStopIsWhatThePlayLacks) {
+TEST(WildMemories, APlayStopsUntilItIsTakenUpAndAStopIsTheRestOfAPlay) {
   WildMemory memory;
   memory.kind = WildMemory::Kind::plays;
   memory.plays = {{0.3, 1.0}};

@@ -72,7 +72,7 @@ void add_export(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--seed", options->seed,
-                   "of what sensors and strings of a model of several axes have of noise and placement errors")
+                   "seed of the sensor noise and of the strings' placement errors in a model of several axes")
       ->capture_default_str();
   command->add_flag("--json", *json, "print the result as JSON");
   command->footer(

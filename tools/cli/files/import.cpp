@@ -25,13 +25,13 @@ void add_import(CLI::App& program) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("import", "Make a record of a CSV file with other names, a MATLAB file or a candump log");
-  command->add_option("SOURCE", options->source, "what there is (.mat, with --dbc a candump log, else text with a header)")
+      program.add_subcommand("import", "Convert a CSV file with other names, a MATLAB file or a candump log to a record");
+  command->add_option("SOURCE", options->source, "file to import (.mat, with --dbc a candump log, else text with a header)")
       ->required();
-  command->add_option("--map", options->map, "which channel is where (.toml)");
-  command->add_option("--dbc", options->dbc, "of a candump log: what its frames carry (.dbc)");
+  command->add_option("--map", options->map, "map: the column of each channel (.toml)");
+  command->add_option("--dbc", options->dbc, "for a candump log: the description of its frames (.dbc)");
   command->add_option("--output", options->output, "record to write (.csv)");
-  command->add_flag("--guess", options->guess, "print a map for a text log to start from, and write nothing");
+  command->add_flag("--guess", options->guess, "print a first map of a text log, and write no file");
   command
       ->add_option("--exclude", options->excluded,
                    "FROM-TO [s]: a drop-out, where values and rows may be missing; then name it to explain")

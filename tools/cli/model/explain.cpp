@@ -278,21 +278,22 @@ void add_explain(CLI::App& program, const std::string& typed) {
       ->capture_default_str();
   command
       ->add_option("--seconds", arguments->seconds,
-                   "time for the search [s]: then the best so far is reported, with what was not examined")
+                   "time limit of the search [s]: the report then has the best result so far, and what was not examined")
       ->check(CLI::Range(1.0, 1e6));
   command
       ->add_option("--exclude", arguments->excluded,
                    "RECORD@FROM-TO [s]: rows known to be wrong, such as a drop-out; values and rows may be missing there")
       ->allow_extra_args(false);
   command
-      ->add_option("--hold-out", arguments->held_out, "a further record that no fit and no choice sees: judged at the end")
+      ->add_option("--hold-out", arguments->held_out,
+                   "hold-out record: no fit and no decision uses it, and the report gives the errors on it")
       ->allow_extra_args(false);
   command->add_option(
       "--lab", arguments->lab,
       "profile of the rig (docs/lab.md): the next experiment stays within its limits, and is written as one");
   add_candump_options(*command, arguments->candump);
   command->add_flag("--keep-drift", arguments->keep_drift,
-                    "write what drifts over the time of a record into explained.toml as a table over time, not its mean");
+                    "write a drift over the time of a record into explained.toml as a table over time, not as its mean");
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(
       "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv --hold-out ramps.csv\n"

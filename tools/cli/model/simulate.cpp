@@ -85,7 +85,7 @@ void add_simulate(CLI::App& program) {
       ->check(CLI::Range(std::size_t{0}, kMostRows));
   command
       ->add_option("--seed", options->seed,
-                   "of what sensors and strings of a model of several axes have of noise and placement errors")
+                   "seed of the sensor noise and of the strings' placement errors in a model of several axes")
       ->capture_default_str();
   add_candump_options(*command, options->candump);
   command->add_flag("--json", options->json, "print the result as JSON");

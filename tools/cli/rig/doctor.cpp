@@ -49,15 +49,15 @@ void examine(doctor::Patient patient, bool as_json) {
       list.push_back({{"check", finding.check},
                       {"level", finding.level == Level::bad ? "bad" : name_of(finding.level)},
                       {"what", finding.what},
-                      {"remedy", finding.mend}});
+                      {"remedy", finding.remedy}});
     }
     const Json result{{"verdict", good ? "good" : "bad"}, {"findings", list}};
     std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
   } else {
     for (const Finding& finding : findings) {
       std::cout << fmt::format("{:<6}  {:<16} {}\n", name_of(finding.level), finding.check, finding.what);
-      if (!finding.mend.empty()) {
-        std::cout << fmt::format("{:<25}remedy: {}\n", "", finding.mend);
+      if (!finding.remedy.empty()) {
+        std::cout << fmt::format("{:<25}remedy: {}\n", "", finding.remedy);
       }
     }
     std::cout << fmt::format("\nverdict: {} ({} bad, {} to consider)\n", good ? "good" : "BAD", count(Level::bad),
@@ -78,7 +78,7 @@ void add_doctor(CLI::App& program) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("doctor", "Is this machine fit for a real-time run? Each finding comes with its remedy");
+      program.add_subcommand("doctor", "Check that this machine is fit for a real-time run; each finding has a remedy");
   command->add_option("--cpu", options->patient.cpu, "the CPU that the loop will have")->check(CLI::Range(0, 1023));
   command->add_option("--can", options->patient.can, "CAN interface that must be there; default: look at all");
   command->add_option("--line", options->patient.lines, "GPIO line that must be there, by name");

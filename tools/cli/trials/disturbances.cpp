@@ -117,8 +117,8 @@ void add_quiescent(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--seed", options->ambient.seed, "of the torque")->capture_default_str();
   command->add_option("--segment", options->segment, "of the spectrum's average [s]")->capture_default_str();
-  command->add_option("--lowest", options->lowest, "look for the peak from here [Hz]")->capture_default_str();
-  command->add_option("--highest", options->highest, "look for the peak up to here [Hz]")->capture_default_str();
+  command->add_option("--lowest", options->lowest, "lower end of the search for the peak [Hz]")->capture_default_str();
+  command->add_option("--highest", options->highest, "upper end of the search for the peak [Hz]")->capture_default_str();
   command->footer(
       "Example: hotfire quiescent --model core-stage.toml --thrust 0 --axis pitch --torque-density 1e4 --picture "
       "spectrum.svg");

@@ -145,7 +145,8 @@ void run_findings(const FindingsOptions& options) {
 
 void add_findings(CLI::App& program) {
   const auto options = std::make_shared<FindingsOptions>();
-  CLI::App* command = program.add_subcommand("findings", "What the papers found, reproduced: figures, tolerances, verdicts");
+  CLI::App* command =
+      program.add_subcommand("findings", "Reproduce the findings of the papers: figures, tolerances, verdicts");
   command->add_option("--sets", options->sets, "folder with lab.toml and core-stage.toml (the shipped ones)");
   command->add_option("--only", options->only, "these findings alone: F1,F9")->delimiter(',');
   command->add_option("--pictures", options->pictures, "write a picture of each into this folder (.svg)");
@@ -153,7 +154,7 @@ void add_findings(CLI::App& program) {
   command->add_flag("--json", options->json, "print the result as JSON")->excludes("--markdown");
   command
       ->add_flag("--mutants", options->mutants,
-                 "take out of each finding the physics that it is about: every one of these runs must fail")
+                 "remove the physics of each finding from the model: every one of these runs must fail")
       ->excludes("--markdown")
       ->excludes("--pictures");
   command->footer(

@@ -78,7 +78,7 @@ void add_step(CLI::App& program) {
   command->add_option("--amplitudes", options->amplitudes, "from zero and back, to either side [deg]")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--hold", options->hold, "each step is held so long; in a record, steps held half as long count [s]")
+  command->add_option("--hold", options->hold, "duration of each step [s]; in a record, steps of at least half of it count")
       ->check(CLI::Range(0.05, 100.0))
       ->capture_default_str();
   command->footer("Example: hotfire step --model core-stage.toml --axis pitch --amplitudes 0.6,0.4,0.2 --picture steps.svg");

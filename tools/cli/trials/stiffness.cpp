@@ -123,11 +123,11 @@ void add_stiffness(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--from", options->from,
-                   "lowest frequency of the sines, and look for the notch from here [Hz]; left out: by the model")
+                   "lowest frequency of the sines, and lower end of the search for the notch [Hz]; default: from the model")
       ->check(CLI::Range(0.01, 200.0));
   command
       ->add_option("--to", options->to,
-                   "highest frequency of the sines, and look for the notch up to here [Hz]; left out: by the model")
+                   "highest frequency of the sines, and upper end of the search for the notch [Hz]; default: from the model")
       ->check(CLI::Range(0.01, 200.0));
   command->add_option("--count", options->count, "frequencies of a sweep")
       ->check(CLI::Range(3, 1000))

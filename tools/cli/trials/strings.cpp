@@ -89,7 +89,7 @@ void add_strings(CLI::App& program) {
   command->add_option("--output", options->output, "that record with engine.pitch and engine.yaw by its strings")
       ->required();
   command->add_option("--engine", options->engine, "number of the engine, in records of several")->check(CLI::Range(1, 9));
-  command->add_option("--hold", options->hold, "a pose counts if it is held so long [s]; its last quarter is taken")
+  command->add_option("--hold", options->hold, "shortest duration of a pose [s]; its last quarter is used")
       ->check(CLI::Range(0.1, 1e4))
       ->capture_default_str();
   command->add_option("--picture", options->picture, "draw the angles (.svg)");

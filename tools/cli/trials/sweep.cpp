@@ -139,8 +139,10 @@ void add_sweep(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("--coarse", options->coarse,
                     "sines: these frequencies alone, without a fine grid around each notch that is held until it settles");
-  command->add_option("--lowest", options->goal.lowest, "look for notch and peak from here [Hz]")->capture_default_str();
-  command->add_option("--highest", options->goal.highest, "look for notch and peak up to here [Hz]")->capture_default_str();
+  command->add_option("--lowest", options->goal.lowest, "lower end of the search for notch and peak [Hz]")
+      ->capture_default_str();
+  command->add_option("--highest", options->goal.highest, "upper end of the search for notch and peak [Hz]")
+      ->capture_default_str();
   command->add_option("--segment", options->goal.segment, "of a broadband record's analysis [s]")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();

@@ -125,7 +125,7 @@ void set_noise(const ModelFile& model, Dataset& data) {
       } else {
         const NoiseFloor floor = noise_floor(kept);
         noise = noise_from_differences(kept);
-        source = noise < floor.telling ? NoiseSource::floor : source;
+        source = noise < floor.reportable ? NoiseSource::floor : source;
         noise = std::max(noise, floor.least);
       }
       square += noise * noise * static_cast<double>(experiment.rows());

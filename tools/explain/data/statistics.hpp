@@ -27,7 +27,7 @@ struct NoiseFloor {
   double least = 0.0;
   /// The least rms that errors are said in times of: 1e-5 of the rms motion. No model of a rig agrees with a record to less:
   /// a clock, a gain or a geometry would have to be right to a hundred-thousandth.
-  double telling = 0.0;
+  double reportable = 0.0;
 };
 NoiseFloor noise_floor(std::span<const double> values);
 

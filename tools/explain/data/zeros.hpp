@@ -8,10 +8,10 @@
 namespace hotfire::explain {
 
 // Every record and channel of a hydraulic axis has a zero of its own: an amplifier that drifted between two runs, a
-// potentiometer that was mounted anew. It is a nuisance of the record, no part of the plant: o ~ N(0, S^2), S a share of the
-// channel's travel, integrated out of whatever compares a model with records. A constant of the plant, such as a torque or
-// the null bias of a valve, is told by what it does to the motion, not by where a sensor reads zero. A zero of the command
-// is one of the piston, since a servo takes both up alike: it is reported as the channels' zeros.
+// potentiometer that was mounted again. It is a nuisance of the record, no part of the plant: o ~ N(0, S^2), S a share of
+// the channel's travel, integrated out of whatever compares a model with records. A constant of the plant, such as a torque
+// or the null bias of a valve, is identified by its effect on the motion, not by where a sensor reads zero. A zero of the
+// command is one of the piston, since a servo takes both up alike: it is reported as the channels' zeros.
 //
 // A force-driven mass has none. The zero of its position is a constant force over its stiffness, or where it starts.
 

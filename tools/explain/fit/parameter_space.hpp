@@ -5,10 +5,38 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "model/key_text.hpp"
+
 namespace hotfire::explain {
+
+/// Which number of the model a parameter is. The text of a key is for people only.
+struct Address {
+  model::Key owner{};      ///< a declared part, or an effect of the plant's list; of no section for an initial state
+  std::string_view field;  ///< of the owner; for a point of a table the field of its ordinates
+  int point = -1;          ///< of a table; -1: not of a table
+
+  bool operator==(const Address&) const = default;
+  bool operator<(const Address& other) const {
+    return std::tie(owner.section, owner.is_effect, owner.effect_index, field, point) <
+           std::tie(other.owner.section, other.owner.is_effect, other.owner.effect_index, other.field, other.point);
+  }
+
+  bool is_of_effect() const { return owner.is_effect; }
+  bool is_of_effect(std::size_t effect) const { return owner.is_effect && owner.effect_index == effect; }
+  bool is_ordinate() const { return point >= 0; }
+  /// The field, with the point of a table: "coulomb_torque", "torque.3".
+  std::string name() const { return is_ordinate() ? std::string(field) + "." + std::to_string(point) : std::string(field); }
+  /// As model files write it: "engine.inertia", "effects.gimbal_friction.coulomb_torque".
+  std::string key() const { return std::string(model::KeyText(owner, name()).view()); }
+};
+
+/// What of a record's start a fit may move.
+enum class InitialState { position, velocity, clock };
 
 /// One parameter that a fit may move, as the fit sees it: a number u without unit, with the parameter p = value(u).
 struct FreeParameter {
@@ -20,7 +48,8 @@ struct FreeParameter {
   };
 
   std::size_t index = 0;  ///< in the order of model::visit_values; for an initial state see `state`
-  std::string key;        ///< "engine.inertia", "effects.gimbal_friction.coulomb_torque"
+  Address address;        ///< of an initial state: none
+  std::string key;        ///< for messages and reports: of the address, or the record with ".initial_position"
   std::string unit;
   Scale scale = Scale::linear;
   double declared = 0.0;
@@ -28,11 +57,10 @@ struct FreeParameter {
   double unit_size = 1.0;
   double lower = 0.0;  ///< bounds of p
   double upper = 0.0;
-  double prior_center = 0.0;     ///< in u
-  double prior_deviation = 0.0;  ///< in u; 0: no prior
-  int experiment = -1;           ///< for an initial state: which record; -1 otherwise
-  int state = -1;                ///< for an initial state: 0 position, 1 velocity, 2 clock
-  bool is_ordinate = false;      ///< of an unlisted term's table: a search starts it at zero
+  double prior_center = 0.0;                    ///< in u
+  double prior_deviation = 0.0;                 ///< in u; 0: no prior
+  int experiment = -1;                          ///< for an initial state: which record; -1 otherwise
+  InitialState state = InitialState::position;  ///< for an initial state: which
 
   double value(double u) const {
     switch (scale) {
@@ -83,6 +111,23 @@ struct FreeParameter {
   double prior_curvature() const { return has_prior() ? 1.0 / (prior_deviation * prior_deviation) : 0.0; }
   bool is_declared() const { return scale == Scale::tolerance; }
   bool is_initial_state() const { return experiment >= 0; }
+  bool is_clock() const { return is_initial_state() && state == InitialState::clock; }
+  bool is_ordinate() const { return address.is_ordinate(); }
+  bool is_of_effect(std::size_t effect) const { return address.is_of_effect(effect); }
+  /// True if both are the same number of the model or of a record's start.
+  bool is_same_as(const FreeParameter& other) const {
+    return address == other.address && experiment == other.experiment && state == other.state;
+  }
+
+  /// A parameter of the model, by its place in model::visit_values, with the rest still to be filled in.
+  static FreeParameter at(std::size_t index, const Address& address, std::string_view unit) {
+    FreeParameter parameter;
+    parameter.index = index;
+    parameter.address = address;
+    parameter.key = address.key();
+    parameter.unit = unit;
+    return parameter;
+  }
 
  private:
   /// Share of a declared value below which its tolerance is one of the logarithm.

@@ -16,7 +16,7 @@ namespace {
 /// A quantity is identified where its factors are not if its deviation is below this share of each factor's.
 constexpr double kBetterThanFactors = 0.5;
 /// A declared parameter is identified by the data if it is known to less than this share of its tolerance.
-constexpr double kTold = 0.9;
+constexpr double kDetermined = 0.9;
 /// Correlation from which two parameters are not separated: either is known to a third of its deviation if the other is
 /// given.
 constexpr double kAlike = 0.95;
@@ -60,7 +60,7 @@ class Identifiability {
   explicit Identifiability(const Fitted<Family>& fitted) : fitted_(fitted), covariance_(covariance_of(fitted.normal)) {
     for (std::size_t k = 0; k < fitted.free.size(); ++k) {
       const FreeParameter& parameter = fitted.free[k];
-      if (!parameter.is_ordinate && !parameter.is_initial_state() && parameter.value(fitted.u[k]) != 0.0) {
+      if (!parameter.is_ordinate() && !parameter.is_initial_state() && parameter.value(fitted.u[k]) != 0.0) {
         considered_.push_back(k);
       }
     }
@@ -72,7 +72,7 @@ class Identifiability {
       say_combination(combination, all);
     }
     say_groups(all);
-    say_untold(all);
+    say_undetermined(all);
     return all;
   }
 
@@ -170,16 +170,16 @@ class Identifiability {
     }
   }
 
-  void say_untold(std::vector<std::string>& all) const {
-    std::vector<std::string> untold;
+  void say_undetermined(std::vector<std::string>& all) const {
+    std::vector<std::string> undetermined;
     for (const std::size_t k : considered_) {
       // A coordinate of a declared parameter is in its tolerances.
-      if (parameter(k).is_declared() && !said_.contains(k) && std::sqrt(covariance(k, k)) > kTold) {
-        untold.push_back(parameter(k).key);
+      if (parameter(k).is_declared() && !said_.contains(k) && std::sqrt(covariance(k, k)) > kDetermined) {
+        undetermined.push_back(parameter(k).key);
       }
     }
-    if (!untold.empty()) {
-      all.push_back(words::not_determined(untold));
+    if (!undetermined.empty()) {
+      all.push_back(words::not_determined(undetermined));
     }
   }
 
@@ -192,14 +192,14 @@ class Identifiability {
 }  // namespace
 
 template <class Family>
-std::vector<std::string> not_told_apart(const Fitted<Family>& fitted) {
+std::vector<std::string> not_separated(const Fitted<Family>& fitted) {
   if (fitted.free.empty() || fitted.normal.rows() != static_cast<Eigen::Index>(fitted.free.size())) {
     return {};
   }
   return Identifiability<Family>(fitted).sentences();
 }
 
-template std::vector<std::string> not_told_apart(const Fitted<SimplexFamily>&);
-template std::vector<std::string> not_told_apart(const Fitted<DirectFamily>&);
+template std::vector<std::string> not_separated(const Fitted<SimplexFamily>&);
+template std::vector<std::string> not_separated(const Fitted<DirectFamily>&);
 
 }  // namespace hotfire::explain

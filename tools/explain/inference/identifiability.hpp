@@ -14,9 +14,9 @@ namespace hotfire::explain {
 /// - declared parameters that the data say nothing on.
 /// From J^T J and the priors at an optimum (`Fitted::normal`); tables and initial states are left out.
 template <class Family>
-std::vector<std::string> not_told_apart(const Fitted<Family>& fitted);
+std::vector<std::string> not_separated(const Fitted<Family>& fitted);
 
-extern template std::vector<std::string> not_told_apart(const Fitted<SimplexFamily>&);
-extern template std::vector<std::string> not_told_apart(const Fitted<DirectFamily>&);
+extern template std::vector<std::string> not_separated(const Fitted<SimplexFamily>&);
+extern template std::vector<std::string> not_separated(const Fitted<DirectFamily>&);
 
 }  // namespace hotfire::explain

@@ -195,7 +195,7 @@ Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Fam
   const std::vector<Estimate> estimated = estimates(fitted.free, fitted.u, fitted.normal);
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
     const FreeParameter& parameter = fitted.free[k];
-    if (parameter.key.starts_with("effects.") && !parameter.is_ordinate && estimated[k].interval) {
+    if (parameter.address.is_of_effect() && !parameter.is_ordinate() && estimated[k].interval) {
       wanted.push_back(k);
     }
   }
@@ -218,7 +218,8 @@ Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Fam
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const std::size_t k = wanted[i];
     if (ends[i][0] && ends[i][1]) {
-      intervals[fitted.free[k].key] = std::minmax({surroundings.value(k, -*ends[i][0]), surroundings.value(k, *ends[i][1])});
+      intervals[fitted.free[k].address] =
+          std::minmax({surroundings.value(k, -*ends[i][0]), surroundings.value(k, *ends[i][1])});
     }
   }
   return intervals;

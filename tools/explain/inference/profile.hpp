@@ -2,15 +2,14 @@
 #pragma once
 
 #include <map>
-#include <string>
 #include <utility>
 
 #include "tools/explain/fit/fit.hpp"
 
 namespace hotfire::explain {
 
-/// 95 % intervals [from, to] by the keys of their parameters.
-using Intervals = std::map<std::string, std::pair<double, double>>;
+/// 95 % intervals [from, to] of parameters.
+using Intervals = std::map<Address, std::pair<double, double>>;
 
 /// Intervals of those parameters of effects whose error does not rise as its curvature at the optimum says: there, an
 /// interval ends where the tempered sum of squares, all other parameters fitted again, is 3.84 above the optimum (profile

@@ -8,7 +8,7 @@
 
 namespace hotfire::explain {
 
-// What a residual (measured minus predicted) of one channel still tells, over all records together.
+// Statistics of the residual (measured minus predicted) of one channel, over all records together.
 
 /// Rows by which a residual is set off against itself and against the input.
 inline constexpr std::size_t kLags = 100;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "tools/explain/result/curve.hpp"
 #include "tools/explain/result/verdict.hpp"
@@ -12,35 +13,35 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Meaning of a field by the key that a free parameter carries.
+using Meanings = std::map<Address, std::string_view>;
+
+/// Meanings of the fields of a plant's parameters.
 template <class Family>
-std::map<std::string, std::string> meanings() {
-  std::map<std::string, std::string> result;
+Meanings meanings() {
+  Meanings result;
   const PlainParameters<Family> neutral;
   model::visit_parameters(neutral, [&](const model::Key& key, const auto& field, const double&) {
-    result[(key.is_effect ? "effects." : "") + std::string(key.section) + "." + std::string(field.name)] = field.meaning;
+    result[{key, field.name}] = field.meaning;
   });
   return result;
 }
 
-/// A table's ordinate means what its table does; its place in it is the number that ends its key.
-std::string meaning_of(const std::map<std::string, std::string>& meanings, const FreeParameter& free) {
-  const auto known = meanings.find(free.key);
-  return known != meanings.end() ? known->second : "point " + free.key.substr(free.key.rfind('.') + 1) + " of the table";
+/// A table's ordinate means what its table does.
+std::string meaning_of(const Meanings& meanings, const Address& address) {
+  return address.is_ordinate() ? "point " + std::to_string(address.point) + " of the table"
+                               : std::string(meanings.at(address));
 }
 
 double percent_taken_off(double ratio) { return 100.0 * (1.0 - ratio); }
 
 template <class Family>
 std::vector<EffectParameter> parameters_of(const Candidate& candidate, const Fitted<Family>& model,
-                                           const std::vector<Estimate>& estimated,
-                                           const std::map<std::string, std::string>& meaning) {
-  const std::string prefix = "effects." + candidate.name + ".";
+                                           const std::vector<Estimate>& estimated, const Meanings& meaning) {
   std::vector<EffectParameter> parameters;
   for (std::size_t k = 0; k < estimated.size(); ++k) {
     const FreeParameter& free = model.free[k];
-    if (free.key.starts_with(prefix)) {
-      parameters.push_back({free.key.substr(prefix.size()), free.unit, meaning_of(meaning, free), estimated[k].value,
+    if (free.is_of_effect(candidate.effect)) {
+      parameters.push_back({free.address.name(), free.unit, meaning_of(meaning, free.address), estimated[k].value,
                             estimated[k].interval, estimated[k].from_profile});
     }
   }
@@ -82,7 +83,7 @@ std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
   const Fitted<Family>& model = found.explained.model;
   std::vector<Estimate> estimated = estimates(model.free, model.u, model.normal);
   for (std::size_t k = 0; k < estimated.size(); ++k) {
-    if (const auto profile = found.profiles.find(model.free[k].key); profile != found.profiles.end()) {
+    if (const auto profile = found.profiles.find(model.free[k].address); profile != found.profiles.end()) {
       estimated[k].interval = profile->second;
       estimated[k].from_profile = true;
     }

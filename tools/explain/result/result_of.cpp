@@ -200,7 +200,7 @@ Result result_of(const ModelFile& model, const std::vector<Record>& records, con
   result.channels = channel_errors(data, records, found);
   result.calibration = calibration_of(found, estimated);
   result.effects = found_effects(data, found, estimated);
-  result.identifiability = not_told_apart(found.explained.model);
+  result.identifiability = not_separated(found.explained.model);
   result.residual = residual_result(data, found.declared.prediction, found.explained.prediction);
   result.search = search_rows(found.trials);
   result.located = located_result(data, found.located);

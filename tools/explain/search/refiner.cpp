@@ -85,7 +85,7 @@ Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, st
   if (std::ranges::any_of(screened.free, &FreeParameter::is_ordinate)) {
     starts.push_back(starts.back());
     for (std::size_t k = frozen.size(); k < screened.free.size(); ++k) {
-      if (screened.free[k].is_ordinate) {
+      if (screened.free[k].is_ordinate()) {
         starts.back().u[k] = 0.0;
       }
     }
@@ -165,7 +165,7 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
   // open.
   const auto is_open = [&](const FreeParameter& parameter) {
     for (std::size_t k = 0; k < estimated.size(); ++k) {
-      if (winner.model.free[k].key == parameter.key) {
+      if (winner.model.free[k].is_same_as(parameter)) {
         const auto& interval = estimated[k].interval;
         return !interval || interval->first <= parameter.lower || interval->second >= parameter.upper;
       }
@@ -175,7 +175,7 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
   for (const Candidate& law : laws_of<Family>(data_, candidate)) {
     const auto fewer = effect_parameters<Family>(winner.model.base, law, scales_);
     const auto has = [&](const FreeParameter& parameter) {
-      return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.key == parameter.key; });
+      return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.is_same_as(parameter); });
     };
     const bool leaves_out_only_open = std::all_of(
         own.begin(), own.end(), [&](const FreeParameter& parameter) { return has(parameter) || is_open(parameter); });
@@ -185,7 +185,7 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
     Fitted<Family> reduced = winner.model;
     activate<Family>(reduced.base, law);
     drop_parameters(reduced, [&](const FreeParameter& parameter) {
-      const auto is = [&](const FreeParameter& p) { return p.key == parameter.key; };
+      const auto is = [&](const FreeParameter& p) { return p.is_same_as(parameter); };
       return std::any_of(own.begin(), own.end(), is) && !has(parameter);
     });
     Assessed<Family> simple = settled(reduced);
@@ -214,9 +214,8 @@ Assessed<Family> Refiner<Family>::in_place_of(const Fitted<Family>& model, const
                                               const Candidate& other, const Fitted<Family>& tied) const {
   Fitted<Family> start = without_effect(model, candidate);
   activate<Family>(start.base, other);
-  const std::string prefix = "effects." + other.name + ".";
   for (std::size_t k = 0; k < tied.free.size(); ++k) {
-    if (tied.free[k].key.starts_with(prefix)) {
+    if (tied.free[k].is_of_effect(other.effect)) {
       start.free.push_back(tied.free[k]);
       start.u.push_back(tied.u[k]);
     }
@@ -243,9 +242,8 @@ Assessed<Family> Refiner<Family>::from_other_values(const Assessed<Family>& winn
   Fitted<Family> anchor = without_effect(winner.model, candidate);
   anchor.base.effects.active[candidate.effect] = true;
   std::vector<double> own;
-  const std::string prefix = "effects." + candidate.name + ".";
   for (std::size_t k = 0; k < winner.model.free.size(); ++k) {
-    if (winner.model.free[k].key.starts_with(prefix)) {
+    if (winner.model.free[k].is_of_effect(candidate.effect)) {
       own.push_back(winner.model.u[k]);
     }
   }

@@ -56,7 +56,7 @@ template <class Family>
 bool share_a_parameter(const Screened<Family>& one, const Screened<Family>& other, std::size_t first) {
   const auto own = [&](const Screened<Family>& s) { return std::span(s.fitted.free).subspan(first); };
   return std::ranges::any_of(own(one), [&](const FreeParameter& parameter) {
-    return std::ranges::any_of(own(other), [&](const FreeParameter& p) { return p.key == parameter.key; });
+    return std::ranges::any_of(own(other), [&](const FreeParameter& p) { return p.is_same_as(parameter); });
   });
 }
 
@@ -231,8 +231,8 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate,
   const Fitted<Family> fitted = with_candidate(candidate);
   const std::vector<FreeParameter> own(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
                                        fitted.free.end());
-  const auto fields = static_cast<std::size_t>(
-      std::count_if(own.begin(), own.end(), [](const FreeParameter& p) { return !p.is_ordinate && !p.is_initial_state(); }));
+  const auto fields = static_cast<std::size_t>(std::count_if(
+      own.begin(), own.end(), [](const FreeParameter& p) { return !p.is_ordinate() && !p.is_initial_state(); }));
   if (fields > kMostScanned) {
     best.fitted = fitted;
     best.fitted.u.resize(fitted.free.size(), 0.0);
@@ -241,9 +241,9 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate,
     return best;
   }
   // One or two parameters, or a table, have one valley; more have several.
-  const bool has_table = std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+  const bool has_table = std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
   const bool one_valley =
-      own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+      own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
   const std::size_t valleys = one_valley ? 1 : kStarts;
   const std::vector<Start> starts =
       scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(),
@@ -327,7 +327,7 @@ void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& scree
       FreeParameter& parameter = again.fitted.free[k];
       again.fitted.u[k] = parameter.coordinate(std::clamp(parameter.unit_size, parameter.lower, parameter.upper));
       for (std::size_t j = first; j < best->fitted.free.size(); ++j) {
-        if (best->fitted.free[j].key == parameter.key) {
+        if (best->fitted.free[j].is_same_as(parameter)) {
           again.fitted.u[k] = best->fitted.u[j];
         }
       }

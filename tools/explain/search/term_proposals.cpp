@@ -73,21 +73,20 @@ void set_values(PlainParameters<SimplexFamily>& parameters, const Candidate& can
 std::vector<FreeParameter> free_parameters(const PlainParameters<SimplexFamily>& parameters, const Candidate& candidate,
                                            const Form& form, const Scales& scales) {
   std::vector<FreeParameter> free = effect_parameters<SimplexFamily>(parameters, candidate, scales);
-  const auto ends_with = [](const FreeParameter& p, std::string_view name) { return p.key.ends_with(name); };
   std::erase_if(free, [&](const FreeParameter& p) {
-    const bool is_unused_gain = ends_with(p, ".gain") && !form.points.empty();
+    const bool is_unused_gain = p.address.field == "gain" && !form.points.empty();
     // A sampling period has no derivative.
-    return is_unused_gain || (form.memory.kind == model::Memory::hold && ends_with(p, ".time"));
+    return is_unused_gain || (form.memory.kind == model::Memory::hold && p.address.field == "time");
   });
   std::vector<double> values;
   model::visit_values(parameters, [&](const double& value) { values.push_back(value); });
   double largest = 0.0;
   for (const FreeParameter& p : free) {
-    largest = p.is_ordinate ? std::max(largest, std::abs(values[p.index])) : largest;
+    largest = p.is_ordinate() ? std::max(largest, std::abs(values[p.index])) : largest;
   }
   for (FreeParameter& p : free) {
     const double value = values[p.index];
-    if (p.is_ordinate) {
+    if (p.is_ordinate()) {
       p.unit_size = largest > 0.0 ? largest : p.unit_size;
     } else if (p.scale == FreeParameter::Scale::logarithmic) {
       p.unit_size = value;

@@ -87,8 +87,7 @@ Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& cand
   Fitted<Family> rest = model;
   rest.base = Evaluator<Family>::with_values(rest.base, rest.free, rest.u);
   rest.base.effects.active[candidate.effect] = false;
-  const std::string prefix = "effects." + candidate.name + ".";
-  drop_parameters(rest, [&](const FreeParameter& parameter) { return parameter.key.starts_with(prefix); });
+  drop_parameters(rest, [&](const FreeParameter& parameter) { return parameter.is_of_effect(candidate.effect); });
   return rest;
 }
 

@@ -55,20 +55,17 @@ void append_ordinates(const Parameters& base, const Candidate& candidate, const 
     if constexpr (requires { Values::tables(); }) {
       for (const auto& field : Values::tables()) {
         const auto& table = values.*field.member;
-        if (effect != candidate.effect || field.y_typical <= 0.0 || (field.options >> candidate.option & 1U) == 0) {
+        if (effect != candidate.effect || field.y_typical <= 0.0 || !model::is_used(field.options, candidate.option)) {
           continue;
         }
         for (int i = 0; i < table.points; ++i) {
-          FreeParameter parameter;
-          parameter.index = index + static_cast<std::size_t>(i);
-          parameter.key = "effects." + std::string(E::name) + "." + std::string(field.y_name) + "." + std::to_string(i);
-          parameter.unit = field.y_unit;
+          FreeParameter parameter = FreeParameter::at(index + static_cast<std::size_t>(i),
+                                                      {{E::name, true, effect}, field.y_name, i}, field.y_unit);
           const double size = size_of_unit(field.y_unit, scales);
           parameter.unit_size = field.y_typical * size;
           parameter.lower = field.y_lower * size;
           parameter.upper = field.y_upper * size;
           parameter.prior_deviation = kOrdinatePrior;
-          parameter.is_ordinate = true;
           free.push_back(std::move(parameter));
         }
       }
@@ -88,7 +85,7 @@ double start_coordinate(const FreeParameter& parameter, std::size_t k, std::size
   if (is_frequency(parameter)) {
     return parameter.coordinate(std::clamp(frequency, parameter.lower, parameter.upper));
   }
-  if (parameter.is_ordinate) {
+  if (parameter.is_ordinate()) {
     return parameter.coordinate(n == 0 ? 0.0 : parameter.unit_size * factor);
   }
   if (parameter.scale == FreeParameter::Scale::linear) {
@@ -124,7 +121,7 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
       }
       const auto fields = std::remove_cvref_t<decltype(values)>::fields();
       const bool any =
-          std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return (f.options >> option & 1U) != 0; });
+          std::any_of(fields.begin(), fields.end(), [&](const auto& f) { return model::is_used(f.options, option); });
       if (any) {
         candidates.push_back(std::move(candidate));
       }
@@ -161,13 +158,10 @@ std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& ba
   std::vector<FreeParameter> free;
   std::size_t index = 0;
   model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double& value) {
-    const std::string name = std::string(key.section) + "." + std::string(field.name);
-    const auto found = tolerance.find(name);
+    const Address address{key, field.name};
+    const auto found = tolerance.find(address.key());
     if (!key.is_effect && found != tolerance.end() && value != 0.0) {
-      FreeParameter parameter;
-      parameter.index = index;
-      parameter.key = name;
-      parameter.unit = field.unit;
+      FreeParameter parameter = FreeParameter::at(index, address, field.unit);
       parameter.scale = FreeParameter::Scale::tolerance;
       parameter.declared = value;
       parameter.tolerance = found->second;
@@ -189,10 +183,7 @@ std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base
   std::size_t index = 0;
   model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
     if (key.is_effect && key.effect_index == candidate.effect && model::is_searched(field, candidate.option)) {
-      FreeParameter parameter;
-      parameter.index = index;
-      parameter.key = "effects." + std::string(key.section) + "." + std::string(field.name);
-      parameter.unit = field.unit;
+      FreeParameter parameter = FreeParameter::at(index, {key, field.name}, field.unit);
       const double size = size_of_unit(field.unit, scales);
       parameter.unit_size = field.typical * size;
       parameter.lower = field.lower * size;
@@ -219,7 +210,7 @@ std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& sca
     if (!start.moves()) {
       continue;
     }
-    const auto add = [&](int state, const char* name, const char* unit, double value, double error) {
+    const auto add = [&](InitialState state, const char* name, const char* unit, double value, double error) {
       FreeParameter parameter;
       parameter.key = data.experiments[e].name + name;
       parameter.unit = unit;
@@ -233,8 +224,8 @@ std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& sca
       u.push_back(parameter.prior_center);
       free.push_back(std::move(parameter));
     };
-    add(0, ".initial_position", "position", start.position, start.position_error);
-    add(1, ".initial_velocity", "position/time", start.velocity, start.velocity_error);
+    add(InitialState::position, ".initial_position", "position", start.position, start.position_error);
+    add(InitialState::velocity, ".initial_velocity", "position/time", start.velocity, start.velocity_error);
   }
   return free;
 }
@@ -252,7 +243,7 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
       }
     }
   }
-  const bool all_ordinates = std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate; });
+  const bool all_ordinates = std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
   const std::size_t covers = all_ordinates ? 1 : has_frequency ? 2 : (own.size() == 1 ? 6 : 10);
   std::vector<std::vector<double>> starts;
   for (const double frequency : tried) {

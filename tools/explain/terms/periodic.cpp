@@ -15,8 +15,6 @@ namespace {
 
 constexpr int kPhases = 6;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-/// FreeParameter::state of a clock.
-constexpr int kClock = 2;
 
 /// Squared residuals of every record at a point; infinite where it can't be simulated.
 template <class Family>
@@ -79,9 +77,7 @@ FreeParameter phase_of(const PlainParameters<Family>& base, const Candidate& can
   std::size_t index = 0;
   model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
     if (key.is_effect && key.effect_index == candidate.effect && field.name == "phase") {
-      phase.index = index;
-      phase.key = fmt::format("effects.{}.phase", candidate.name);
-      phase.unit = field.unit;
+      phase = FreeParameter::at(index, {key, field.name}, field.unit);
       phase.lower = field.lower;
       phase.upper = field.upper;
     }
@@ -103,7 +99,7 @@ std::vector<FreeParameter> clocks(const Dataset& data) {
     parameter.key = fmt::format("{}.clock", data.experiments[e].name);
     parameter.unit = std::string("s");
     parameter.experiment = static_cast<int>(e);
-    parameter.state = 2;
+    parameter.state = InitialState::clock;
     parameter.lower = -1e9;
     parameter.upper = 1e9;
     free.push_back(std::move(parameter));
@@ -127,20 +123,20 @@ template <class Family>
 Fitted<Family> with_common_phase(const Dataset& data, const Fitted<Family>& fitted, const Candidate& candidate) {
   double frequency = 0.0;
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
-    if (fitted.free[k].key == fmt::format("effects.{}.frequency", candidate.name)) {
+    if (fitted.free[k].is_of_effect(candidate.effect) && fitted.free[k].address.field == "frequency") {
       frequency = fitted.free[k].value(fitted.u[k]);
     }
   }
   std::complex<double> mean = 0.0;
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
-    if (fitted.free[k].state == kClock) {
+    if (fitted.free[k].is_clock()) {
       const Experiment& experiment = data.experiments[static_cast<std::size_t>(fitted.free[k].experiment)];
       const double late = fitted.free[k].value(fitted.u[k]) - experiment.start;
       mean += std::polar(static_cast<double>(experiment.rows()), kTurn * frequency * late);
     }
   }
   Fitted<Family> common = fitted;
-  drop_parameters(common, [](const FreeParameter& parameter) { return parameter.state == kClock; });
+  drop_parameters(common, [](const FreeParameter& parameter) { return parameter.is_clock(); });
   common.free.push_back(phase_of<Family>(fitted.base, candidate));
   common.u.push_back(common.free.back().coordinate(std::arg(mean)));
   return common;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/terms/table_points.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -234,8 +232,9 @@ Fitted<Family> reaching_over(const Dataset& data, const Fitted<Family>& fitted, 
   Fitted<Family> wide = fitted;
   const auto now = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);
   visit_table(wide.base, candidate, [&]<class E>(const auto& field, auto& table) {
-    const std::string prefix = fmt::format("effects.{}.{}.", E::name, field.y_name);
-    const auto is_own = [&](const FreeParameter& p) { return p.is_ordinate && p.key.starts_with(prefix); };
+    const auto is_own = [&](const FreeParameter& p) {
+      return p.is_ordinate() && p.is_of_effect(candidate.effect) && p.address.field == field.y_name;
+    };
     const auto first = std::ranges::find_if(wide.free, is_own);
     // A term's curve was laid over all rows.
     if (table.points < 2 || first == wide.free.end() || !candidate.choices.empty()) {
@@ -249,7 +248,8 @@ Fitted<Family> reaching_over(const Dataset& data, const Fitted<Family>& fitted, 
     wide.free.erase(wide.free.begin() + at, wide.free.begin() + behind);
     wide.u.erase(wide.u.begin() + at, wide.u.begin() + behind);
     for (int i = 0; i < table.points; ++i) {
-      ordinate.key = prefix + std::to_string(i);
+      ordinate.address.point = i;
+      ordinate.key = ordinate.address.key();
       wide.free.insert(wide.free.begin() + at + i, ordinate);
       wide.u.insert(wide.u.begin() + at + i, ordinate.coordinate(table.y[static_cast<std::size_t>(i)]));
       ++ordinate.index;

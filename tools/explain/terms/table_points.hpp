@@ -19,7 +19,7 @@ void visit_table(Parameters& parameters, const Candidate& candidate, F&& f) {
                     Values::tables();
                   }) {
       for (const auto& field : Values::tables()) {
-        if (index == candidate.effect && (field.options >> candidate.option & 1U) != 0) {
+        if (index == candidate.effect && model::is_used(field.options, candidate.option)) {
           f.template operator()<E>(field, values.*field.member);
         }
       }

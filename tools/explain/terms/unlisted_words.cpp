@@ -21,18 +21,7 @@ namespace {
 /// Share of a curve's square from which on it is called by one property alone.
 constexpr double kMostly = 0.9;
 
-double at(const FittedTable& table, double x) {
-  const auto above = std::upper_bound(table.x.begin(), table.x.end(), x);
-  if (above == table.x.begin()) {
-    return table.y.front();
-  }
-  if (above == table.x.end()) {
-    return table.y.back();
-  }
-  const auto k = static_cast<std::size_t>(above - table.x.begin());
-  const double share = (x - table.x[k - 1]) / (table.x[k] - table.x[k - 1]);
-  return table.y[k - 1] + share * (table.y[k] - table.y[k - 1]);
-}
+double at(const FittedTable& table, double x) { return model::curve_value<double>(table.x, table.y, table.x.size(), x); }
 
 /// "load pressure", "rate times angle": the argument of a term of the grammar.
 std::string quantity_of_term(const Candidate& candidate) {

@@ -18,7 +18,7 @@ namespace hotfire {
 namespace {
 
 /// Whether a channel is an input of the plant: it holds from a row to the next.
-bool is_told(const std::string& channel) {
+bool is_held(const std::string& channel) {
   const std::string own = channel.substr(0, channel.find('.'));
   return own == "command" || own == "current";
 }
@@ -49,7 +49,7 @@ std::string put_on_grid(const std::filesystem::path& source, ImportMap& map, std
   }
   std::vector<bool> held;
   for (const ImportColumn& column : map.columns) {
-    held.push_back(is_told(column.channel));
+    held.push_back(is_held(column.channel));
   }
   try {
     Resampled even = resampled(times, values, held, map.resampling_period);

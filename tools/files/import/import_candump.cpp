@@ -149,7 +149,7 @@ class SignalFinder {
       }
       return given;
     }
-    // A factor other than a sign may stand for what is between them.
+    // A factor other than a sign may convert between them.
     if (!given.empty() && std::abs(source.column.factor) == 1.0 && !are_same(given, declared)) {
       refuse(source.column,
              fmt::format("unit = \"{}\": {}:{} says that {} is in \"{}\"; leave unit out, or correct the wrong one", given,

@@ -162,7 +162,7 @@ ImportMap load_import_map(const std::filesystem::path& path, ImportSource kind) 
   source.require_schema();
   ImportMap map;
   map.path = path;
-  // Channels before the time: a period below one of their headings is then told from one that lacks.
+  // Channels before the time: a period below one of their headings is then known from a missing one.
   const toml::node* channels = root.get("channels");
   if (channels == nullptr || source.table(*channels, "channels").empty()) {
     source.refuse_missing(root, "channels", "missing; write [channels.command] column = \"BETA_CMD\", unit = \"deg\"");

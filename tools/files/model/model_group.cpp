@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "model/checks.hpp"
 #include "tools/files/text/suggestion.hpp"
 
 namespace hotfire {
@@ -15,7 +16,7 @@ namespace {
 
 double bounded_number(const TomlSource& source, const toml::node& node, const std::string& key, const NumberKey& field) {
   const double value = source.number(node, key, field.unit);
-  if (!(value >= field.lower && value <= field.upper)) {
+  if (!model::is_inside(value, field.lower, field.upper)) {
     source.refuse(node, key,
                   fmt::format("outside its bounds; allowed: {:g} to {:g} {}", field.lower, field.upper, field.unit));
   }
@@ -26,7 +27,7 @@ double bounded_number(const TomlSource& source, const toml::node& node, const st
 std::string options_using(const KeyGroup& group, unsigned bits) {
   std::string names;
   for (std::size_t i = 0; i < group.options.size(); ++i) {
-    if (((bits >> i) & 1U) != 0) {
+    if (model::is_used(bits, static_cast<int>(i))) {
       names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", group.options[i]);
     }
   }
@@ -55,11 +56,11 @@ void read_choice(const TomlSource& source, const toml::table& table, const std::
     source.refuse_missing(table, key, fmt::format("missing; allowed: \"{}\"", fmt::join(choice.names, "\", \"")));
   }
   const std::string chosen = source.text(*node, key);
-  const auto found = std::find(choice.names.begin(), choice.names.end(), chosen);
-  if (found == choice.names.end()) {
+  const int option = model::option_named(choice.names, chosen);
+  if (option < 0) {
     source.refuse(*node, key, suggestion(chosen, choice.names));
   }
-  *choice.value = static_cast<int>(found - choice.names.begin());
+  *choice.value = option;
 }
 
 std::vector<double> read_array(const TomlSource& source, const toml::table& table, const std::string& prefix,
@@ -93,10 +94,10 @@ void read_curve(const TomlSource& source, const toml::table& table, const std::s
                   fmt::format("has {} points where {} has {}; allowed: as many", y.size(), curve.x_name, x.size()));
   }
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (i > 0 && !(x[i] > x[i - 1])) {
+    if (!model::rises(x, i)) {
       source.refuse(x_nodes[i], fmt::format("{}{}[{}]", prefix, curve.x_name, i), "must be above the value before it");
     }
-    if (!(y[i] >= curve.y_lower && y[i] <= curve.y_upper)) {
+    if (!model::is_inside(y[i], curve.y_lower, curve.y_upper)) {
       source.refuse(y_nodes[i], fmt::format("{}{}[{}]", prefix, curve.y_name, i),
                     fmt::format("outside its bounds; allowed: {:g} to {:g} {}", curve.y_lower, curve.y_upper, curve.y_unit));
     }

@@ -59,7 +59,7 @@ struct KeyGroup {
   std::function<std::string_view()> broken_relation;  ///< what the values break, empty if nothing
 
   /// True if a key with these option bits acts under the chosen option.
-  bool uses(unsigned option_bits) const { return options.empty() || ((option_bits >> *option) & 1U) != 0; }
+  bool uses(unsigned option_bits) const { return options.empty() || model::is_used(option_bits, *option); }
 };
 
 /// A channel of the model, as `[sensors]` names it.

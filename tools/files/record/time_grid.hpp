@@ -32,8 +32,8 @@ struct TimeGrid {
 /// The uniform grid that a time column [s] lies on: period = (last - first) / (rows - 1).
 ///
 /// Every interval must lie within 1 % of the period, or within what the rounding of two printed times does to it (`unit` is
-/// the printed unit in seconds), half a period at most. Throws FileError with line and both times, telling repeated and
-/// backward times, gaps and uneven sampling apart, or with the rate if it is outside 50 Hz to 20 kHz.
+/// the printed unit in seconds), half a period at most. Throws FileError with line and both times, one message each for
+/// repeated times, backward times, gaps and uneven sampling, or with the rate if it is outside 50 Hz to 20 kHz.
 /// `lines` says where the rows are in the file.
 TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& digits, double unit,
                       const std::filesystem::path& path, const RowLines& lines);

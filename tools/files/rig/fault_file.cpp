@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "model/checks.hpp"
 #include "tools/files/model/model_group.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -109,7 +110,7 @@ class FaultTable {
     const toml::node& node = needed(key, fmt::format("a number in {}", unit));
     const std::string full = prefix_ + std::string(key);
     const double value = source_.number(node, full, unit);
-    if (!(value >= lower && value <= upper)) {
+    if (!model::is_inside(value, lower, upper)) {
       source_.refuse(node, full, fmt::format("allowed: {:g} to {:g} {}", lower, upper, unit));
     }
     return value;

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/checks.hpp"
 #include "tools/files/text/toml_source.hpp"
 
 namespace hotfire {
@@ -47,7 +48,7 @@ class ProfileNumbers {
 
   double within(const toml::node& node, const std::string& key, std::string_view unit, double lower, double upper) const {
     const double value = source_.number(node, key, unit);
-    if (!(value >= lower && value <= upper)) {
+    if (!model::is_inside(value, lower, upper)) {
       source_.refuse(node, key, fmt::format("allowed: {:g} to {:g} {}", lower, upper, unit));
     }
     return value;

@@ -91,7 +91,7 @@ bool is_angle_or_frequency(ut_unit* unit) {
 }
 
 /// What to write instead of a frequency given in cycles where radians are wanted, or the reverse.
-std::string radian_mend(ut_unit* given, ut_unit* wanted, const std::string& wanted_text, double value) {
+std::string radian_remedy(ut_unit* given, ut_unit* wanted, const std::string& wanted_text, double value) {
   if (ut_is_dimensionless(wanted) != 0) {
     return "a plain number and an angle are not the same";
   }
@@ -135,7 +135,7 @@ UnitConverter::UnitConverter(const std::string& unit, const std::string& wanted,
   const bool counted_in_turns = unit.find("Hz") != std::string::npos || unit.find("hertz") != std::string::npos;
   if (has_radian(ratio.get()) && (is_angle_or_frequency(target.get()) || counted_in_turns)) {
     throw UnitError(fmt::format("unit \"{}\" does not convert to {}: {}", unit, wanted,
-                                radian_mend(given.get(), target.get(), wanted, value)));
+                                radian_remedy(given.get(), target.get(), wanted, value)));
   }
   converter_.reset(ut_get_converter(given.get(), target.get()));
 }

@@ -33,7 +33,7 @@ std::string path_of_uri(const std::string& uri) {
   }
   std::string_view rest = std::string_view(uri).substr(kScheme.size());
   if (rest.starts_with("//")) {
-    // What stands before the path is the machine: none, or this one.
+    // The part before the path is the machine: none, or this one.
     rest.remove_prefix(2);
     rest.remove_prefix(rest.starts_with("localhost/") ? std::string_view("localhost").size() : 0);
   }

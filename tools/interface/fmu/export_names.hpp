@@ -2,7 +2,7 @@
 #pragma once
 
 // How the functions of an FMU are exported, as the standards' headers do it. FMI2_FUNCTION_PREFIX or FMI3_FUNCTION_PREFIX,
-// which the sources of an FMU define as its model identifier, stands before each name. With FMI2_OVERRIDE_FUNCTION_PREFIX or
+// which the sources of an FMU define as its model identifier, precedes each name. With FMI2_OVERRIDE_FUNCTION_PREFIX or
 // FMI3_OVERRIDE_FUNCTION_PREFIX the prefix is FMI2_ACTUAL_FUNCTION_PREFIX or FMI3_ACTUAL_FUNCTION_PREFIX instead, or none: a
 // shared library has the standard's names.
 

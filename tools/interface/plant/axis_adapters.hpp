@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/checks.hpp"
 #include "model/key_text.hpp"
 #include "model/numerics/step_size.hpp"
 #include "tools/interface/plant/plant.hpp"
@@ -25,36 +26,15 @@ inline std::string_view meaning_of_channel(std::string_view channel) {
                                  : "pressure across the piston as its sensor reads it";
 }
 
-/// The first broken relation between the values of an active effect; empty if there is none.
-template <class Parameters>
-std::string_view broken_effect(const Parameters& axis) {
-  std::string_view broken;
-  model::visit_effects(axis, [&]<class E>(std::size_t index, const auto& values) {
-    if constexpr (requires { E::broken_relation(values); }) {
-      if (broken.empty() && axis.effects.active[index]) {
-        broken = E::broken_relation(values);
-      }
-    }
-  });
-  return broken;
-}
-
-/// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
-template <class S>
-struct SimplexAdapter {
-  using Model = model::Simplex<S>;
+/// What both models have in common for `PlantOf`: their keys, channels and readings.
+template <class S, class PlantModel>
+struct ModelAdapter {
+  using Model = PlantModel;
   using Parameters = typename Model::Parameters;
   struct State {
     typename Model::State plant{};
   };
   static constexpr std::size_t kOutputs = Model::channels.size();
-
-  static int steps(const typename Model::Parameters&, double period) { return model::steps_per_period(period); }
-
-  static std::vector<Variable> inputs(const Parameters&) {
-    return {{"command", "rad", "commanded engine angle, held over a period", 0.0, -kLargest, kLargest},
-            {"torque", "N.m", "torque on the engine towards positive angles, held over a period", 0.0, -kLargest, kLargest}};
-  }
 
   static std::vector<Variable> outputs(const Setup&) {
     std::vector<Variable> variables;
@@ -65,18 +45,41 @@ struct SimplexAdapter {
     return variables;
   }
 
-  static std::vector<Variable> further_parameters() { return {}; }
-
   template <class Visitor, class AnyOf>
   static void visit(AnyOf& parameters, Visitor& visitor) {
     model::visit_keys(parameters, visitor);
   }
 
-  static std::string_view broken(const Parameters& parameters) { return broken_effect(parameters); }
+  static std::string_view broken(const Parameters& parameters) { return model::broken_effect(parameters).relation; }
 
   static const Parameters& of_model(const Parameters& parameters) { return parameters; }
 
   static State first_state(const Parameters&, const Setup&) { return {}; }
+
+  static void smooth(Parameters&) {}
+  static void begin_reading(State&, const Parameters&) noexcept {}
+
+  static void read(State& state, double, std::span<S> outputs) noexcept {
+    const auto& measured = Model::measured(state.plant);
+    std::copy(measured.begin(), measured.end(), outputs.begin());
+  }
+};
+
+/// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
+template <class S>
+struct SimplexAdapter : ModelAdapter<S, model::Simplex<S>> {
+  using typename ModelAdapter<S, model::Simplex<S>>::Model;
+  using typename ModelAdapter<S, model::Simplex<S>>::Parameters;
+  using typename ModelAdapter<S, model::Simplex<S>>::State;
+
+  static int steps(const typename Model::Parameters&, double period) { return model::steps_per_period(period); }
+
+  static std::vector<Variable> inputs(const Parameters&) {
+    return {{"command", "rad", "commanded engine angle, held over a period", 0.0, -kLargest, kLargest},
+            {"torque", "N.m", "torque on the engine towards positive angles, held over a period", 0.0, -kLargest, kLargest}};
+  }
+
+  static std::vector<Variable> further_parameters() { return {}; }
 
   static void settle(const Model& model, State& state, std::span<const S> inputs, const Parameters&, std::span<const S>,
                      double time) {
@@ -88,25 +91,14 @@ struct SimplexAdapter {
     const S& arm = model.parameters().actuator.moment_arm;
     model.step(state.plant, inputs[0], [&](const S&) { return model::Coupling<S>{S(0.0), arm, S(-inputs[1])}; });
   }
-
-  static void smooth(Parameters&) {}
-  static void begin_reading(State&, const Parameters&) noexcept {}
-
-  static void read(State& state, double, std::span<S> outputs) noexcept {
-    const auto& measured = Model::measured(state.plant);
-    std::copy(measured.begin(), measured.end(), outputs.begin());
-  }
 };
 
 /// A mass that a force drives. Input: force, in the record's own units.
 template <class S>
-struct DirectAdapter {
-  using Model = model::Direct<S>;
-  using Parameters = typename Model::Parameters;
-  struct State {
-    typename Model::State plant{};
-  };
-  static constexpr std::size_t kOutputs = Model::channels.size();
+struct DirectAdapter : ModelAdapter<S, model::Direct<S>> {
+  using typename ModelAdapter<S, model::Direct<S>>::Model;
+  using typename ModelAdapter<S, model::Direct<S>>::Parameters;
+  using typename ModelAdapter<S, model::Direct<S>>::State;
 
   static int steps(const typename Model::Parameters& parameters, double period) {
     return model::steps_per_period<Model>(parameters, period);
@@ -116,25 +108,10 @@ struct DirectAdapter {
     return {{"force", "", "force on the mass, held over a period", 0.0, -kLargest, kLargest}};
   }
 
-  static std::vector<Variable> outputs(const Setup&) {
-    return {{"position", "", std::string(meaning_of_channel("position")), 0.0, -kLargest, kLargest}};
-  }
-
   static std::vector<Variable> further_parameters() {
     return {{"start.position", "", "position at the start", 0.0, -kLargest, kLargest},
             {"start.velocity", "position/time", "velocity at the start", 0.0, -kLargest, kLargest}};
   }
-
-  template <class Visitor, class AnyOf>
-  static void visit(AnyOf& parameters, Visitor& visitor) {
-    model::visit_keys(parameters, visitor);
-  }
-
-  static std::string_view broken(const Parameters& parameters) { return broken_effect(parameters); }
-
-  static const Parameters& of_model(const Parameters& parameters) { return parameters; }
-
-  static State first_state(const Parameters&, const Setup&) { return {}; }
 
   static void settle(const Model& model, State& state, std::span<const S>, const Parameters&, std::span<const S> further,
                      double time) {
@@ -145,11 +122,6 @@ struct DirectAdapter {
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
     model.step(state.plant, inputs[0]);
   }
-
-  static void smooth(Parameters&) {}
-  static void begin_reading(State&, const Parameters&) noexcept {}
-
-  static void read(State& state, double, std::span<S> outputs) noexcept { outputs[0] = Model::measured(state.plant)[0]; }
 };
 
 }  // namespace hotfire::plant

@@ -68,7 +68,7 @@ struct VehicleAdapter {
       add("vibration." + axis_name(i), "rad/s", "vibration of the bearing as slip velocity, held over a period", 0.0,
           -kLargest);
       // A law that has the vibration already and a recorded one would be the same physics twice.
-      if (parameters.vehicle.gimbals[i / 2].friction.option == model::BearingFriction<S>::kVibrated) {
+      if (parameters.vehicle.gimbals[i / 2].friction.law() == model::BearingFriction<S>::Law::vibrated_lugre) {
         variables.back().lower = 0.0;
         variables.back().upper = 0.0;
       }
@@ -117,8 +117,8 @@ struct VehicleAdapter {
     std::string_view broken;
     const auto note = [&broken](std::string_view what) { broken = broken.empty() ? what : broken; };
     for (std::size_t e = 0; e < kEngines; ++e) {
-      note(broken_effect(vehicle.axes[2 * e]));
-      note(broken_effect(vehicle.axes[2 * e + 1]));
+      note(model::broken_effect(vehicle.axes[2 * e]).relation);
+      note(model::broken_effect(vehicle.axes[2 * e + 1]).relation);
       if (!vehicle.constant_arms[e]) {
         note(model::broken_relation(vehicle.attach[2 * e], vehicle.attach[2 * e + 1]));
       }

@@ -27,8 +27,8 @@ function roundText(rows) {
   const tried = rows.filter((row) => row.decision !== "taken out");
   const effectsTried = new Set(tried.map((row) => row.candidate)).size;
   const joint = tried.filter(isFittedJointly).length;
-  const told = (row) => `${withLaw(row)}${row.reason ? ` (${row.reason})` : ""}`;
-  const named = (decision) => rows.filter((row) => row.decision === decision).map(told).join("; ");
+  const nameOf = (row) => `${withLaw(row)}${row.reason ? ` (${row.reason})` : ""}`;
+  const named = (decision) => rows.filter((row) => row.decision === decision).map(nameOf).join("; ");
   const kept = named("kept");
   const name = `Round ${round}${isFilled(axis) ? ` of the ${axis} axis` : ""}`;
   return [`${name}: ${countOf(tried.length, "candidate")} of ${countOf(effectsTried, "effect")} screened, ` +

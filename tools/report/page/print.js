@@ -11,9 +11,9 @@ const cssString = (text) => `"${text.replace(/[^\p{L}\p{N} .,:()·_-]/gu, (each)
 
 /** Name, date and version at the foot of every page, beside the page's number. */
 function runningFoot(report) {
-  const told = ["Hotfire report", report.name || report.model, report.date].filter(isFilled).join(" · ");
+  const footer = ["Hotfire report", report.name || report.model, report.date].filter(isFilled).join(" · ");
   const style = element("style");
-  style.textContent = `@page { @bottom-left { content: ${cssString(told)}; } }`;
+  style.textContent = `@page { @bottom-left { content: ${cssString(footer)}; } }`;
   document.head.append(style);
 }
 

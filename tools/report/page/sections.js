@@ -169,9 +169,9 @@ function trace(report) {
 
 /** What no fit can decide from these records, whatever it found. */
 function identifiability(report) {
-  const told = (report.identifiability ?? []).filter((each) => isFilled(each?.text));
-  return told.length ? section("What the data cannot separate",
-    element("ul", { class: "sentences" }, told.map((each) => element("li", {}, each.text)))) : null;
+  const sentences = (report.identifiability ?? []).filter((each) => isFilled(each?.text));
+  return sentences.length ? section("What the data cannot separate",
+    element("ul", { class: "sentences" }, sentences.map((each) => element("li", {}, each.text)))) : null;
 }
 
 /** How many tolerances a value has moved: a bar from the middle, one tolerance shaded, clipped at four. */

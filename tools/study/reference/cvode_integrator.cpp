@@ -36,7 +36,7 @@ CvodeIntegrator::CvodeIntegrator(Derivative derivative, void* user, const std::v
   require(CVodeSetUserData(memory_, user), "CVodeSetUserData");
   require(CVodeSetLinearSolver(memory_, solver_, matrix_), "CVodeSetLinearSolver");
   require(CVodeSetMaxNumSteps(memory_, 100'000), "CVodeSetMaxNumSteps");
-  // A failure is answered in advance(), and told by an exception if that is no help.
+  // advance() handles a failure, and throws if it cannot.
   require(CVodeSetErrFile(memory_, nullptr), "CVodeSetErrFile");
 }
 

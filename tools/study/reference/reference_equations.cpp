@@ -138,7 +138,7 @@ double valve_flow(const ReferenceAxis& a, double elapsed, const StateVector& y, 
                              (1.0 + a.unlisted.gain_drift * elapsed) +
                          further_opening;
   const double supply = a.supply - y[kSupplyDroop];
-  // Rated flow is told at the declared supply pressure.
+  // Rated flow is the flow at the declared supply pressure.
   return a.rated_flow * opening * std::sqrt(std::max(0.0, (supply - sign(opening) * y[kPressure]) / a.supply));
 }
 

@@ -51,7 +51,7 @@ class Case:
         self.noise = numpy.array([float(model["sensors"][f"{name}_noise"]) for name in CHANNELS])
         self.records = [read_record(path) for path in sorted(given.glob("*.csv"))]
         self.unseen = read_record(kept / "score_noisefree.csv")
-        self.lacks = json.loads((kept / "truth.json").read_text(encoding="utf-8"))["effects"]
+        self.missing = json.loads((kept / "truth.json").read_text(encoding="utf-8"))["effects"]
         for record in self.records:
             if "load_pressure" in record["channels"]:
                 raise BadCase(f"{record['path']}: load_pressure would give the finder a channel that the others do not use; "

@@ -85,7 +85,7 @@ class SparseTerms(NoEffect):
         return " + ".join(f"{c:.4g} {name}" for name, _, c in self.kept) or "nothing"
 
 
-def valve_lack(p, record, piston, force, period):
+def missing_opening(p, record, piston, force, period):
     """Spool, and how much of its opening is missing, by the valve's own equations driven by what was measured."""
     area = p["actuator.piston_area"]
     pressure = (p["actuator.piston_mass"] * piston[2] + p["actuator.piston_damping"] * piston[1] + force) / area
@@ -119,8 +119,8 @@ def missing_term(values, site, records, window):
         elif site == "load_spring":
             part = deflection, angle[1], torque / arm - force
         else:
-            spool, lack = valve_lack(p, record, piston, torque / arm, period)
-            part = spool, angle[1], lack
+            spool, missing = missing_opening(p, record, piston, torque / arm, period)
+            part = spool, angle[1], missing
         parts.append([each[window:-window] for each in part])
     return dict(zip(("first", "second", "missing"), (numpy.concatenate(each) for each in zip(*parts))))
 

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/explain/terms/candidates.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <set>
+#include <string>
+
+#include "tools/explain/terms/unlisted.hpp"
+
+namespace {
+
+using namespace hotfire::explain;
+
+Dataset every_channel() {
+  Dataset data;
+  data.channels = {"piston", "engine", "load_pressure"};
+  data.used = {true, true, true};
+  return data;
+}
+
+}  // namespace
+
+TEST_GROUP(Candidates){};
+
+TEST(Candidates, AParameterIsAddressedByItsEffectAndFieldAndItsKeyIsThatOfModelFiles) {
+  const PlainParameters<SimplexFamily> neutral;
+  std::size_t parameters = 0;
+  for (const Candidate& candidate : all_candidates<SimplexFamily>(every_channel())) {
+    std::set<Address> addresses;
+    for (const FreeParameter& free : effect_parameters<SimplexFamily>(neutral, candidate, {})) {
+      CHECK_TRUE_TEXT(addresses.insert(free.address).second, free.key.c_str());
+      CHECK_TRUE(free.is_of_effect(candidate.effect) && !free.is_of_effect(candidate.effect + 1));
+      STRCMP_EQUAL(("effects." + candidate.name + "." + std::string(free.address.field)).c_str(), free.key.c_str());
+      ++parameters;
+    }
+  }
+  CHECK_TRUE(parameters > 40);
+}
+
+TEST(Candidates, APointOfATableIsAddressedByItsNumberToo) {
+  PlainParameters<SimplexFamily> parameters;
+  for (const Candidate& candidate : unlisted_candidates<SimplexFamily>(every_channel())) {
+    if (candidate.name != "unlisted_flow" || candidate.option_name != "opening") {
+      continue;
+    }
+    activate<SimplexFamily>(parameters, candidate);
+    hotfire::model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+      if constexpr (std::is_same_v<E, hotfire::model::UnlistedFlow>) {
+        CHECK_EQUAL(candidate.effect, index);
+        values.table.points = 3;
+        values.table.x = {-1.0, 0.0, 1.0};
+      }
+    });
+    const std::vector<FreeParameter> free = effect_parameters<SimplexFamily>(parameters, candidate, {});
+    CHECK_EQUAL(3U, free.size());
+    STRCMP_EQUAL("effects.unlisted_flow.flow_at_opening.2", free[2].key.c_str());
+    CHECK_TRUE(free[2].is_ordinate() && free[2].address.point == 2 && free[2].index == free[1].index + 1);
+    CHECK_FALSE(free[2].is_same_as(free[1]));
+    return;
+  }
+  FAIL("there is no such candidate");
+}

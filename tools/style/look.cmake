@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0
+# For the tests of the checks: runs one over a scratch copy of the tree.
+
+# look(CHECK STATUS OUTPUT ARGUMENT...): exit status and message of tools/style/CHECK.cmake over ${SCRATCH}. CMake wraps its
+# messages: here they are one line.
+function(look check status output)
+  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} ${ARGN} -P ${ROOT}/tools/style/${check}.cmake
+    RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  string(REGEX REPLACE "[ \n]+" " " text "${text}")
+  set(${status} ${result} PARENT_SCOPE)
+  set(${output} "${text}" PARENT_SCOPE)
+endfunction()
+
+# look_at_tree(CHECK): ends the test unless the check passes over the scratch copy as it is.
+function(look_at_tree check)
+  look(${check} status output)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "the tree as it is: ${output}")
+  endif()
+endfunction()
