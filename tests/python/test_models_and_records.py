@@ -106,17 +106,67 @@ def test_arrays_that_are_no_record_are_refused(channels, period, words):
         hotfire.Record(channels, period=period)
 
 
-def test_the_stub_names_what_the_compiled_part_has():
+def in_words_of_the_stub(annotation: str) -> str:
+    """A type as pybind11 prints it, in the words of the stub."""
+    for printed, word in (("hotfire._core.", ""), ("numpy.ndarray[numpy.float64]", "npt.NDArray[np.float64]"),
+                          ("os.PathLike", "str | os.PathLike[str]"), ("List[", "list["), ("Tuple[", "tuple["),
+                          ("Dict[", "dict[")):
+        annotation = annotation.replace(printed, word)
+    return annotation
+
+
+def disagreements_of_the_stub(stub_text: str) -> list:
+    """Where the stub says another name, argument, order or type than the compiled part."""
     import ast
-    from pathlib import Path
+    import re
 
     from hotfire import _core
 
-    stub = ast.parse((Path(hotfire.__file__).parent / "_core.pyi").read_text())
+    found = []
+
+    def compare(where, node, compiled):
+        signature = (compiled.fget if isinstance(compiled, property) else compiled).__doc__.splitlines()[0]
+        printed = ast.parse(f"def {re.sub('^[a-z_]*', 'f', signature)}: ...").body[0]
+        declared = [*node.args.posonlyargs, *node.args.args]
+        if [each.arg for each in declared] != ["self"] * ("self" in signature) + [
+            each.arg for each in printed.args.args if each.arg != "self"
+        ] and not isinstance(compiled, property):
+            # An argument without a name is printed as arg0: the stub then allows it by its position alone.
+            nameless = [each.arg.startswith("arg") for each in printed.args.args if each.arg != "self"]
+            of_position = [each in node.args.posonlyargs for each in declared if each.arg != "self"]
+            if not (any(nameless) and nameless == of_position):
+                found.append(f"{where}: arguments {[each.arg for each in declared]}, compiled: {signature}")
+        types = [(each.annotation, other.annotation) for each, other in zip(declared, printed.args.args) if each.annotation]
+        for mine, other in [*types, (node.returns, printed.returns)]:
+            wanted = in_words_of_the_stub(ast.unparse(other))
+            said = ast.unparse(mine).replace("Sequence[", "list[")
+            # Python objects that the compiled part takes and gives as they are.
+            if wanted not in (said, "object", "tuple", "dict", "list", "numpy.ndarray") and not wanted.startswith("Callable"):
+                found.append(f"{where}: {said}, compiled: {wanted}")
+
+    stub = ast.parse(stub_text)
     classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
-    named = set(classes) | {node.name for node in stub.body if isinstance(node, ast.FunctionDef)} | {"version"}
-    assert named == {name for name in dir(_core) if not name.startswith("_")}
+    functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
+    here = {name for name in dir(_core) if not name.startswith("_")}
+    found += [f"{name}: in one of the two only" for name in here ^ {*classes, *functions, "version"}]
+    for name in here & set(functions):
+        compare(name, functions[name], getattr(_core, name))
     for name in ("Model", "Record"):
-        members = {node.name for node in classes[name].body if isinstance(node, ast.FunctionDef)}
-        found = {member for member in vars(getattr(_core, name)) if not member.startswith("_")}
-        assert members - {"__len__"} == found, name
+        members = {node.name: node for node in classes[name].body if isinstance(node, ast.FunctionDef)}
+        of_class = {member for member in vars(getattr(_core, name)) if not member.startswith("_")}
+        found += [f"{name}.{member}: in one of the two only" for member in of_class ^ (set(members) - {"__len__"})]
+        for member in of_class & set(members):
+            compare(f"{name}.{member}", members[member], getattr(getattr(_core, name), member))
+    return found
+
+
+def test_the_stub_says_the_names_arguments_and_types_of_the_compiled_part():
+    from pathlib import Path
+
+    text = (Path(hotfire.__file__).parent / "_core.pyi").read_text()
+    assert disagreements_of_the_stub(text) == []
+    # Each wrong word is found.
+    for right, wrong in (("fit_start: int", "first_rows: int"), ("seed: int", "seed: float"), ("def sha256", "def sha512"),
+                         ("-> list[str]", "-> list[int]"), ("def period", "def step"), ("-> float", "-> int")):
+        assert right in text
+        assert disagreements_of_the_stub(text.replace(right, wrong, 1)) != [], wrong

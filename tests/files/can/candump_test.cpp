@@ -41,6 +41,10 @@ std::string reading(double time, std::uint8_t counter, double piston) {
   return line(time, "PISTON_1", counter, {{"piston_a", piston - 1e-6}, {"piston_b", piston + 1e-6}});
 }
 
+std::string pressure(double time, std::uint8_t counter, double value) {
+  return line(time, "LOAD_PRESSURES", counter, {{"load_pressure_1", value}, {"load_pressure_2", -value}});
+}
+
 /// Three readings, 1 ms apart, and the commands between them.
 std::string short_log() {
   return command(100.0, 254, 0.001) + reading(100.0001, 255, 0.01) + command(100.001, 255, 0.002) +
@@ -135,6 +139,28 @@ TEST(Candump, readings_of_two_nodes_make_one_row_and_a_lost_one_is_refused) {
   }
 }
 
+TEST(Candump, load_pressure_belongs_to_the_reading_with_its_counter) {
+  const std::string before = pressure(99.9999, 253, 9e6) + reading(99.999, 254, 0.0) + command(100.0, 254, 0.001);
+  const std::string two = reading(100.0, 255, 0.01) + pressure(100.0002, 255, 1e6) + command(100.0005, 255, 0.002) +
+                          reading(100.001, 0, 0.02) + pressure(100.0012, 0, -2e6);
+  // The last reading has none yet, and the first was sent by a plant that had not begun to.
+  const Record record = load(before + two + reading(100.002, 1, 0.03));
+  expect_values(record, "piston", {0.01, 0.02}, 1e-12);
+  expect_values(record, "load_pressure", {1e6, -2e6}, 1e-6);
+  expect_message(refused(two + reading(100.002, 1, 0.03) + reading(100.003, 2, 0.04) + pressure(100.0031, 2, 0.0)),
+                 {"run.log:7: LOAD_PRESSURES: none with the counter 1 of PISTON_1: frames are lost"});
+  expect_message(refused(two + pressure(100.0013, 0, 0.0)), {"run.log:6: LOAD_PRESSURES: counter 0 after PISTON_1 0"});
+  expect_message(refused(two + reading(100.002, 1, 0.03) + pressure(100.0013, 0, 0.0)),
+                 {"run.log:7: LOAD_PRESSURES: counter 0 after PISTON_1 1", "one after each reading"});
+  std::string fd;
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    fd += line(5.0 + 0.001 * i, "PISTONS_FD", i, {{"piston_6_a", 0.01}, {"piston_6_b", 0.01}}) +
+          line(5.0001 + 0.001 * i, "LOAD_PRESSURES_FD", i, {{"load_pressure_6", 1e6 * i}}) +
+          line(5.0002 + 0.001 * i, "SERVOVALVE_COMMAND_FD", i, {{"current_6", 0.01}});
+  }
+  expect_values(load(fd, {6, 0.0}), "load_pressure", {0.0, 1e6, 2e6}, 1e-6);
+}
+
 TEST(Candump, what_is_written_is_read_back_within_half_a_code_of_each_signal) {
   Record record{"run.csv", "run.csv", 1000.0, 0.001, 2000, {}};
   for (const char* name : {"command", "piston", "string1", "string2", "string3", "string4"}) {
@@ -144,6 +170,11 @@ TEST(Candump, what_is_written_is_read_back_within_half_a_code_of_each_signal) {
     }
     record.channels.push_back(std::move(channel));
   }
+  Channel pressure{"load_pressure", "Pa", {}};
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    pressure.values.push_back(1e7 * std::sin(0.02 * static_cast<double>(row)));
+  }
+  record.channels.push_back(std::move(pressure));
   const CandumpOptions options{2, 5.0};
   write_candump(record, scratch.path("back.log"), options);
   const Record back = load_record_or_log(scratch.path("back.log"), options);
@@ -151,7 +182,9 @@ TEST(Candump, what_is_written_is_read_back_within_half_a_code_of_each_signal) {
   DOUBLES_EQUAL(record.start, back.start, 1e-6);
   DOUBLES_EQUAL(record.period, back.period, 0.0);
   for (const Channel& channel : record.channels) {
-    const double half_a_code = channel.name == "command" ? 0.5 * 5.0 * 1e-6 : 0.5 * 1e-7;
+    const double half_a_code = channel.name == "command"         ? 0.5 * 5.0 * 1e-6
+                               : channel.name == "load_pressure" ? 0.5 * 10.0
+                                                                 : 0.5 * 1e-7;
     for (std::size_t row = 0; row < record.rows; ++row) {
       DOUBLES_EQUAL(channel.values[row], back.find(channel.name)->values[row], 1.001 * half_a_code);
     }

@@ -27,9 +27,18 @@ struct ActuatorPlaces {
   const CanSignal* piston_a;
   const CanMessage* second_reading;
   const CanSignal* piston_b;
+  const CanMessage* pressures;  ///< none in a map without them
+  const CanSignal* pressure;
   std::array<const CanMessage*, kStrings> string_messages;
   std::array<const CanSignal*, kStrings> strings;
 };
+
+void find_pressure(ActuatorPlaces& places, const CanMap& map, const char* message, unsigned actuator) {
+  places.pressures = map.find(message);
+  if (places.pressures != nullptr) {
+    places.pressure = &places.pressures->at(fmt::format("load_pressure_{}", actuator));
+  }
+}
 
 ActuatorPlaces classic_places(const CanMap& map, unsigned actuator, bool split) {
   ActuatorPlaces places{};
@@ -39,6 +48,7 @@ ActuatorPlaces classic_places(const CanMap& map, unsigned actuator, bool split) 
   places.piston_a = &places.reading->at(split ? "piston" : "piston_a");
   places.second_reading = &map.at(fmt::format("PISTON_{}{}", actuator, split ? "_B" : ""));
   places.piston_b = &places.second_reading->at(split ? "piston" : "piston_b");
+  find_pressure(places, map, "LOAD_PRESSURES", actuator);
   for (std::size_t i = 0; i < kStrings; ++i) {
     places.string_messages[i] = &map.at(i < 2 ? "STRINGS_12" : "STRINGS_34");
     places.strings[i] = &places.string_messages[i]->at(fmt::format("string_{}", i + 1));
@@ -54,6 +64,7 @@ ActuatorPlaces fd_places(const CanMap& map, unsigned actuator, bool split) {
   places.piston_a = &places.reading->at(fmt::format("piston_{}{}", actuator, split ? "" : "_a"));
   places.second_reading = &map.at(split ? "PISTONS_B_FD" : "PISTONS_FD");
   places.piston_b = &places.second_reading->at(fmt::format("piston_{}{}", actuator, split ? "" : "_b"));
+  find_pressure(places, map, "LOAD_PRESSURES_FD", actuator);
   const std::size_t first = (actuator - 1) / kPerEngine * kStrings;
   for (std::size_t i = 0; i < kStrings; ++i) {
     places.string_messages[i] = &map.at("STRINGS_FD");
@@ -74,7 +85,7 @@ class LogReader {
     while (const auto frame = next_candump_frame(lines_)) {
       take(*frame);
     }
-    if (open_ && !has_both_) {
+    if (open_ && (!has_both_ || lacks_pressure(*open_))) {
       open_.reset();  // the log ends between two readings of one row
     }
     close_row();  // the last command holds on
@@ -86,6 +97,7 @@ class LogReader {
     double time;
     double piston;
     double current;
+    double pressure;
     std::array<double, kStrings> strings;
   };
 
@@ -105,12 +117,15 @@ class LogReader {
       return;
     }
     if (message == places_->reading) {
-      require_next(last_reading_, *message, frame);
       close_row();
+      require_next(last_reading_, *message, frame);
       open_row(frame);
     }
     if (message == places_->second_reading && open_) {
       add_second_reading(frame);
+    }
+    if (message == places_->pressures && last_reading_) {
+      add_pressure(frame);
     }
     if (message == places_->command) {
       require_next(last_command_, *message, frame);
@@ -181,7 +196,7 @@ class LogReader {
   /// With reading A only: B belongs to the same row, if it is of another frame too.
   void open_row(const CandumpFrame& frame) {
     const double a = places_->piston_a->physical(places_->piston_a->read(frame.data));
-    open_ = Row{frame.time, a, std::nan(""), strings_};
+    open_ = Row{frame.time, a, std::nan(""), std::nan(""), strings_};
     has_both_ = false;
   }
 
@@ -196,11 +211,29 @@ class LogReader {
     has_both_ = true;
   }
 
+  void add_pressure(const CandumpFrame& frame) {
+    const auto counter = static_cast<std::uint8_t>(places_->pressures->counter().read(frame.data));
+    if (!open_ || counter != last_reading_ || !std::isnan(open_->pressure)) {
+      lines_.refuse(fmt::format("{}: counter {} after {} {}; allowed: one after each reading, with its counter",
+                                places_->pressures->name, counter, places_->reading->name, *last_reading_));
+    }
+    open_->pressure = places_->pressure->physical(places_->pressure->read(frame.data));
+    has_pressures_ = true;
+  }
+
+  /// Where a row before it had one.
+  bool lacks_pressure(const Row& row) const { return has_pressures_ && std::isnan(row.pressure); }
+
   void close_row() {
     if (open_ && !has_both_) {
       lines_.refuse(
           fmt::format("{}: none with the counter {} of {}: frames are lost; a record has no gaps, cut the log here",
                       places_->second_reading->name, *last_reading_, places_->reading->name));
+    }
+    if (open_ && lacks_pressure(*open_)) {
+      lines_.refuse(
+          fmt::format("{}: none with the counter {} of {}: frames are lost; a record has no gaps, cut the log here",
+                      places_->pressures->name, *last_reading_, places_->reading->name));
     }
     if (open_ && !std::isnan(current_)) {
       if (rows_.size() == kMostRows) {
@@ -216,16 +249,21 @@ class LogReader {
     return std::none_of(row.strings.begin(), row.strings.end(), [](double value) { return std::isnan(value); });
   }
 
-  /// Strings come less often than readings: rows before the first of each have none.
-  void drop_rows_without_strings() {
-    const auto first = std::find_if(rows_.begin(), rows_.end(), has_strings);
-    if (first != rows_.end()) {
-      rows_.erase(rows_.begin(), first);
-    }
+  /// Strings come less often than readings: rows before the first of each have none. Load pressures come with each reading
+  /// from a plant that sends them.
+  void drop_rows_without_all() {
+    const auto drop_before = [this](const auto& is_complete) {
+      const auto first = std::find_if(rows_.begin(), rows_.end(), is_complete);
+      if (first != rows_.end()) {
+        rows_.erase(rows_.begin(), first);
+      }
+    };
+    drop_before(has_strings);
+    drop_before([](const Row& row) { return !std::isnan(row.pressure); });
   }
 
   Record record() {
-    drop_rows_without_strings();
+    drop_rows_without_all();
     if (rows_.size() < 2) {
       throw FileError(
           fmt::format("{}: {} readings of actuator {} with a command; allowed: at least 2. The log needs the "
@@ -251,6 +289,9 @@ class LogReader {
     }
     add("current", "A", [](const Row& row) { return row.current; });
     add("piston", "m", [](const Row& row) { return row.piston; });
+    if (!std::isnan(rows_.front().pressure)) {
+      add("load_pressure", "Pa", [](const Row& row) { return row.pressure; });
+    }
     for (std::size_t i = 0; i < kStrings; ++i) {
       if (has_strings(rows_.front())) {
         add(fmt::format("string{}", i + 1), "m", [i](const Row& row) { return row.strings[i]; });
@@ -272,7 +313,8 @@ class LogReader {
   double current_ = std::nan("");
   std::array<double, kStrings> strings_{};
   std::optional<Row> open_;
-  bool has_both_ = false;  ///< redundant readings are in the open row
+  bool has_both_ = false;       ///< redundant readings are in the open row
+  bool has_pressures_ = false;  ///< a row has had one
   std::vector<Row> rows_;
 };
 

@@ -19,19 +19,20 @@ struct CandumpOptions {
 ///
 /// A row is a reading of the actuator's potentiometer: `piston` [m], the mean of both readings; `current` [A] and with
 /// `command_per_current` also `command` [rad]: what the plant was commanded until its next reading, which is the
-/// newest command before that; `string1` to `string4` [m] of its engine, the newest before, if the log has them. Rows begin
-/// with the first reading that has all of it. The time grid is that of the readings: their counter makes it gapless, their
-/// stamps give its period (to the microsecond) and start; a stamp may be half a period off.
+/// newest command before that; `load_pressure` [Pa], which follows the reading with the same counter, and `string1` to
+/// `string4` [m] of its engine, the newest before, if the log has them. Rows begin with the first reading that has all of
+/// it. The time grid is that of the readings: their counter makes it gapless, their stamps give its period (to the
+/// microsecond) and start; a stamp may be half a period off.
 ///
 /// Frames that are not in the map, and error frames, are left out. Throws FileError with file and line for what is no line
-/// of a log, a frame of the map with a wrong check, length or value, two interfaces, a lost reading or command, readings of
-/// both layouts, fewer than two rows.
+/// of a log, a frame of the map with a wrong check, length or value, two interfaces, a lost reading, load pressure or
+/// command, readings of both layouts, fewer than two rows.
 Record load_candump(const std::filesystem::path& path, const CandumpOptions& options = {},
                     const CanMap& map = own_can_map());
 
 /// Writes a record as such a log, in the classic layout, so that `load_candump` reads it back within a code of each signal.
-/// It needs `piston`, and `current` or, with `command_per_current`, `command`; `string1` to `string4` go along if all are
-/// there. Throws FileError for a value beyond what its signal can carry.
+/// It needs `piston`, and `current` or, with `command_per_current`, `command`; `load_pressure` goes along if it is
+/// there, and `string1` to `string4` if all are. Throws FileError for a value beyond what its signal can carry.
 void write_candump(const Record& record, const std::filesystem::path& path, const CandumpOptions& options = {},
                    const CanMap& map = own_can_map());
 

@@ -71,6 +71,8 @@ void write_candump(const Record& record, const std::filesystem::path& path, cons
   require_channel(record, "piston", "a CAN log carries what the plant's potentiometers read");
   const std::vector<double> current = currents(record, options);
   const std::vector<double>& piston = record.find("piston")->values;
+  const Channel* const pressure = record.find("load_pressure");
+  const std::string pressure_signal = fmt::format("load_pressure_{}", options.actuator);
   std::array<const Channel*, 4> strings{record.find("string1"), record.find("string2"), record.find("string3"),
                                         record.find("string4")};
   const bool with_strings = std::find(strings.begin(), strings.end(), nullptr) == strings.end();
@@ -88,6 +90,9 @@ void write_candump(const Record& record, const std::filesystem::path& path, cons
       writer.append(text, "STRINGS_34", row, time, {{"string_3", &strings[2]->values}, {"string_4", &strings[3]->values}});
     }
     writer.append(text, reading, row, time, {{"piston_a", &piston}, {"piston_b", &piston}});
+    if (pressure != nullptr) {
+      writer.append(text, "LOAD_PRESSURES", row, time, {{pressure_signal.c_str(), &pressure->values}});
+    }
     writer.append(text, "SERVOVALVE_COMMAND", row, time, {{signal.c_str(), &current}});
     file.write_block(text);
   }
