@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/effects/load/soft_stiffness.hpp"
 #include "tools/analysis/free_decay.hpp"
 #include "tools/analysis/step_response.hpp"
 #include "tools/findings/parameters.hpp"
