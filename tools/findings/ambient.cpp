@@ -59,8 +59,8 @@ Outcome locked_pendulum(const Bench& bench) {
                              frequency(trials::hammer(bench.ambient(), kPitch, {0.1 * blow.impulse, 1.0})) / frequency(soft),
                              1.1, 1.4, ""});
   outcome.figures.push_back(near("softer actuator (4.5e7 N/m) under a smaller blow (160 N m s)",
-                                 frequency(trials::hammer(softer_actuator(bench), kPitch, {160.0, blow.seconds})), 6.75, 0.01,
-                                 "Hz"));
+                                 frequency(trials::hammer(softer_actuator(bench), kPitch, {160.0, blow.seconds})), 6.75,
+                                 0.01, "Hz"));
   outcome.picture = trials::time_chart("F3: swing of the engine after a blow, actuators locked", soft, kPitch);
   outcome.note =
       "A blow of 168 N m s, as of a sledge at the nozzle; the frequency of the first second. The blow is not published: it "
