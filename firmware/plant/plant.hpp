@@ -116,7 +116,7 @@ class Plant {
   }
 
   /// The torque on an actuator's engine in a plant step of the cycle [N m].
-  double torque(std::size_t actuator, int step) const noexcept {
+  double torque_on(std::size_t actuator, int step) const noexcept {
     double sum = loads_.torque(readings_.cycle(), actuator);
     recorded_.act_in(readings_.cycle(), step, [&](RecordedKind, std::size_t, double value) noexcept { sum += value; });
     return sum;
@@ -124,7 +124,7 @@ class Plant {
 
   void advance(const Model& model, std::size_t actuator, double command, int step) noexcept {
     if constexpr (requires { Model::kAngle; }) {
-      if (const double torque = this->torque(actuator, step); torque != 0.0) {
+      if (const double torque = torque_on(actuator, step); torque != 0.0) {
         const double arm = model.parameters().actuator.moment_arm;
         model.step(states_[actuator], command, [=](double) { return model::Coupling<double>{0.0, arm, -torque}; });
         return;
