@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/fit/two_axes.hpp"
 
-#include <CppUTest/TestHarness.h>
-
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -12,6 +10,8 @@
 #include "tools/explain/explain.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
+
+#include <CppUTest/TestHarness.h>
 
 namespace {
 

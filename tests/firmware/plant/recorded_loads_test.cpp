@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/plant/recorded_loads.hpp"
 
-#include <CppUTest/TestHarness.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -22,6 +21,8 @@
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/simulate/vehicle_image_text.hpp"
+
+#include <CppUTest/TestHarness.h>
 
 namespace hotfire {
 
