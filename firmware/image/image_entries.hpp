@@ -42,7 +42,7 @@ class Entries {
   }
 
   void refuse(const Entry& entry, const std::string& allowed) {
-    refuse(text("line %d: %s = %s: %s", entry.line, entry.key.c_str(), entry.value.c_str(), allowed.c_str()));
+    refuse(text("line %d: %s = %.60s: %s", entry.line, entry.key.c_str(), entry.value.c_str(), allowed.c_str()));
   }
 
   bool has(const std::string& key) { return find(key) != nullptr; }

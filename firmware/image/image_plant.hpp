@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -9,6 +10,7 @@
 #include "firmware/image/plant_image.hpp"
 #include "firmware/plant/plant.hpp"
 #include "firmware/plant/vehicle_plant.hpp"
+#include "firmware/text/text.hpp"
 
 namespace hotfire::firmware {
 namespace detail {
@@ -16,16 +18,16 @@ namespace detail {
 template <class Parameters>
 struct PlantOf {
   using Vehicle = typename Parameters::Vehicle;
-  static auto make(const Parameters& parameters, double period, std::size_t, const std::vector<PlayedFault>& faults) {
-    return std::make_unique<VehiclePlant<Vehicle>>(parameters, period, faults);
+  static auto make(const Parameters& parameters, double period, std::size_t, const PlantImage& image) {
+    return std::make_unique<VehiclePlant<Vehicle>>(parameters, period, image.faults, image.recorded);
   }
 };
 
 template <class Model>
 struct PlantOfAxes {
   static auto make(const typename Model::Parameters& parameters, double period, std::size_t actuators,
-                   const std::vector<PlayedFault>& faults) {
-    return std::make_unique<Plant<Model>>(parameters, period, actuators, faults);
+                   const PlantImage& image) {
+    return std::make_unique<Plant<Model>>(parameters, period, actuators, image.faults, image.recorded);
   }
 };
 template <>
@@ -48,13 +50,21 @@ inline std::size_t actuators_of(const PlantParameters& parameters) {
       parameters);
 }
 
+/// Why the record of disturbances of an image cannot be played in cycles of `period` [s]; empty if it can.
+inline std::string refused_record(const PlantImage& image, double period) {
+  return image.recorded.loads.empty() || cycles_per_row(image.recorded.period, period)
+             ? std::string()
+             : text("disturbances: a row lasts %g us and a cycle %g us; allowed: rows of a whole number of cycles",
+                    image.recorded.period * 1e6, period * 1e6);
+}
+
 /// What `use` makes of the plant of an image that has been read, on the heap. `period` in s; `actuators`: copies of one
 /// axis, not read for a vehicle.
 template <class Use>
 auto with_plant(const PlantImage& image, double period, std::size_t actuators, Use&& use) {
   return std::visit(
       [&]<class Parameters>(const Parameters& parameters) {
-        return use(detail::PlantOf<Parameters>::make(parameters, period, actuators, image.faults));
+        return use(detail::PlantOf<Parameters>::make(parameters, period, actuators, image));
       },
       *image.parameters);
 }

@@ -10,6 +10,7 @@
 #include "firmware/image/image_entries.hpp"
 #include "firmware/text/text.hpp"
 #include "model/checks.hpp"
+#include "hal/recording/header.hpp"
 #include "model/vehicle_keys.hpp"
 
 namespace hotfire::firmware {
@@ -142,6 +143,56 @@ std::vector<PlayedFault> read_faults(Entries& entries, const FaultyPlant& plant)
   return faults;
 }
 
+RecordedLoad read_recorded(Entries& entries, const std::string& prefix, const FaultyPlant& plant, std::size_t rows) {
+  constexpr double kLargestForce = 1e8;        // [N]
+  constexpr double kFastestVibration = 100.0;  // [rad/s]
+  RecordedLoad load;
+  load.kind = static_cast<RecordedKind>(read_word(entries, prefix + "kind", kRecordedKinds));
+  if (!plant.hydraulic) {
+    entries.refuse(prefix + "kind: a disturbance is of a hydraulic axis and its engine");
+  } else if (load.kind != RecordedKind::torque && !plant.has_bearing) {
+    entries.refuse(prefix + "kind: force, vibration and thrust are of topology taos or masv");
+  }
+  // One axis has copies as actuators, all of which its torque turns.
+  const std::size_t axes = plant.has_bearing ? plant.actuators : 1;
+  load.values.resize(rows);
+  const auto read = [&](std::size_t places, double lower, double upper, std::string_view unit) {
+    load.place = static_cast<std::size_t>(read_whole(entries, prefix + "place", 0, static_cast<int>(places) - 1));
+    read_list(entries, prefix + "values", lower, upper, unit, load.values);
+  };
+  switch (load.kind) {
+    case RecordedKind::torque:
+      read(axes, -kLargestTorque, kLargestTorque, "N m");
+      break;
+    case RecordedKind::force:
+      read(axes / 2 * 3, -kLargestForce, kLargestForce, "N");
+      break;
+    case RecordedKind::vibration:
+      read(axes, -kFastestVibration, kFastestVibration, "rad/s");
+      break;
+    case RecordedKind::thrust:
+      read(axes / 2, 0.0, kLargestThrust, "N");
+      break;
+  }
+  return load;
+}
+
+LoadRecord read_disturbances(Entries& entries, const FaultyPlant& plant) {
+  LoadRecord record;
+  if (!entries.has_prefix("disturbance.")) {
+    return record;
+  }
+  constexpr double kShortestRow = 1e-6;  // [s]
+  constexpr double kLongestRow = 1.0;
+  record.period = read_bounded(entries, "disturbance.period", kShortestRow, kLongestRow, "s");
+  const int rows = read_whole(entries, "disturbance.rows", 1, static_cast<int>(hal::kMostPlayedValues));
+  for (std::string prefix = "disturbance.0."; entries.error().empty() && entries.has_prefix(prefix);
+       prefix = text("disturbance.%zu.", record.loads.size())) {
+    record.loads.push_back(read_recorded(entries, prefix, plant, static_cast<std::size_t>(rows)));
+  }
+  return record;
+}
+
 /// Refuses values that contradict each other; `broken` is empty if none do.
 void refuse_broken(Entries& entries, const std::string& key, std::string_view broken) {
   if (!broken.empty()) {
@@ -161,13 +212,15 @@ PlantImage fill(Entries& entries) {
   Filler filler(entries);
   model::visit_keys(parameters, filler);
   constexpr bool kHydraulic = requires { parameters.actuator.leakage; };
-  std::vector<PlayedFault> faults = read_faults(entries, {Model::channels, kHydraulic, hal::kMaxActuators});
+  const FaultyPlant plant{Model::channels, kHydraulic, hal::kMaxActuators};
+  std::vector<PlayedFault> faults = read_faults(entries, plant);
+  LoadRecord recorded = read_disturbances(entries, plant);
   entries.refuse_unused();
   refuse_broken_effects(entries, "", parameters);
   if (!entries.error().empty()) {
     return {std::nullopt, entries.error()};
   }
-  return {parameters, {}, std::move(faults)};
+  return {parameters, {}, std::move(faults), std::move(recorded)};
 }
 
 template <class Vehicle>
@@ -194,7 +247,9 @@ PlantImage fill_vehicle(Entries& entries) {
       image.parameters.emplace(std::in_place_type<model::InstrumentedVehicle<Vehicle>>));
   Filler filler(entries);
   model::visit_vehicle_keys(instrumented, filler);
-  image.faults = read_faults(entries, {Vehicle::AxisModel::channels, true, Vehicle::kAxes, true});
+  const FaultyPlant plant{Vehicle::AxisModel::channels, true, Vehicle::kAxes, true};
+  image.faults = read_faults(entries, plant);
+  image.recorded = read_disturbances(entries, plant);
   entries.refuse_unused();
   refuse_broken_vehicle(entries, instrumented);
   if (!entries.error().empty()) {

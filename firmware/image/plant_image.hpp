@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "firmware/plant/declared_faults.hpp"
+#include "firmware/plant/recorded_loads.hpp"
 #include "model/direct.hpp"
 #include "model/sensors/vehicle_sensors.hpp"
 #include "model/simplex.hpp"
@@ -24,6 +25,7 @@ struct PlantImage {
   std::optional<PlantParameters> parameters;
   std::string error;
   std::vector<PlayedFault> faults{};  ///< that the plant plays
+  LoadRecord recorded{};              ///< disturbances that it plays
   std::string text{};                 ///< the image itself
 };
 
@@ -58,6 +60,14 @@ struct PlantImage {
 ///     fault.0.actuator 0
 ///     fault.0.channel piston
 ///     fault.0.value 0x1p-9
+///
+/// So do the disturbances of a record, each with all its rows in one line:
+///
+///     disturbance.period 0x1.0624dd2f1a9fcp-10
+///     disturbance.rows 2
+///     disturbance.0.kind torque
+///     disturbance.0.place 1
+///     disturbance.0.values 0x1.388p+13,0x1.388p+14
 ///
 /// Every parameter of every part is there, and every parameter of an effect that is active. Strict: an unknown, repeated or
 /// missing key, a value that is no number, NaN or outside its bounds, a table that does not rise, is refused with its line;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "firmware/plant/declared_faults.hpp"
+#include "firmware/plant/recorded_loads.hpp"
 #include "hal/plant_bus.hpp"
 #include "hal/recording/fnv1a.hpp"
 #include "model/direct.hpp"
@@ -19,7 +20,8 @@
 namespace hotfire::firmware {
 
 /// One to `hal::kMaxActuators` equal models behind the plant's side of a bus, each with a command of its own: one period a
-/// step, split into equal steps of the model. At rest at zero first. Plays the faults it is given.
+/// step, split into equal steps of the model. At rest at zero first. Plays the faults and the record of disturbances it is
+/// given: a recorded torque acts on the engine of every actuator.
 template <class Model>
 class Plant {
  public:
@@ -31,12 +33,14 @@ class Plant {
   static constexpr std::string_view input_unit = Model::input_unit;
 
   /// `period` in s.
-  Plant(const Parameters& parameters, double period, std::size_t actuators = 1, const std::vector<PlayedFault>& faults = {})
+  Plant(const Parameters& parameters, double period, std::size_t actuators = 1, const std::vector<PlayedFault>& faults = {},
+        const LoadRecord& recorded = {})
       : steps_(model::steps_per_period<Model>(parameters, period)),
         model_(parameters, period / steps_),
         states_(actuators, start()),
         readings_(faults, period, actuators, channels.size()),
-        loads_(faults, period) {
+        loads_(faults, period),
+        recorded_(recorded, period, steps_) {
     for (const PlayedFault& fault : faults) {
       if (is_of_actuator(fault.kind)) {
         broken_.emplace_back(fault, period, Model(broken(parameters, fault), period / steps_));
@@ -49,7 +53,7 @@ class Plant {
     for (std::size_t actuator = 0; actuator < states_.size(); ++actuator) {
       const Model& model = model_of(actuator);
       for (int i = 0; i < steps_; ++i) {
-        advance(model, actuator, command.values[actuator]);
+        advance(model, actuator, command.values[actuator], i);
       }
     }
     readings_.take([this](std::span<double> readings) noexcept { measure(readings); });
@@ -111,9 +115,16 @@ class Plant {
     return model_;
   }
 
-  void advance(const Model& model, std::size_t actuator, double command) noexcept {
+  /// The torque on an actuator's engine in a plant step of the cycle [N m].
+  double torque_on(std::size_t actuator, int step) const noexcept {
+    double sum = loads_.torque(readings_.cycle(), actuator);
+    recorded_.act_in(readings_.cycle(), step, [&](RecordedKind, std::size_t, double value) noexcept { sum += value; });
+    return sum;
+  }
+
+  void advance(const Model& model, std::size_t actuator, double command, int step) noexcept {
     if constexpr (requires { Model::kAngle; }) {
-      if (const double torque = loads_.torque(readings_.cycle(), actuator); torque != 0.0) {
+      if (const double torque = torque_on(actuator, step); torque != 0.0) {
         const double arm = model.parameters().actuator.moment_arm;
         model.step(states_[actuator], command, [=](double) { return model::Coupling<double>{0.0, arm, -torque}; });
         return;
@@ -158,6 +169,7 @@ class Plant {
   std::vector<typename Model::State> states_;
   PlayedReadings readings_;
   PlayedLoads loads_;
+  RecordedLoads recorded_;
   StringPotentiometers geometry_{StringPotentiometers::representative()};
   std::vector<double> strings_;
   std::vector<Broken> broken_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware/plant/declared_faults.hpp"
+#include "firmware/plant/recorded_loads.hpp"
 #include "firmware/plant/white_noise.hpp"
 #include "hal/plant_bus.hpp"
 #include "hal/recording/fnv1a.hpp"
@@ -22,7 +23,8 @@ namespace hotfire::firmware {
 
 /// A vehicle, every engine with its two actuators on one structure, behind the plant's side of a bus: one period a step,
 /// split into equal steps of the model. Actuators in the order of the vehicle's axes: pitch and yaw of engine 1, then of
-/// engine 2 and so on. In the steady state under no command first. Plays the faults it is given.
+/// engine 2 and so on. In the steady state first, under no command and the thrust of the first row of a record that has one.
+/// Plays the faults and the record of disturbances it is given.
 template <class Vehicle>
 class VehiclePlant {
  public:
@@ -36,18 +38,18 @@ class VehiclePlant {
   static_assert(Vehicle::kChannels == channels.size());
 
   /// `period` in s.
-  explicit VehiclePlant(const Parameters& parameters, double period, const std::vector<PlayedFault>& faults = {})
+  explicit VehiclePlant(const Parameters& parameters, double period, const std::vector<PlayedFault>& faults = {},
+                        const LoadRecord& recorded = {})
       : period_(period),
         steps_(model::steps_per_period(period)),
         vehicle_(parameters.vehicle, period / steps_),
-        state_(std::make_unique<State>(vehicle_.steady({}))),
+        declared_thrust_(thrust_of(parameters.vehicle)),
+        recorded_(recorded, period, steps_),
+        state_(std::make_unique<State>(vehicle_.steady({}, first_thrust()))),
         modes_(static_cast<std::size_t>(parameters.vehicle.modes.modes)),
         sensors_(parameters.sensors, *state_),
         readings_(faults, period, Vehicle::kAxes, channels.size()),
         loads_(faults, period) {
-    for (std::size_t e = 0; e < Vehicle::kEngines; ++e) {
-      declared_thrust_[e] = parameters.vehicle.gimbals[e].bearing.thrust;
-    }
     make_broken(parameters.vehicle, faults);
     readings_.start([this](std::span<double> readings) noexcept { measure(readings); });
   }
@@ -56,11 +58,12 @@ class VehiclePlant {
 
   void step(const hal::Command& command) noexcept {
     std::copy_n(command.values.begin(), Vehicle::kAxes, inputs_.commands.begin());
-    if (loads_.any()) {
-      put_loads();
-    }
+    const bool is_loaded = loads_.any() || recorded_.any();
     const Vehicle& vehicle = vehicle_now();
     for (int i = 0; i < steps_; ++i) {
+      if (is_loaded) {
+        put_loads(i);
+      }
       vehicle.step(*state_, inputs_);
     }
     readings_.take([this](std::span<double> readings) noexcept { measure(readings); });
@@ -164,12 +167,50 @@ class VehiclePlant {
     return vehicle_;
   }
 
-  void put_loads() noexcept {
-    for (std::size_t axis = 0; axis < actuators(); ++axis) {
-      inputs_.torque[axis] = loads_.torque(readings_.cycle(), axis);
+  static std::array<double, Vehicle::kEngines> thrust_of(const typename Vehicle::Parameters& parameters) {
+    std::array<double, Vehicle::kEngines> thrust{};
+    for (std::size_t e = 0; e < thrust.size(); ++e) {
+      thrust[e] = parameters.gimbals[e].bearing.thrust;
     }
+    return thrust;
+  }
+
+  /// Of the first row of the record, beyond the declared one.
+  std::array<double, Vehicle::kEngines> first_thrust() const noexcept {
+    std::array<double, Vehicle::kEngines> thrust{};
+    recorded_.act_in(0, 0, [&](RecordedKind kind, std::size_t engine, double value) {
+      if (kind == RecordedKind::thrust) {
+        thrust[engine] = value - declared_thrust_[engine];
+      }
+    });
+    return thrust;
+  }
+
+  /// What acts on the engines in a plant step of the cycle: faults add to a recorded torque, and replace a recorded thrust.
+  void put_loads(int step) noexcept {
+    const std::uint64_t cycle = readings_.cycle();
+    for (std::size_t axis = 0; axis < actuators(); ++axis) {
+      inputs_.torque[axis] = loads_.torque(cycle, axis);
+    }
+    std::array<double, Vehicle::kEngines> thrust = declared_thrust_;
+    recorded_.act_in(cycle, step, [&](RecordedKind kind, std::size_t place, double value) noexcept {
+      switch (kind) {
+        case RecordedKind::torque:
+          inputs_.torque[place] += value;
+          break;
+        case RecordedKind::force:
+          inputs_.force[place / 3](static_cast<Eigen::Index>(place % 3)) = value;
+          break;
+        case RecordedKind::vibration:
+          inputs_.vibration[place] = value;
+          break;
+        case RecordedKind::thrust:
+          thrust[place] = value;
+          break;
+      }
+    });
     for (std::size_t e = 0; e < Vehicle::kEngines; ++e) {
-      inputs_.thrust[e] = loads_.thrust(readings_.cycle(), e, declared_thrust_[e]) - declared_thrust_[e];
+      inputs_.thrust[e] = loads_.thrust(cycle, e, thrust[e]) - declared_thrust_[e];
     }
   }
 
@@ -185,6 +226,8 @@ class VehiclePlant {
   double period_;
   int steps_;
   Vehicle vehicle_;
+  std::array<double, Vehicle::kEngines> declared_thrust_;  ///< [N]
+  RecordedLoads recorded_;
   std::unique_ptr<State> state_;
   std::size_t modes_;
   typename Vehicle::Inputs inputs_;
@@ -194,7 +237,6 @@ class VehiclePlant {
   bool has_strings_ = false;
   PlayedReadings readings_;
   PlayedLoads loads_;
-  std::array<double, Vehicle::kEngines> declared_thrust_{};  ///< [N]
   std::vector<std::unique_ptr<Broken>> broken_;
 };
 

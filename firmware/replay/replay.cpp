@@ -152,13 +152,13 @@ Replay replay(Reader& reader) {
     return replay_lab(reader);
   }
   const PlantImage image = parse_plant_image(reader.header().model, "the model in the header");
-  if (!image.parameters) {
-    Replay refused;
-    refused.error = image.error;
+  const double period = static_cast<double>(reader.header().period_ns) * 1e-9;
+  Replay refused;
+  refused.error = image.parameters ? refused_record(image, period) : image.error;
+  if (!refused.error.empty()) {
     return refused;
   }
   const hal::FlushDenormals flush;
-  const double period = static_cast<double>(reader.header().period_ns) * 1e-9;
   return with_plant(image, period, reader.header().actuators,
                     [&](const auto& plant) { return replay_plant(reader, *plant); });
 }

@@ -33,6 +33,7 @@ std::string help() {
          "  --model FILE           with `hotfire` only: the model file, checked there and handed over as an image\n"
          "  --profile FILE         with `hotfire lab` only: the profile (docs/lab.md)\n"
          "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
+         "  --disturbances FILE    with `hotfire` only: record whose torque, force, vibration and thrust the plant plays\n"
          "  --help, --version\n\n"
          "Ends on SIGINT, SIGTERM, SIGHUP and SIGQUIT with its result. Exit status: 0 good, 2 wrong use, 3 the bus cannot "
          "be used or was "

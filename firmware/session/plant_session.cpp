@@ -146,6 +146,9 @@ std::optional<hal::Failure> refuse_options(const Options& options, const PlantIm
     return hal::Failure{text("--actuators %zu: the model is a vehicle of %zu actuators", options.actuators, own),
                         "leave --actuators out: a vehicle says itself how many it has"};
   }
+  if (const std::string refused = refused_record(image, period_of(options)); !refused.empty()) {
+    return hal::Failure{refused, "--period-us, or a record with other rows: hotfire import with [resample] period"};
+  }
   if (options.on_can() && own > can::most_actuators(options.layout.value_or(can::Layout::fd))) {
     return hal::Failure{text("--layout %s has no room for the %zu actuators of the model",
                              can::kLayouts[static_cast<std::size_t>(*options.layout)].data(), own),

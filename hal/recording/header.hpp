@@ -19,6 +19,9 @@ struct ParsedHeader {
 /// The most bytes of a header: a profile of half a million rows. A reader looks no further.
 inline constexpr std::size_t kLongestHeader = std::size_t{64} << 20;
 
+/// The most values of recorded disturbances in the image of a plant, which is part of the header: each takes up to 26 bytes.
+inline constexpr std::size_t kMostPlayedValues = 2'000'000;
+
 /// The last line of a header, with the end of the line before it.
 inline constexpr std::string_view kLastHeaderLine = "\ncycles\n";
 

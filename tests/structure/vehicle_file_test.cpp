@@ -334,7 +334,7 @@ TEST(VehicleFile, HasTheThrustOfItsInputInPlaceOfItsOwn) {
     CHECK_TRUE(reached(simulate(taos, of_command)) != same);
   }
   thrust[7] = -1.0;
-  expect_message(refusal([&] { simulate(taos, inputs); }), {"row 8", "thrust", "-1", "at least 0"});
+  expect_message(refusal([&] { simulate(taos, inputs); }), {"row 8", "thrust", "-1", "0 to 1e+08 N"});
   CHECK_THROWS(UsageError, with_thrust(taos, -2.0));
 }
 

@@ -1,31 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
+
+#include "model/numerics/interpolation.hpp"
 
 namespace hotfire {
 
 /// What drives a plant between the rows of a record.
 ///
-/// A command is held between rows: that is what a controller does. A measured force is a sampled continuous signal: held, it
-/// would come half a row late, which at a tenth of the sampling rate is an error of a third of the response. It is
-/// interpolated by the polynomial through six neighbouring rows (Lagrange), or through as many up to sixteen as it takes
-/// until two more change it by less than 0.5 % of its rms: a signal that reaches up to a third of the sampling rate needs
-/// twelve. Each plant step gets the mean over its own part of the row; the first and last value continue beyond the ends.
+/// A command is held between rows: that is what a controller does. A measured force is a sampled continuous signal, which is
+/// interpolated (`model::Interpolation`): each plant step gets the mean over its own part of the row.
 class Excitation {
  public:
   enum class Between { held, interpolated };
 
-  Excitation(std::span<const double> values, int steps, Between between) : values_(values), between_(between) {
-    if (between == Between::interpolated) {
-      nodes_ = nodes_needed(values);
-      for (int step = 0; step < steps; ++step) {
-        weights_.push_back(mean_weights(nodes_, static_cast<double>(step) / steps, static_cast<double>(step + 1) / steps));
-      }
+  Excitation(std::span<const double> values, int steps, Between between)
+      : values_(values),
+        between_(between),
+        interpolation_(between == Between::interpolated ? values : std::span<const double>()) {
+    for (int step = 0; between == Between::interpolated && step < steps; ++step) {
+      weights_.push_back(
+          interpolation_.mean_weights(static_cast<double>(step) / steps, static_cast<double>(step + 1) / steps));
     }
   }
 
@@ -33,93 +31,15 @@ class Excitation {
 
   /// Mean of the input over plant step `step` of a row.
   double operator()(std::size_t row, int step) const {
-    if (between_ == Between::held) {
-      return values_[row];
-    }
-    const auto last = static_cast<std::ptrdiff_t>(values_.size()) - 1;
-    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row) - before(nodes_);
-    const Weights& weights = weights_[static_cast<std::size_t>(step)];
-    double mean = 0.0;
-    for (std::ptrdiff_t node = 0; node < nodes_; ++node) {
-      const auto at = std::clamp<std::ptrdiff_t>(first + node, 0, last);
-      mean += weights[static_cast<std::size_t>(node)] * values_[static_cast<std::size_t>(at)];
-    }
-    return mean;
+    return between_ == Between::held ? values_[row]
+                                     : interpolation_.mean(values_, row, weights_[static_cast<std::size_t>(step)]);
   }
 
  private:
-  static constexpr int kFewestNodes = 6;
-  static constexpr int kMostNodes = 16;
-  static constexpr double kMaterial = 5e-3;
-  using Weights = std::array<double, kMostNodes>;
-
-  static constexpr std::ptrdiff_t before(int nodes) { return nodes / 2 - 1; }
-
-  /// Lagrange polynomials of `nodes` nodes -before .. nodes/2 at `t` rows beyond node 0.
-  static Weights weights_at(int nodes, double t) {
-    Weights weights{};
-    const double first = -static_cast<double>(before(nodes));
-    for (int node = 0; node < nodes; ++node) {
-      double basis = 1.0;
-      for (int other = 0; other < nodes; ++other) {
-        if (other != node) {
-          basis *= (t - first - other) / (node - other);
-        }
-      }
-      weights[static_cast<std::size_t>(node)] = basis;
-    }
-    return weights;
-  }
-
-  /// Mean of each of them over [from, to]: eight-point Gauss, exact to degree 15.
-  static Weights mean_weights(int nodes, double from, double to) {
-    constexpr std::array<double, 4> kAbscissa{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                              0.9602898564975363};
-    constexpr std::array<double, 4> kShare{0.1813418916891810, 0.1568533229389437, 0.1111905172266872, 0.0506142681451881};
-    Weights mean{};
-    for (std::size_t point = 0; point < kAbscissa.size(); ++point) {
-      for (const double side : {-1.0, 1.0}) {
-        const Weights weights = weights_at(nodes, 0.5 * (from + to) + 0.5 * (to - from) * side * kAbscissa[point]);
-        for (std::size_t node = 0; node < mean.size(); ++node) {
-          mean[node] += kShare[point] * weights[node];
-        }
-      }
-    }
-    return mean;
-  }
-
-  /// Estimated half-way between rows, where a polynomial is furthest off, at no more than a thousand or two places of the
-  /// record.
-  static int nodes_needed(std::span<const double> values) {
-    constexpr std::size_t kPlaces = 1000;
-    int nodes = kFewestNodes;
-    const std::size_t stride = std::max<std::size_t>(1, values.size() / kPlaces);
-    while (nodes < kMostNodes) {
-      const Weights fewer = weights_at(nodes, 0.5);
-      const Weights more = weights_at(nodes + 2, 0.5);
-      double change = 0.0;
-      double square = 0.0;
-      const auto reach = static_cast<std::size_t>(nodes + 2);
-      for (std::size_t first = 0; first + reach <= values.size(); first += stride) {
-        double difference = more[0] * values[first] + more[reach - 1] * values[first + reach - 1];
-        for (std::size_t node = 1; node + 1 < reach; ++node) {
-          difference += (more[node] - fewer[node - 1]) * values[first + node];
-        }
-        change += difference * difference;
-        square += values[first] * values[first];
-      }
-      if (!(change > kMaterial * kMaterial * square)) {
-        return nodes;
-      }
-      nodes += 2;
-    }
-    return nodes;
-  }
-
   std::span<const double> values_;
   Between between_;
-  int nodes_ = 0;  ///< neighbouring rows from which a value between two of them is interpolated; none where it is held
-  std::vector<Weights> weights_;
+  model::Interpolation interpolation_;
+  std::vector<model::Interpolation::Weights> weights_;
 };
 
 /// How the input of a plant goes on between rows: a `direct` mass is driven by a measured force, a hydraulic axis by a

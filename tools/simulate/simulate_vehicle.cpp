@@ -11,6 +11,7 @@
 
 #include "model/numerics/step_size.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/simulate/disturbances.hpp"
 #include "tools/simulate/excitation.hpp"
 #include "tools/simulate/run.hpp"
 #include "tools/simulate/vehicle_readings.hpp"
@@ -19,140 +20,59 @@ namespace hotfire {
 
 namespace {
 
-constexpr std::string_view kCommand = "command.";
-constexpr std::string_view kVibration = "vibration.";
-constexpr std::string_view kTorque = "torque.";
-constexpr std::string_view kForce = "force.";
-
-/// The channel `kind` of every axis, or whatever else it is of; null where the record has none. Refuses one of an axis that
-/// the model has not.
-std::vector<const Channel*> channels_of(const Record& inputs, std::string_view kind, const std::vector<std::string>& axes) {
-  std::vector<const Channel*> channels;
-  channels.reserve(axes.size());
-  for (const std::string& axis : axes) {
-    channels.push_back(inputs.find(std::string(kind) + axis));
-  }
-  for (const Channel& channel : inputs.channels) {
-    const std::string_view name = channel.name;
-    if (name.starts_with(kind) && std::find(axes.begin(), axes.end(), name.substr(kind.size())) == axes.end()) {
-      throw FileError(fmt::format("{}:1: {}: the model has no such axis; allowed: {}", inputs.path.string(), name,
-                                  fmt::join(axes, ", ")));
-    }
-  }
-  return channels;
-}
+constexpr std::string_view kCommand = "command";
 
 /// The command channel of every axis; null where the record has none.
 std::vector<const Channel*> command_channels(const Record& inputs, const std::vector<std::string>& axes) {
-  std::vector<const Channel*> channels = channels_of(inputs, kCommand, axes);
+  std::vector<const Channel*> channels = channels_by_place(inputs, kCommand, axes);
   if (std::all_of(channels.begin(), channels.end(), [](const Channel* channel) { return channel == nullptr; })) {
-    require_channel(inputs, std::string(kCommand) + axes.front(), "the model is driven by it and its like");
+    require_channel(inputs, fmt::format("{}.{}", kCommand, axes.front()), "the model is driven by it and its like");
   }
   return channels;
 }
 
-/// What a record has for each of `places` beside the commands, as a sampled signal that is interpolated between rows.
-class RecordedInput {
- public:
-  RecordedInput(const Record& inputs, std::string_view kind, const std::vector<std::string>& places, int steps) {
-    const std::vector<const Channel*> channels = channels_of(inputs, kind, places);
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-      if (channels[i] != nullptr) {
-        signals_.push_back({i, channels[i], Excitation(channels[i]->values, steps, Excitation::Between::interpolated)});
-      }
-    }
-  }
-
-  struct Signal {
-    std::size_t place;
-    const Channel* channel;
-    Excitation mean;  ///< over plant step `step` of a row
-  };
-  const std::vector<Signal>& signals() const { return signals_; }
-
- private:
-  std::vector<Signal> signals_;
-};
-
-/// The thrust of an engine, held between rows like a command. Refuses one below zero.
-template <class Plant>
-std::array<const Channel*, Plant::kEngines> thrust_channels(const Record& inputs, const std::vector<std::string>& engines) {
-  std::array<const Channel*, Plant::kEngines> thrust{};
-  const std::vector<const Channel*> channels =
-      Plant::kEngines == 1 ? std::vector{inputs.find("thrust")} : channels_of(inputs, "thrust.", engines);
-  std::copy(channels.begin(), channels.end(), thrust.begin());
-  for (const Channel* channel : channels) {
-    const auto below = channel == nullptr
-                           ? std::ptrdiff_t{-1}
-                           : std::find_if(channel->values.begin(), channel->values.end(), [](double n) { return n < 0.0; }) -
-                                 channel->values.begin();
-    if (channel != nullptr && below < static_cast<std::ptrdiff_t>(channel->values.size())) {
-      throw FileError(fmt::format("{}: row {}: {} = {} N; allowed: at least 0", inputs.path.string(), below + 1,
-                                  channel->name, channel->values[static_cast<std::size_t>(below)]));
-    }
-  }
-  return thrust;
-}
-
-/// Everything that works on the engines of a vehicle beside its commands: recorded vibration, torque, force and thrust.
+/// Everything that acts on the engines of a vehicle beside its commands, as sampled signals: interpolated between rows, but
+/// for a thrust, which is held like a command.
 template <class Plant>
 class Disturbances {
  public:
-  /// Refuses a record of a vibration for a bearing whose law has it already.
-  Disturbances(const Record& inputs, const typename Plant::Parameters& parameters, int steps)
-      : parameters_(parameters),
-        vibration_(inputs, kVibration, axis_names(Plant::kEngines), steps),
-        torque_(inputs, kTorque, axis_names(Plant::kEngines), steps),
-        force_(inputs, kForce, names_of_directions(), steps),
-        thrust_(thrust_channels<Plant>(inputs, names_of_engines())) {
-    for (const auto& signal : vibration_.signals()) {
-      if (parameters.gimbals[signal.place / 2].friction.law() == model::BearingFriction<double>::Law::vibrated_lugre) {
-        throw FileError(
-            fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a recorded vibration are two ways "
-                        "to the same physics; give one of them",
-                        inputs.path.string(), signal.channel->name));
-      }
+  Disturbances(const Record& inputs, const typename Plant::Parameters& parameters, int steps) : parameters_(parameters) {
+    for (const Disturbance& one : disturbances_of(inputs, parameters.gimbals)) {
+      const auto between =
+          one.kind == DisturbanceKind::thrust ? Excitation::Between::held : Excitation::Between::interpolated;
+      signals_.push_back({one.kind, one.place, Excitation(one.channel->values, steps, between)});
     }
   }
 
   void put(std::size_t row, int step, typename Plant::Inputs& inputs) const {
-    for (const auto& signal : vibration_.signals()) {
-      inputs.vibration[signal.place] = signal.mean(row, step);
-    }
-    for (const auto& signal : torque_.signals()) {
-      inputs.torque[signal.place] = signal.mean(row, step);
-    }
-    for (const auto& signal : force_.signals()) {
-      inputs.force[signal.place / 3](static_cast<Eigen::Index>(signal.place % 3)) = signal.mean(row, step);
-    }
-    for (std::size_t e = 0; e < thrust_.size(); ++e) {
-      inputs.thrust[e] = thrust_[e] != nullptr ? thrust_[e]->values[row] - parameters_.gimbals[e].bearing.thrust : 0.0;
+    for (const Signal& signal : signals_) {
+      const double value = signal.mean(row, step);
+      switch (signal.kind) {
+        case DisturbanceKind::torque:
+          inputs.torque[signal.place] = value;
+          break;
+        case DisturbanceKind::force:
+          inputs.force[signal.place / 3](static_cast<Eigen::Index>(signal.place % 3)) = value;
+          break;
+        case DisturbanceKind::vibration:
+          inputs.vibration[signal.place] = value;
+          break;
+        case DisturbanceKind::thrust:
+          inputs.thrust[signal.place] = value - parameters_.gimbals[signal.place].bearing.thrust;
+          break;
+      }
     }
   }
 
  private:
-  static std::vector<std::string> names_of_engines() {
-    std::vector<std::string> names;
-    for (int e = 1; e <= Plant::kEngines; ++e) {
-      names.push_back(fmt::format("engine{}", e));
-    }
-    return names;
-  }
-  static std::vector<std::string> names_of_directions() {
-    std::vector<std::string> names;
-    for (int e = 1; e <= Plant::kEngines; ++e) {
-      for (const char* direction : {"x", "y", "z"}) {
-        names.push_back(Plant::kEngines == 1 ? direction : fmt::format("{}{}", direction, e));
-      }
-    }
-    return names;
-  }
+  struct Signal {
+    DisturbanceKind kind;
+    std::size_t place;
+    Excitation mean;  ///< over plant step `step` of a row
+  };
 
   const typename Plant::Parameters& parameters_;
-  RecordedInput vibration_;
-  RecordedInput torque_;
-  RecordedInput force_;
-  std::array<const Channel*, Plant::kEngines> thrust_;
+  std::vector<Signal> signals_;
 };
 
 /// A record with a channel for all that a run gives, and the commands filled in.
@@ -165,7 +85,7 @@ Record empty_outputs(const VehicleFile& model, const Record& inputs) {
   outputs.period = inputs.period;
   outputs.rows = inputs.rows;
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    outputs.channels.push_back({std::string(kCommand) + axes[i], "rad",
+    outputs.channels.push_back({fmt::format("{}.{}", kCommand, axes[i]), "rad",
                                 commands[i] != nullptr ? commands[i]->values : std::vector<double>(inputs.rows, 0.0)});
     for (std::size_t c = 0; c < Plant::kChannels; ++c) {
       outputs.channels.push_back({fmt::format("{}.{}", Plant::AxisModel::channels[c], axes[i]),

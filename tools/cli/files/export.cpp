@@ -44,7 +44,7 @@ void run_export(FmuOptions options, bool json) {
 /// For a target without the program hotfire: what `hotfire plant` or `hotfire lab` would hand over in memory.
 void run_export_image(const std::string& path, const std::string& image, bool json) {
   const std::string kind = is_profile(path) ? "profile" : "model";
-  write_whole_file(image, kind == "profile" ? load_profile(path).image : image_of_model(path, ""));
+  write_whole_file(image, kind == "profile" ? load_profile(path).image : image_of_model(path));
   if (json) {
     std::cout << nlohmann::ordered_json{{"image", image}, {"kind", kind}}.dump(2) << '\n';
     return;

@@ -8,9 +8,9 @@
 namespace hotfire {
 
 /// Adds a command that is carried out by hotfire-rt, the small executable for the real-time target beside this one. The
-/// command has `--model` and `--faults` of its own: the model and the faults that its plant plays are read and checked here,
-/// and handed over as a plant image in memory. Every other argument is passed on as it is, so that hotfire-rt's own table of
-/// options is the only one.
+/// command has `--model`, `--faults` and `--disturbances` of its own: the model and what its plant plays are read and
+/// checked here, and handed over as a plant image in memory. Every other argument is passed on as it is, so that
+/// hotfire-rt's own table of options is the only one.
 ///
 /// Throws FileError for a model that is refused, UsageError if `needs_model` and there is none, or if hotfire-rt cannot be
 /// started. Else it does not return: the process becomes hotfire-rt, whose exit status is the command's.

@@ -29,15 +29,17 @@ void share_out(Experiment& experiment) {
   }
 }
 
-/// The user excludes rows whose values may be missing: a value that is missing elsewhere is an error.
-void require_values(const Channel& channel, const Experiment& experiment) {
-  for (const Block& kept : without({{0, channel.values.size()}}, experiment.excluded)) {
+/// A channel, `bridged` over the rows that the user excludes: a value that is missing elsewhere is an error.
+std::vector<double> values_of(const Channel& channel, const Record& record, const std::vector<Block>& excluded) {
+  for (const Block& kept : without({{0, channel.values.size()}}, excluded)) {
     for (std::size_t row = kept.first; row < kept.last; ++row) {
       if (std::isnan(channel.values[row])) {
-        throw UsageError(words::missing_value(experiment.name, channel.name, experiment.time_of(row)));
+        throw UsageError(
+            words::missing_value(record.name, channel.name, record.start + static_cast<double>(row) * record.period));
       }
     }
   }
+  return bridged(channel.values, excluded);
 }
 
 template <class Parameters>
@@ -63,9 +65,8 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
   experiment.input_is_held = is_missing_somewhere(*record.find(input));
   experiment.input = held_where_missing(*record.find(input), record);
   const bool is_hydraulic = data.channels.size() > 1;
-  if (const Channel* torque = record.find("torque"); torque != nullptr && is_hydraulic) {
-    require_values(*torque, experiment);
-    experiment.torque = bridged(torque->values, experiment.excluded);
+  if (is_hydraulic) {
+    experiment.torque = torque_of(record, exclusions);
   }
   for (const Channel& channel : record.channels) {
     const bool is_input = channel.name == input || (channel.name == "torque" && is_hydraulic);
@@ -77,8 +78,7 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
     const Channel* channel = record.find(data.channels[c]);
     experiment.measured.emplace_back();
     if (channel != nullptr) {
-      require_values(*channel, experiment);
-      experiment.measured.back() = bridged(channel->values, experiment.excluded);
+      experiment.measured.back() = values_of(*channel, record, experiment.excluded);
       data.used[c] = true;
     }
   }
@@ -204,6 +204,11 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
     share_out(experiment);
   }
   return data;
+}
+
+std::vector<double> torque_of(const Record& record, const std::vector<Exclusion>& exclusions) {
+  const Channel* torque = record.find("torque");
+  return torque != nullptr ? values_of(*torque, record, excluded_rows(record, exclusions)) : std::vector<double>{};
 }
 
 void fit_every_row(Dataset& data) {

@@ -20,7 +20,7 @@ struct Experiment {
   double start = 0.0;
   double period = 0.0;
   std::vector<double> input;
-  std::vector<double> torque;                 ///< measured, on the engine of a hydraulic axis alone [N m]; empty: none
+  std::vector<double> torque;                 ///< measured, on the engine of a hydraulic axis [N m]; empty: none
   std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record does not have the channel
   std::vector<double> noise;                  ///< rms of the sensor noise by channel; 1 where the record does not have it
   std::vector<double> zero_deviation;         ///< of the prior of each channel's zero (zeros.hpp); 0: the zero is known
@@ -65,6 +65,10 @@ struct Dataset {
 /// leaves nothing of a record.
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
+
+/// The measured torque on the engine of a hydraulic axis [N m], `bridged` over excluded rows; empty: the record has none.
+/// Throws UsageError for a value that is missing in a row that is not excluded.
+std::vector<double> torque_of(const Record& record, const std::vector<Exclusion>& exclusions);
 
 /// Gives a fit every row that is scored: nothing is held out any more.
 void fit_every_row(Dataset& data);

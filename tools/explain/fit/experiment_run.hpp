@@ -37,8 +37,8 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
   return state;
 }
 
-/// Steps a plant through an experiment; an axis that is one of two, beside the motion of the other; one alone, under the
-/// torque that was measured.
+/// Steps a plant through an experiment: a hydraulic axis under the torque that was measured, and if it is one of two, beside
+/// the motion of the other.
 template <class Plant, class Sink>
 bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& experiment, typename Plant::State& state,
                     int steps, Sink&& sink) {
@@ -49,12 +49,18 @@ bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& e
       const Excitation angle(experiment.other.angle, steps, Excitation::Between::interpolated);
       const Excitation rate(experiment.other.rate, steps, Excitation::Between::interpolated);
       const Excitation force(experiment.other.force, steps, Excitation::Between::interpolated);
+      const bool is_loaded = !experiment.torque.empty();
+      const Excitation torque(experiment.torque, steps, Excitation::Between::interpolated);
       const auto advance = [&](std::size_t row, int k) {
         const double other_angle = angle(row, k);
         const double other_rate = rate(row, k);
         const double other_force = force(row, k);
-        plant.step(state, S(experiment.input[row]),
-                   [&](const S& own) { return beside(own, other_angle, other_rate, other_force); });
+        const double measured_torque = is_loaded ? torque(row, k) : 0.0;
+        plant.step(state, S(experiment.input[row]), [&](const S& own) {
+          auto coupling = beside(own, other_angle, other_rate, other_force);
+          coupling.torque -= measured_torque;
+          return coupling;
+        });
       };
       return run_rows<Plant>(experiment.rows(), state, steps, advance, sink);
     }

@@ -36,6 +36,10 @@ const TaosParameters& explainable(const VehicleFile& vehicle) {
       gimbal.compliant) {
     refuse(vehicle, words::Unsupported::gimbal);
   }
+  const auto& bearing = gimbal.bearing;
+  if (bearing.pitch_misalignment != 0.0 || bearing.yaw_misalignment != 0.0 || bearing.unloaded_structure < 1.0) {
+    refuse(vehicle, words::Unsupported::thrust);
+  }
   if (taos->modes.modes > 0 || !taos->modes.residual.isZero(0.0)) {
     refuse(vehicle, words::Unsupported::modes);
   }
@@ -50,7 +54,7 @@ const TaosParameters& explainable(const VehicleFile& vehicle) {
   return *taos;
 }
 
-/// The channels of one axis, under the names that an axis alone has.
+/// The channels of one axis, under the names that an axis alone has, and those of the engine.
 Record record_of_axis(const Record& record, const std::string& axis) {
   Record own;
   own.path = record.path;
@@ -61,6 +65,8 @@ Record record_of_axis(const Record& record, const std::string& axis) {
   for (const Channel& channel : record.channels) {
     if (const auto dot = channel.name.rfind('.'); dot != std::string::npos && channel.name.substr(dot + 1) == axis) {
       own.channels.push_back({channel.name.substr(0, dot), channel.unit, channel.values});
+    } else if (channel.name == "thrust" || channel.name.starts_with("force.")) {
+      own.channels.push_back(channel);
     }
   }
   if (own.find("command") == nullptr) {
@@ -104,6 +110,7 @@ TwoAxes axes_of(const VehicleFile& vehicle, const std::vector<Record>& records, 
     for (const Record& record : records) {
       axis.records.push_back(record_of_axis(record, axis.name));
       axis.inputs.push_back(held_where_missing(*axis.records.back().find("command"), record));
+      axis.torque.push_back(torque_of(axis.records.back(), exclusions));
       axis.measured = axis.measured || has_measurement(axis.records.back());
     }
     require_same_axes(axis);
@@ -137,7 +144,16 @@ std::optional<CoupledRun> run_coupled(const TaosParameters& parameters, const Tw
     }
     const int steps = model::steps_per_period(record.period);
     const Taos plant(parameters, record.period / steps);
-    const bool ran = run_vehicle(plant, commands, record.start, steps, [&](std::size_t row, const auto& state) {
+    const auto interpolated = [&](const AxisOfTwo& axis) {
+      return Excitation(axis.torque[e], steps, Excitation::Between::interpolated);
+    };
+    const std::array<Excitation, Taos::kAxes> torque{interpolated(axes[0]), interpolated(axes[1])};
+    const auto disturb = [&](std::size_t row, int step, auto&, Taos::Inputs& inputs) {
+      for (std::size_t i = 0; i < axes.size(); ++i) {
+        inputs.torque[i] = axes[i].torque[e].empty() ? 0.0 : torque[i](row, step);
+      }
+    };
+    const bool ran = run_vehicle(plant, commands, record.start, steps, {}, disturb, [&](std::size_t row, const auto& state) {
       for (std::size_t i = 0; i < axes.size(); ++i) {
         for (std::size_t channel = 0; channel < Taos::kChannels; ++channel) {
           run.prediction[i][e][channel][row] = Taos::measured(state)[i * Taos::kChannels + channel];

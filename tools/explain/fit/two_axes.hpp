@@ -17,6 +17,7 @@ struct AxisOfTwo {
   ModelFile model;
   std::vector<Record> records;              ///< channels "command", "piston" ...
   std::vector<std::vector<double>> inputs;  ///< the command by record; zero where a record has none
+  std::vector<std::vector<double>> torque;  ///< measured, on the engine, by record [N m]; empty where a record has none
   bool measured = false;                    ///< false: its records have no channel of the model, and it has no data
   Dataset data;
 };
@@ -33,7 +34,7 @@ struct CoupledRun {
   std::array<std::vector<OtherAxis>, 2> motion;  ///< of each axis, by record
 };
 
-/// Runs the model of both axes on all records. Nothing if it runs away.
+/// Runs the model of both axes on all records, under the torques that they measured. Nothing if it runs away.
 std::optional<CoupledRun> run_coupled(const TaosParameters& parameters, const TwoAxes& axes, unsigned threads);
 
 /// Puts each axis beside the motion of the other: as simulated, and corrected by what the other's measured angle says below

@@ -44,8 +44,9 @@ std::vector<LeftOver> left_over(const Experiment& experiment, const SimplexParam
   const double arm = p.actuator.moment_arm;
   const double stiffness = 1.0 / (1.0 / p.actuator.stiffness + 1.0 / p.structure.stiffness);
   const Series load = by_row(rows, [&](std::size_t i) { return stiffness * (x[i] - arm * beta[i]); });
+  const Series measured = experiment.torque.empty() ? Series(rows) : smoothed(experiment.torque, period, frequency);
   const Series torque = by_row(rows, [&](std::size_t i) {
-    return arm * load[i] - p.engine.inertia * beta_acceleration[i] - p.engine.viscous_damping * beta_rate[i] -
+    return arm * load[i] + measured[i] - p.engine.inertia * beta_acceleration[i] - p.engine.viscous_damping * beta_rate[i] -
            p.engine.duct_stiffness * beta[i];
   });
 
@@ -210,6 +211,7 @@ std::vector<Trace> reconstruct(const Dataset& data, const SimplexParameters& par
     }
     Experiment still = experiment;
     still.input.assign(experiment.rows(), 0.0);
+    still.torque.clear();
     return left_over(still, parameters, noise_like(experiment.rows(), experiment.noise[0], generator),
                      noise_like(experiment.rows(), experiment.noise[1], generator));
   });

@@ -10,7 +10,7 @@
 
 #include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/curve_points.hpp"
-#include "tools/simulate/run.hpp"
+#include "tools/explain/fit/experiment_run.hpp"
 
 namespace hotfire::explain {
 
@@ -111,7 +111,7 @@ Extents extents_of(const Dataset& data, const PlainParameters<Family>& parameter
       }
     }();
     auto block = experiment.fitted.begin();
-    run(plant, experiment.input, state, steps, [&](std::size_t row, const auto&) {
+    run_experiment(plant, data, experiment, state, steps, [&](std::size_t row, const auto&) {
       while (block != experiment.fitted.end() && row >= block->last) {
         ++block;
       }

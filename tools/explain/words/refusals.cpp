@@ -81,6 +81,8 @@ std::string unsupported(const std::string& model, Unsupported part) {
       "records of its two axes",
       "gimbal: 'explain' does not take a bearing with friction over both axes, vibration or stiffness. Remove the table. "
       "Declare friction of one axis as [effects.gimbal_friction.pitch]",
+      "gimbal: 'explain' does not take pitch_misalignment, yaw_misalignment or unloaded_structure. Remove them. Declare the "
+      "torque of a constant thrust as [effects.torque_offset.pitch], and give [structure] the stiffness under that thrust",
       "modes: 'explain' does not take a structure with modes. Remove the table, and give [structure] the stiffness at the "
       "attach points. Its inverse is the sum of shape^2 / (2 pi frequency)^2 over the modes",
       "sensors.piston.lag: 'explain' does not simulate the pistons' potentiometers. Remove it, and declare a lag that the "

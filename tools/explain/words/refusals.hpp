@@ -28,8 +28,8 @@ std::string drives_both_axes();
 std::string nothing_to_explain();
 
 /// Parts of a model of several axes that `explain` does not take.
-enum class Unsupported { masv, gimbal, modes, piston_lag, arm_tolerance };
-inline constexpr std::size_t kUnsupported = 5;
+enum class Unsupported { masv, gimbal, thrust, modes, piston_lag, arm_tolerance };
+inline constexpr std::size_t kUnsupported = 6;
 std::string unsupported(const std::string& model, Unsupported part);
 std::string axis_not_measured(const std::string& record, const std::string& axis);
 

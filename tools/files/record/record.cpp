@@ -159,6 +159,11 @@ const Channel* Record::find(const std::string& channel) const {
   return found == channels.end() ? nullptr : &*found;
 }
 
+std::string Record::place_of(std::size_t row) const {
+  return first_line != 0 ? fmt::format("{}:{}", path.string(), first_line + row)
+                         : fmt::format("{}: row {}", path.string(), row + 1);
+}
+
 Record load_record(const std::filesystem::path& path, const std::vector<DropOut>& drop_outs) {
   if (is_recording(path)) {
     return load_recording(path);
@@ -170,7 +175,8 @@ Record load_record(const std::filesystem::path& path, const std::vector<DropOut>
   const std::vector<double>& times = rows.values[rows.time_column];
   const TimeGrid grid = uniform_grid(times, rows.time_digits, rows.columns[rows.time_column].convert(1.0), path, row_lines);
 
-  Record record{path, path.filename().string(), grid.start, grid.period, times.size(), {}};
+  Record record{
+      path, path.filename().string(), grid.start, grid.period, times.size(), {}, drop_outs.empty() ? rows.first_line : 0};
   for (std::size_t i = 0; i < rows.columns.size(); ++i) {
     if (i != rows.time_column) {
       record.channels.push_back({rows.columns[i].name, rows.columns[i].unit, std::move(rows.values[i])});

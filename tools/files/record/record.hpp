@@ -28,9 +28,12 @@ struct Record {
   double period = 0.0;  ///< sampling period [s]
   std::size_t rows = 0;
   std::vector<Channel> channels;  ///< all but time, in file order
+  std::size_t first_line = 0;     ///< of its file, where the first row is; 0: rows are not lines that follow each other
 
   /// The channel of that name, or null.
   const Channel* find(const std::string& channel) const;
+  /// "steps.csv:7", or "steps.hfr: row 6" without lines, for messages about a row, which counts from 0.
+  std::string place_of(std::size_t row) const;
 };
 
 /// Reads and checks a CSV record (contract.md), or a recording of one actuator (recording.hpp). Throws FileError with file,
