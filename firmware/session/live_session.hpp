@@ -51,8 +51,8 @@ class LiveSession {
  public:
   explicit LiveSession(const Options& options) : options_(options), file_(options.live_view) {}
 
-  /// Makes the file, with these counters and those of the loop and the recorder, and has the outputs show their cycles. To be
-  /// called before the real-time set-up of the calling thread. All that is referred to outlives the loop.
+  /// Makes the file, with these counters and those of the loop and the recorder, and has the outputs show their cycles. To
+  /// be called before the real-time set-up of the calling thread. All that is referred to outlives the loop.
   std::optional<hal::Failure> start(const RecordedPlant& plant, LiveCounters counters, const LoopResult& result,
                                     CycleOutputs& outputs);
 

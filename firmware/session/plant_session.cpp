@@ -124,7 +124,8 @@ class PlantSession {
     const auto loop =
         std::make_unique<Loop<Plant, Bus, Clock, Pace, CycleOutputs>>(*plant_, bus, clock_, options_.loop, pace, &outputs);
     LiveSession live(options_);
-    if (const auto failure = live.start(RecordedPlant::of(*plant_, image_.text), account.counters, loop->result(), outputs)) {
+    if (const auto failure =
+            live.start(RecordedPlant::of(*plant_, image_.text), account.counters, loop->result(), outputs)) {
       complain(*failure);
       return kWrongUse;
     }

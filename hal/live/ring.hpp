@@ -14,7 +14,7 @@ namespace hotfire::hal {
 using LiveWord = std::atomic<std::uint64_t>;
 static_assert(LiveWord::is_always_lock_free && sizeof(LiveWord) == sizeof(std::uint64_t));
 
-/// Where what is in the memory of a live view (docs/watch.md): a head, a description as text, then a ring of slots. Before
+/// Where what is in the memory of a live view (docs/interfaces/watch.md): a head, a description as text, then a ring of slots. Before
 /// the words of a slot is its mark: 2 n + 1 while the n-th cycle is being put into it, 2 n + 2 once it is there.
 struct LiveShape {
   static constexpr std::uint64_t kMagic = 0x31304556494c4648;  ///< the bytes "HFLIVE01"
@@ -34,7 +34,8 @@ struct LiveShape {
   constexpr std::size_t first_slot() const noexcept { return kHeadWords + text_words(); }
   constexpr std::size_t words() const noexcept { return first_slot() + slots * (slot_words + 1); }
   constexpr bool is_possible() const noexcept {
-    return text_bytes <= kMostTextBytes && slot_words > 0 && slot_words <= kMostSlotWords && slots > 1 && slots <= kMostSlots;
+    return text_bytes <= kMostTextBytes && slot_words > 0 && slot_words <= kMostSlotWords && slots > 1 &&
+           slots <= kMostSlots;
   }
 };
 
@@ -49,7 +50,8 @@ class LiveWriter {
   /// Opens the next slot. Each word that is put after it is stored with release order: who has read one of them also sees
   /// the mark of an open slot.
   void begin() noexcept {
-    slot_ = memory_.subspan(shape_.first_slot() + published_ % shape_.slots * (shape_.slot_words + 1), shape_.slot_words + 1);
+    slot_ =
+        memory_.subspan(shape_.first_slot() + published_ % shape_.slots * (shape_.slot_words + 1), shape_.slot_words + 1);
     slot_[0].store(2 * published_ + 1, std::memory_order_relaxed);
     put_ = 1;
   }
@@ -99,8 +101,8 @@ class LiveReader {
     return count > shape_.slots ? count - shape_.slots : 0;
   }
 
-  /// Copies the n-th cycle, counted from 0. False, and `words` is not to be used, if it is not there yet, or not any more, or
-  /// was overwritten while it was copied.
+  /// Copies the n-th cycle, counted from 0. False, and `words` is not to be used, if it is not there yet, or not any more,
+  /// or was overwritten while it was copied.
   bool read(std::uint64_t n, std::span<std::uint64_t> words) const noexcept {
     const std::span<const LiveWord> slot =
         memory_.subspan(shape_.first_slot() + n % shape_.slots * (shape_.slot_words + 1), shape_.slot_words + 1);

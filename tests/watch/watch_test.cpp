@@ -278,7 +278,8 @@ TEST(Watcher, AnotherProgramBeginsANewEpoch) {
   }
   Program program(path);
   program.run(100);
-  const json second = wait_for(watcher, {first["epoch"], 2, {0}}, [](const json& answer) { return answer["state"] == "running"; });
+  const json second =
+      wait_for(watcher, {first["epoch"], 2, {0}}, [](const json& answer) { return answer["state"] == "running"; });
   CHECK(second["epoch"] != first["epoch"]);
   CHECK(second.contains("program"));
 }

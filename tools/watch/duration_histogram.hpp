@@ -9,8 +9,8 @@
 
 namespace hotfire::watch {
 
-/// Durations in bins of equal ratio, 16 a decade from 100 ns to 100 ms; what is shorter or longer is counted in the outermost
-/// ones.
+/// Durations in bins of equal ratio, 16 a decade from 100 ns to 100 ms; what is shorter or longer is counted in the
+/// outermost ones.
 class DurationHistogram {
  public:
   static constexpr std::size_t kBinsOfDecade = 16;

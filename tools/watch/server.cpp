@@ -105,9 +105,9 @@ MHD_Result handle(void* context, MHD_Connection* connection, const char* url, co
   }
   if (path == "/data") {
     const std::optional<Request> request = request_of(connection);
-    return request ? reply(connection, MHD_HTTP_OK, "application/json",
-                           static_cast<const Watcher*>(context)->answer(*request))
-                   : refuse(connection, MHD_HTTP_BAD_REQUEST, "allowed is ?epoch=TEXT&row=N&channels=N,N");
+    return request
+               ? reply(connection, MHD_HTTP_OK, "application/json", static_cast<const Watcher*>(context)->answer(*request))
+               : refuse(connection, MHD_HTTP_BAD_REQUEST, "allowed is ?epoch=TEXT&row=N&channels=N,N");
   }
   return refuse(connection, MHD_HTTP_NOT_FOUND, "there is only / and /data");
 }
@@ -117,7 +117,9 @@ struct Socket {
   sockaddr_in v4{};
   sockaddr_in6 v6{};
   bool is_v6 = false;
-  const sockaddr* any() const { return is_v6 ? reinterpret_cast<const sockaddr*>(&v6) : reinterpret_cast<const sockaddr*>(&v4); }
+  const sockaddr* any() const {
+    return is_v6 ? reinterpret_cast<const sockaddr*>(&v6) : reinterpret_cast<const sockaddr*>(&v4);
+  }
 };
 
 Socket socket_of(const std::string& address, std::uint16_t port) {

@@ -46,7 +46,8 @@ Json describe(const hal::LiveDescription& description, const std::vector<Channel
   for (const hal::LiveCounterName& counter : description.counters) {
     result["counters"].push_back({{"group", counter.group}, {"name", counter.name}});
   }
-  result["histogram"] = {{"least_us", DurationHistogram::kLeastNs * 1e-3}, {"bins_of_decade", DurationHistogram::kBinsOfDecade}};
+  result["histogram"] = {{"least_us", DurationHistogram::kLeastNs * 1e-3},
+                         {"bins_of_decade", DurationHistogram::kBinsOfDecade}};
   return result;
 }
 

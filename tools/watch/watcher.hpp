@@ -30,7 +30,7 @@ class Watcher {
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
 
-  /// JSON (docs/watch.md). If the program is another one than the page has rows of, it describes the program and begins with
+  /// JSON (docs/interfaces/watch.md). If the program is another one than the page has rows of, it describes the program and begins with
   /// the oldest row. From any thread.
   std::string answer(const Request& request) const;
 
@@ -46,7 +46,7 @@ class Watcher {
   bool stopping_ = false;
   LiveSource source_;
   History history_;
-  std::string started_;       ///< when this watcher began: the first part of every epoch
+  std::string started_;        ///< when this watcher began: the first part of every epoch
   std::uint64_t program_ = 0;  ///< number of the program that is there; 0: none yet
   Clock::time_point last_cycle_at_;
   std::thread thread_;

@@ -97,8 +97,9 @@ TEST(Allocation, CyclesThatAreShownInALiveViewAllocateNothing) {
   Options options;
   options.live_view = "/dev/shm/hotfire-allocation-" + std::to_string(getpid());
   CycleOutputs outputs;
-  const auto loop = std::make_unique<Loop<Plant<Direct>, hal::sim::SimulatedPlantBus, hal::sim::ManualClock, Pace, CycleOutputs>>(
-      plant, bus, clock, LoopSettings{1'000'000, kCycles, 0, OverrunPolicy::catch_up}, Pace(clock, 1'000'000), &outputs);
+  const auto loop =
+      std::make_unique<Loop<Plant<Direct>, hal::sim::SimulatedPlantBus, hal::sim::ManualClock, Pace, CycleOutputs>>(
+          plant, bus, clock, LoopSettings{1'000'000, kCycles, 0, OverrunPolicy::catch_up}, Pace(clock, 1'000'000), &outputs);
   LiveSession live(options);
   CHECK(!live.start(RecordedPlant::of(plant, {}), {}, loop->result(), outputs));
   CHECK(outputs.view != nullptr);

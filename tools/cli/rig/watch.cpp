@@ -41,8 +41,8 @@ void add_watch(CLI::App& program) {
   command->add_option("FILE", options->file, "file of its option --watch; the program may start later")->required();
   command->add_option("--port", options->port, "of the page; 0: any that is free; default 8137");
   command->add_option("--address", options->address,
-                      "number of the interface that the page is served at; default 127.0.0.1: this machine only. Whoever "
-                      "reaches another one can read along");
+                      "number of the interface that the page is served at; default 127.0.0.1: this machine only. Anyone who "
+                      "reaches another one can read it");
   command->footer(
       "Example: hotfire plant --model explained.toml --bus sim --watch /dev/shm/plant\n"
       "         hotfire watch /dev/shm/plant\n"
