@@ -129,7 +129,9 @@ class Browser:
         """A page in a window of its own."""
         where = f"http://127.0.0.1:{self.port}/json/new?{urllib.parse.quote(url, safe=':/#=&;')}"
         with urllib.request.urlopen(urllib.request.Request(where, method="PUT"), timeout=60) as answer:
-            return Page(json.load(answer)["webSocketDebuggerUrl"])
+            page = Page(json.load(answer)["webSocketDebuggerUrl"])
+        page.wait("location.href !== 'about:blank' && document.readyState === 'complete'")
+        return page
 
     def close(self):
         self.process.terminate()

@@ -74,12 +74,12 @@ class Panels {
         section.paragraphs.map((text) => element("p", {}, inline(text)))) : "",
       seen.length === 0 ? element("p", { class: "note" }, "None since the program started.")
         : element("table", {}, seen.map((count) => element("tr", {},
-          element("td", {}, `${count.name} ${nameOf(Number(count.name))}`), element("td", {}, `${count.value} times first`)))));
+          element("td", {}, `${count.name} ${nameOf(Number(count.name))}`), element("td", {}, `first: ${count.value}`)))));
   }
 
   drawTiming(answer) {
-    this.timing.replaceChildren(element("h2", {}, "Timing"), this.histogram("wake-up latency", answer.wake_up),
-      this.histogram("step time", answer.step),
+    this.timing.replaceChildren(element("h2", {}, "Timing"), ...this.histogram("wake-up latency", answer.wake_up),
+      ...this.histogram("step time", answer.step),
       element("p", { class: "note" }, "Of the cycles since this page's server has followed the program",
         answer.missed > 0 ? `; it came too late for ${answer.missed} of them.` : ", all of them."));
   }

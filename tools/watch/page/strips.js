@@ -25,7 +25,9 @@ class Strip {
     const gone = this.rows.findIndex(([time]) => time >= until - window);
     if (gone > 0) this.rows.splice(0, gone);
     this.readout.textContent = `${shortNumber(this.rows[this.rows.length - 1][1][1])} ${this.channel.unit}`;
-    const view = { file: this.rows, dateWindow: [until - window, until] };
+    // A program that is younger than the window fills it from the left.
+    const from = Math.max(until - window, 0);
+    const view = { file: this.rows, dateWindow: [from, from + window] };
     if (this.graph) {
       this.graph.updateOptions(view);
       return true;
@@ -33,7 +35,7 @@ class Strip {
     this.graph = new Dygraph(this.plot, this.rows, { labels: ["time", this.channel.name], customBars: true, colors: ["#0066aa"],
       dateWindow: view.dateWindow, fillAlpha: 0.25, strokeWidth: 1.3, legend: "never", interactionModel: {}, axisLabelFontSize: 12,
       gridLineColor: "#e6e9ec", axes: { x: { axisLabelFormatter: (time) => `${Number(time.toFixed(2))} s` },
-        y: { axisLabelWidth: 76, axisLabelFormatter: (value, granularity, options, graph) => {
+        y: { axisLabelWidth: 76, pixelsPerLabel: 26, axisLabelFormatter: (value, granularity, options, graph) => {
           const [low, high] = graph.yAxisRange(0);
           const digits = Math.max(2, Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low) || 1)) + 2);
           return String(Number(value.toPrecision(Math.min(digits, 15)))).replace("-", "−");
