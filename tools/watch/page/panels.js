@@ -37,6 +37,9 @@ const inline = (text) => text.split(/(`[^`]+`|\*\*[^*]+\*\*)/).map((part) => {
   return part.startsWith("**") ? element("strong", {}, part.slice(2, -2)) : part.replace(/\[([^\]]*)\]\([^)]*\)/g, "$1");
 });
 
+/** A power of ten of microseconds. */
+const durationText = (us) => (us < 1000 ? `${Number(us.toPrecision(1))} µs` : `${Number((us / 1000).toPrecision(1))} ms`);
+
 class Panels {
   constructor(host) {
     this.sections = faultSections(document.getElementById("faults").textContent);
@@ -100,7 +103,7 @@ class Panels {
     const ticks = [];
     for (let bin = from; bin <= to; bin += perDecade) {
       ticks.push(drawing("text", { x: (bin - from) * step, y: height + 13,
-        "text-anchor": bin === from ? "start" : bin === to ? "end" : "middle" }, `${Number((least * 10 ** (bin / perDecade)).toPrecision(1))} µs`));
+        "text-anchor": bin === from ? "start" : bin === to ? "end" : "middle" }, durationText(least * 10 ** (bin / perDecade))));
     }
     return [element("h3", {}, `${title}: median ${shortNumber(times.median)} µs, 99 % ${shortNumber(times.p99)} µs, greatest ${shortNumber(times.greatest)} µs`),
       drawing("svg", { class: "histogram", viewBox: `0 0 ${width} ${height + 17}`, role: "img", "aria-label": `histogram of the ${title}` }, bars, ticks)];
