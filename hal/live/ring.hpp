@@ -14,8 +14,9 @@ namespace hotfire::hal {
 using LiveWord = std::atomic<std::uint64_t>;
 static_assert(LiveWord::is_always_lock_free && sizeof(LiveWord) == sizeof(std::uint64_t));
 
-/// Where what is in the memory of a live view (docs/interfaces/watch.md): a head, a description as text, then a ring of slots. Before
-/// the words of a slot is its mark: 2 n + 1 while the n-th cycle is being put into it, 2 n + 2 once it is there.
+/// Where what is in the memory of a live view (docs/interfaces/watch.md): a head, a description as text, then a ring of
+/// slots. Before the words of a slot is its mark: 2 n + 1 while the n-th cycle is being put into it, 2 n + 2 once it is
+/// there.
 struct LiveShape {
   static constexpr std::uint64_t kMagic = 0x31304556494c4648;  ///< the bytes "HFLIVE01"
   /// Words of the head. Those that the program changes have a cache line of their own.

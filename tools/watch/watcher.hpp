@@ -30,8 +30,8 @@ class Watcher {
   Watcher(const Watcher&) = delete;
   Watcher& operator=(const Watcher&) = delete;
 
-  /// JSON (docs/interfaces/watch.md). If the program is another one than the page has rows of, it describes the program and begins with
-  /// the oldest row. From any thread.
+  /// JSON (docs/interfaces/watch.md). If the program is another one than the page has rows of, it describes the program and
+  /// begins with the oldest row. From any thread.
   std::string answer(const Request& request) const;
 
  private:
