@@ -11,13 +11,13 @@ namespace hotfire {
 
 namespace {
 
-struct Options {
+struct WatchOptions {
   std::string file;
   std::string address = "127.0.0.1";
   std::uint16_t port = 8137;
 };
 
-void watch_until_stopped(const Options& options) {
+void watch_until_stopped(const WatchOptions& options) {
   sigset_t stops;
   sigemptyset(&stops);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -36,7 +36,7 @@ void watch_until_stopped(const Options& options) {
 }  // namespace
 
 void add_watch(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<WatchOptions>();
   CLI::App* command = program.add_subcommand("watch", "Show a running plant, lab or controller in a browser");
   command->add_option("FILE", options->file, "file of its option --watch; the program may start later")->required();
   command->add_option("--port", options->port, "of the page; 0: any that is free; default 8137");
