@@ -60,6 +60,18 @@ class Program {
   bool is_shown_ = false;
 };
 
+/// The source gives the cycles 0 to count - 1, and then none.
+void check_next_cycles(LiveSource& source, std::uint64_t count) {
+  LiveCycle cycle;
+  for (std::uint64_t n = 0; n < count; ++n) {
+    CHECK(source.next(cycle));
+    UNSIGNED_LONGS_EQUAL(n, cycle.head.cycle);
+    DOUBLES_EQUAL(-static_cast<double>(n), cycle.readings[0], 0.0);
+    UNSIGNED_LONGS_EQUAL(n, cycle.counters[0]);
+  }
+  CHECK(!source.next(cycle));
+}
+
 json answer_of(const Watcher& watcher, const Request& request) { return json::parse(watcher.answer(request)); }
 
 /// Asks until the answer is so, for two seconds at most.
@@ -91,7 +103,6 @@ TEST_GROUP(LiveSource) {
 
 TEST(LiveSource, ProgramMayStartLaterEndAndStartAgain) {
   LiveSource source(path);
-  LiveCycle cycle;
   CHECK(!source.refresh());
   CHECK(source.state() == LiveSource::State::absent);
   for (int run = 0; run < 2; ++run) {
@@ -101,13 +112,7 @@ TEST(LiveSource, ProgramMayStartLaterEndAndStartAgain) {
     CHECK(source.refresh());
     CHECK(!source.refresh());
     CHECK(source.state() == LiveSource::State::running);
-    for (std::uint64_t n = 0; n < 3; ++n) {
-      CHECK(source.next(cycle));
-      UNSIGNED_LONGS_EQUAL(n, cycle.head.cycle);
-      DOUBLES_EQUAL(-static_cast<double>(n), cycle.readings[0], 0.0);
-      UNSIGNED_LONGS_EQUAL(n, cycle.counters[0]);
-    }
-    CHECK(!source.next(cycle));
+    check_next_cycles(source, 3);
     program.end(Ending::asked);
     CHECK(!source.refresh());
     CHECK(source.state() == LiveSource::State::ended);
