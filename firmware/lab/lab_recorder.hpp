@@ -102,11 +102,12 @@ inline LabInputs recorded_inputs(const hal::RecordedCycle& cycle) noexcept {
   return inputs;
 }
 
-/// Records a lab: what it saw and what it did, so that a replay can decide every cycle again. `Rig` is a `LabRig`.
-template <class Rig>
+/// Records a lab: what it saw and what it did, so that a replay can decide every cycle again. `Rig` is a `LabRig`, `Outputs`
+/// what takes its cycles.
+template <class Rig, class Outputs = Recorder>
 class LabRecorder {
  public:
-  LabRecorder(Recorder& recorder, const Rig& rig) noexcept
+  LabRecorder(Outputs& recorder, const Rig& rig) noexcept
       : recorder_(recorder), rig_(rig), channels_(lab_channel_count(rig.lab().limits().has_load_pressure())) {}
 
   /// Keeps the cycle, and hands on the one before it, whose end this one has seen.
@@ -178,7 +179,7 @@ class LabRecorder {
     return bits;
   }
 
-  Recorder& recorder_;
+  Outputs& recorder_;
   const Rig& rig_;
   std::size_t channels_;  ///< of an actuator
   bool begun_ = false;

@@ -24,7 +24,7 @@ void Recorder::record(const hal::CycleHead& head, std::span<const double> comman
   ++offered_;
   std::byte* slot = refused_.load(std::memory_order_relaxed) ? nullptr : ring_.try_claim();
   if (slot == nullptr) {
-    dropping_ = true;
+    ++dropped_;
     return;
   }
   std::memcpy(slot, &head, sizeof head);

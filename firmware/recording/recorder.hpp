@@ -49,7 +49,14 @@ class Recorder {
   void record(const hal::CycleHead& head, std::span<const double> commands, std::span<const double> readings) noexcept;
 
   /// True once a cycle has been dropped, whether the ring was full or the sink refuses any more. Real-time.
-  bool dropping() const noexcept { return dropping_; }
+  bool dropping() const noexcept { return dropped_ > 0; }
+
+  /// Cycles that it was given, those of them that found no room, those that wait for the thread, and the room for them: from
+  /// the loop. Real-time.
+  std::uint64_t offered() const noexcept { return offered_; }
+  std::uint64_t dropped() const noexcept { return dropped_; }
+  std::size_t waiting() const noexcept { return ring_.waiting(); }
+  std::size_t room() const noexcept { return ring_.slots(); }
 
   /// Writes what is left in the ring and the end of the recording, and ends the thread. Not real-time. To be called once.
   RecorderAccount close();
@@ -64,7 +71,7 @@ class Recorder {
   hal::RecordingSink& sink_;
   RecordingRing ring_;
   std::uint64_t offered_ = 0;  ///< the loop's own
-  bool dropping_ = false;      ///< the loop's own
+  std::uint64_t dropped_ = 0;  ///< the loop's own
   std::atomic<bool> refused_{false};
   std::uint64_t stored_ = 0;  ///< the thread's own
   std::string failure_;       ///< the thread's own

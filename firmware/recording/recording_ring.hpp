@@ -29,6 +29,10 @@ class RecordingRing {
     }
     return memory_.data() + filled % slots_ * slot_bytes_;
   }
+  /// Slots that are filled and not yet released.
+  std::size_t waiting() const noexcept {
+    return filled_.load(std::memory_order_relaxed) - emptied_.load(std::memory_order_relaxed);
+  }
   void publish() noexcept { filled_.store(filled_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
   /// The emptying side: up to `most` filled slots that lie one after the other, oldest first. They stay until released.

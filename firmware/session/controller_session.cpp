@@ -9,6 +9,19 @@
 #include "hal/linux/socket_can_listener.hpp"
 
 namespace hotfire::firmware {
+namespace {
+
+/// For the loop, the readings are what it takes in and the commands what it measures.
+RecordedPlant shown(const Options& options) {
+  RecordedPlant plant;
+  plant.topology = ReferenceController::topology;
+  plant.input = {"piston", "m"};
+  plant.channels = {{std::string(ReferenceController::channels[0]), std::string(ReferenceController::channel_units[0])}};
+  plant.start.assign(options.actuators, 0.0);
+  return plant;
+}
+
+}  // namespace
 
 int run_controller(const Options& options) {
   using Clock = hal::PosixClock;
@@ -31,14 +44,25 @@ int run_controller(const Options& options) {
     account.lost_syncs = bus.lost_syncs();
     result.bus = account;
   };
+  LiveCounters counters;
+  counters.can(can_session.socket()).add("bus", "SYNC frames not sent", [&bus] { return bus.lost_syncs(); });
+  for (std::size_t i = 0; i < can::reading_messages(layout, options.actuators); ++i) {
+    counters.message(std::string(can::reading_message(layout, i).name), bus.readings(i));
+  }
   const auto run = [&]<class Pace>(Pace pace) {
-    const auto loop =
-        std::make_unique<Loop<ReferenceController, Bus, Clock, Pace>>(controller, bus, clock, options.loop, pace, nullptr);
+    CycleOutputs outputs;
+    const auto loop = std::make_unique<Loop<ReferenceController, Bus, Clock, Pace, CycleOutputs>>(
+        controller, bus, clock, options.loop, pace, &outputs);
+    LiveSession live(options);
+    if (const auto failure = live.start(shown(options), counters, loop->result(), outputs)) {
+      complain(*failure);
+      return int{kWrongUse};
+    }
     Session session{options, loop->result(), ReferenceController::topology, ReferenceController::channels,
                     ReferenceController::channel_units};
     session.input = "readings";
     session.output = "commands";
-    RunEnd end = end_with(nullptr, complete);
+    RunEnd end = end_with(nullptr, live, complete);
     end.make_safe = [&] { can_session.leave(); };
     return run_loop(*loop, session, end);
   };

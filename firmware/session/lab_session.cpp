@@ -68,6 +68,15 @@ BusAccount account_of(const CanSession& can_session, const Rig& rig) {
   return account;
 }
 
+LiveCounters counters_of(CanSession& can_session, const Rig& rig) {
+  LiveCounters counters;
+  counters.faults([&rig](Fault fault) { return rig.lab().times_first(fault); }).can(can_session.socket());
+  for (std::size_t i = 0; i < rig.messages(); ++i) {
+    counters.message(std::string(rig.message(i).name), rig.readings(i));
+  }
+  return counters;
+}
+
 }  // namespace
 
 int run_lab(const Options& given) {
@@ -121,26 +130,35 @@ int run_lab(const Options& given) {
     rig.authenticate(*authentication);
   }
   std::unique_ptr<RecordingSession> recording;
-  std::unique_ptr<LabRecorder<Rig>> recorder;
+  CycleOutputs outputs;
+  std::unique_ptr<LabRecorder<Rig, CycleOutputs>> recorder;
   if (!options.recording.empty()) {
     recording = std::make_unique<RecordingSession>(options, recorded(lab, image.text));
     if (const auto failure = recording->start()) {
       complain(*failure);
       return kWrongUse;
     }
-    recorder = std::make_unique<LabRecorder<Rig>>(recording->recorder(), rig);
-    rig.watch(&recording->recorder());
+    outputs.recorder = &recording->recorder();
+    rig.watch(outputs.recorder);
+  }
+  if (!options.recording.empty() || !options.live_view.empty()) {
+    recorder = std::make_unique<LabRecorder<Rig, CycleOutputs>>(outputs, rig);
   }
   stop_instead_of_suspending();
   rig.ask_to_stop_when(stop_asked);
   rig.stop_after(cycles == 0 ? 0 : cycles + options.loop.warm_up_cycles);
-  const auto loop = std::make_unique<Loop<Rig, Rig, Clock, OwnPace<Clock>, LabRecorder<Rig>>>(
+  const auto loop = std::make_unique<Loop<Rig, Rig, Clock, OwnPace<Clock>, LabRecorder<Rig, CycleOutputs>>>(
       rig, rig, clock, options.loop, OwnPace<Clock>(clock, options.loop.period_ns), recorder.get());
+  LiveSession live(options);
+  if (const auto failure = live.start(recorded(lab, image.text), counters_of(can_session, rig), loop->result(), outputs)) {
+    complain(*failure);
+    return kWrongUse;
+  }
   Session session{options, loop->result(), kLabTopology, kChannels, kUnits};
   session.input = "readings";
   session.output = "commands";
   bool left_the_bus = false;
-  RunEnd end = end_with(recording.get(), [&](Session& result) {
+  RunEnd end = end_with(recording.get(), live, [&](Session& result) {
     result.lab = account_of(lab, left_the_bus);
     result.bus = account_of(can_session, rig);
   });

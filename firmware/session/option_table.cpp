@@ -171,6 +171,9 @@ constexpr OptionLine kLines[] = {
      }},
     {"--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0",
      [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped); }},
+    {"--watch", "FILE",
+     "show the run: a file in memory, below /dev/shm or /run, which `hotfire watch FILE` shows in a browser",
+     [](const std::string& value, Options& o) { return o.live_view = value, std::string(value.empty() ? "a file" : ""); }},
     {"--command", "SHAPE", "command of bus sim or of the controller: steps (default), sine or rest",
      [](const std::string& value, Options& o) {
        return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);

@@ -57,6 +57,7 @@ struct Options {
   double record_buffer_s = 8.0;
   std::uint64_t record_max_mib = 16384;
   std::uint64_t max_dropped = 0;  ///< cycles that may be missing in the recording
+  std::string live_view;          ///< path of the memory in which the run is shown; empty: none
   bool json = false;
   std::string command_line;
 

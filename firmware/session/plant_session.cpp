@@ -19,7 +19,12 @@ namespace hotfire::firmware {
 namespace {
 
 using Clock = hal::PosixClock;
-using Complete = std::function<void(Session&)>;
+
+/// What only the owner of a wire knows: for the report at the end, and for the live view.
+struct WireAccount {
+  std::function<void(Session&)> complete = [](Session&) {};
+  LiveCounters counters{};
+};
 using CanPlantBus = can::PlantBus<hal::SocketCan, Clock>;
 
 /// [s]
@@ -42,7 +47,7 @@ class PlantSession {
 
   int run_without_wire() {
     hal::sim::SimulatedPlantBus wire(options_.source, period_);
-    return run_paced(wire, [](Session&) {});
+    return run_paced(wire, {});
   }
 
   int run_on_can() {
@@ -59,7 +64,8 @@ class PlantSession {
                       options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6),
                       static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6), session.authentication(),
                       options_.load_pressure ? load_pressure_of<Plant>() : std::nullopt});
-    const Complete complete = [&](Session& result) {
+    WireAccount account_of_wire;
+    account_of_wire.complete = [&](Session& result) {
       BusAccount account = session.account();
       account.messages = {{can::command_message(options_.frame_layout()).name, wire.commands()},
                           {can::heartbeat::kMessage.name, wire.heartbeats()}};
@@ -68,8 +74,12 @@ class PlantSession {
       account.unsayable = wire.unsayable();
       result.bus = account;
     };
+    account_of_wire.counters.can(session.socket())
+        .add("bus", "cycles without a command", [&wire] { return wire.stale_cycles(); })
+        .message(std::string(can::command_message(options_.frame_layout()).name), wire.commands())
+        .message(std::string(can::heartbeat::kMessage.name), wire.heartbeats());
     if (options_.pace != PaceKind::can) {
-      return run_paced(wire, complete);
+      return run_paced(wire, account_of_wire);
     }
     hal::SocketCanListener frames(options_.bus, {can::id_of(can::sync::kMessage)});
     if (const auto refused = frames.open()) {
@@ -77,28 +87,28 @@ class PlantSession {
       return kHardware;
     }
     can::CanSyncSource syncs(frames);
-    return run_locked(wire, syncs, complete);
+    return run_locked(wire, syncs, account_of_wire);
   }
 
  private:
   template <class Wire>
-  int run_paced(Wire& wire, const Complete& complete) {
+  int run_paced(Wire& wire, const WireAccount& account) {
     if (options_.pace == PaceKind::clock) {
-      return run(wire, OwnPace<Clock>(clock_, options_.loop.period_ns), complete);
+      return run(wire, OwnPace<Clock>(clock_, options_.loop.period_ns), account);
     }
     hal::sim::SimulatedSyncSource<Clock> syncs(clock_, options_.loop.period_ns);
-    return run_locked(wire, syncs, complete);
+    return run_locked(wire, syncs, account);
   }
 
   template <class Wire, class Syncs>
-  int run_locked(Wire& wire, Syncs& syncs, const Complete& complete) {
+  int run_locked(Wire& wire, Syncs& syncs, const WireAccount& account) {
     return run(wire,
                SyncPace<Clock, Syncs>(clock_, syncs, options_.loop.period_ns, options_.most_missed_syncs, patience_ns()),
-               complete);
+               account);
   }
 
   template <class Wire, class Pace>
-  int run(Wire& wire, Pace pace, const Complete& complete) {
+  int run(Wire& wire, Pace pace, const WireAccount& account) {
     using Bus = PlayedBus<Wire>;
     Bus bus(wire, image_.faults, period_);
     std::unique_ptr<RecordingSession> recording;
@@ -109,12 +119,20 @@ class PlantSession {
         return kWrongUse;
       }
     }
-    const auto loop = std::make_unique<Loop<Plant, Bus, Clock, Pace, Recorder>>(
-        *plant_, bus, clock_, options_.loop, pace, recording ? &recording->recorder() : nullptr);
+    CycleOutputs outputs;
+    outputs.recorder = recording ? &recording->recorder() : nullptr;
+    const auto loop =
+        std::make_unique<Loop<Plant, Bus, Clock, Pace, CycleOutputs>>(*plant_, bus, clock_, options_.loop, pace, &outputs);
+    LiveSession live(options_);
+    if (const auto failure =
+            live.start(RecordedPlant::of(*plant_, image_.text), account.counters, loop->result(), outputs)) {
+      complain(*failure);
+      return kWrongUse;
+    }
     Session session{options_,        loop->result(),       Plant::topology,
                     Plant::channels, Plant::channel_units, plant_->steps_per_cycle()};
     session.is_vehicle = actuators_of(*image_.parameters) != 0;
-    return run_loop(*loop, session, end_with(recording.get(), complete));
+    return run_loop(*loop, session, end_with(recording.get(), live, account.complete));
   }
 
   std::int64_t patience_ns() const {

@@ -17,7 +17,13 @@ std::string now_utc() {
   return text;
 }
 
-hal::RecordingHeader header_of(const Options& options, const RecordedPlant& plant) {
+std::size_t ring_slots(const Options& options) {
+  return static_cast<std::size_t>(std::ceil(options.record_buffer_s * 1e9 / static_cast<double>(options.loop.period_ns)));
+}
+
+}  // namespace
+
+hal::RecordingHeader recording_header(const Options& options, const RecordedPlant& plant) {
   const hal::SystemInfo system = hal::system_info();
   hal::RecordingHeader header;
   header.version = HOTFIRE_VERSION;
@@ -36,15 +42,9 @@ hal::RecordingHeader header_of(const Options& options, const RecordedPlant& plan
   return header;
 }
 
-std::size_t ring_slots(const Options& options) {
-  return static_cast<std::size_t>(std::ceil(options.record_buffer_s * 1e9 / static_cast<double>(options.loop.period_ns)));
-}
-
-}  // namespace
-
 RecordingSession::RecordingSession(const Options& options, const RecordedPlant& plant)
     : file_(options.recording, options.record_max_mib << 20, options.overwrite),
-      header_(hal::header_text(header_of(options, plant))),
+      header_(hal::header_text(recording_header(options, plant))),
       recorder_(file_, options.actuators, plant.start.size(), ring_slots(options)) {}
 
 std::optional<hal::Failure> RecordingSession::start() {

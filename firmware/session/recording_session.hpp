@@ -37,6 +37,9 @@ struct RecordedPlant {
   }
 };
 
+/// Where a run comes from and what its numbers mean.
+hal::RecordingHeader recording_header(const Options& options, const RecordedPlant& plant);
+
 /// A file, and the recorder that writes it.
 class RecordingSession {
  public:

@@ -42,9 +42,12 @@ void stop_instead_of_suspending() {
   sigaction(SIGTSTP, &action, nullptr);
 }
 
-RunEnd end_with(RecordingSession* recording, std::function<void(Session&)> complete) {
+RunEnd end_with(RecordingSession* recording, LiveSession& live, std::function<void(Session&)> complete) {
   RunEnd end;
-  end.complete = std::move(complete);
+  end.complete = [&live, complete = std::move(complete)](Session& session) {
+    live.close(session.result.ending);
+    complete(session);
+  };
   if (recording != nullptr) {
     end.close_recording = [recording] { return &recording->close(); };
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware/service/watchdog.hpp"
+#include "firmware/session/live_session.hpp"
 #include "firmware/session/recording_session.hpp"
 #include "firmware/session/session.hpp"
 #include "hal/realtime.hpp"
@@ -51,8 +52,8 @@ struct RunEnd {
   std::function<void(Session&)> complete = [](Session&) {};
 };
 
-/// The end of a run with a recording, if it has one.
-RunEnd end_with(RecordingSession* recording, std::function<void(Session&)> complete);
+/// The end of a run with a live view, and with a recording if it has one.
+RunEnd end_with(RecordingSession* recording, LiveSession& live, std::function<void(Session&)> complete);
 
 /// Goes through the end of a run whose loop has ended.
 void end_run(Session& session, const RunEnd& end, Watchdog& watchdog);

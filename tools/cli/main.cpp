@@ -101,6 +101,7 @@ int run(int argc, char** argv) {
   add_controller(program);
   add_lab(program);
   add_timing(program);
+  add_watch(program);
   add_replay(program);
   add_doctor(program);
   add_reference(program);

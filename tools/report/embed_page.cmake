@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # Joins the page's parts and the charting library into one HTML text and writes it as a C++ array of bytes.
-# cmake -D PARTS=<folder of page.html ...> -D DYGRAPHS=<folder> -D OUTPUT=<page.cpp> -P embed_page.cmake
+# cmake -D PARTS=<folder of page.html and page.css> -D SCRIPTS=<names without .js, from that folder, by commas>
+#   [-D TEXT=<file that replaces @text@>] -D HEADER=<that declares it> -D FUNCTION=<namespace::name> -D DYGRAPHS=<folder>
+#   -D OUTPUT=<page.cpp> -P embed_page.cmake
 cmake_policy(VERSION 3.25)
 
 file(READ ${PARTS}/page.html page)
 file(READ ${PARTS}/page.css style)
-foreach(name units dom scales curves traces sections residual evidence print page)
+string(REPLACE "," ";" SCRIPTS "${SCRIPTS}")
+foreach(name IN LISTS SCRIPTS)
   file(READ ${PARTS}/${name}.js part)
   string(APPEND script "${part}\n")
 endforeach()
@@ -32,6 +35,10 @@ string(REGEX REPLACE "/\\*#[^\n]*\\*/" "" library_style "${library_style}")
 string(REPLACE "@style@" "${library_style}\n${style}" page "${page}")
 string(REPLACE "@library@" "${notice}\n${library}" page "${page}")
 string(REPLACE "@script@" "${script}" page "${page}")
+if(TEXT)
+  file(READ ${TEXT} text)
+  string(REPLACE "@text@" "${text}" page "${page}")
+endif()
 
 get_filename_component(folder ${OUTPUT} DIRECTORY)
 file(WRITE ${folder}/page.html "${page}")
@@ -39,15 +46,12 @@ file(READ ${folder}/page.html bytes HEX)
 string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
 string(REPEAT "." 100 line)
 string(REGEX REPLACE "(${line})" "\\1\n" bytes "${bytes}")
-file(WRITE ${OUTPUT} "#include \"tools/report/page_template.hpp\"
+file(WRITE ${OUTPUT} "#include \"${HEADER}\"
 
-namespace hotfire {
 namespace {
 constexpr unsigned char kBytes[] = {
 ${bytes}};
 }  // namespace
 
-std::string page_template() { return {kBytes, kBytes + sizeof kBytes}; }
-
-}  // namespace hotfire
+std::string ${FUNCTION}() { return {kBytes, kBytes + sizeof kBytes}; }
 ")

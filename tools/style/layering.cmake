@@ -8,7 +8,7 @@ set(rooms model hal firmware tools tests)
 set(allowed_model model)
 set(allowed_hal hal)
 set(allowed_firmware firmware model hal)
-set(allowed_tools tools model hal/arithmetic hal/sim hal/recording hal/schedule)
+set(allowed_tools tools model hal/arithmetic hal/sim hal/recording hal/live hal/schedule)
 # What other programs call is compiled on any target, and knows nothing of the host side.
 set(allowed_interface tools/interface model hal/arithmetic firmware/image)
 set(allowed_tests tests tools firmware model hal)

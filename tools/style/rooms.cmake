@@ -61,10 +61,11 @@ room(firmware interlock "the numbered faults, their checks, and the states that 
 room(firmware plant "the plant that a rig sees: the model with declared faults, recorded disturbances and sensor noise")
 room(firmware image "the parameters of a plant as text from the host program" plant text)
 room(firmware recording "the ring of cycles, and the thread that writes it to a file")
+room(firmware live "what a running program shows: its cycles and counters, in memory that others read" recording)
 room(firmware can "the CAN map, the codec and both sides of the bus" interlock)
 room(firmware lab "profiles, and the logic that drives real actuators behind the interlock" can recording interlock image text)
 room(firmware replay "a second run of a recording, compared bit for bit" lab image service text)
-room(firmware session "one run from options to exit status" lab can recording interlock image plant loop service text)
+room(firmware session "one run from options to exit status" lab live can recording interlock image plant loop service text)
 room(firmware report "what a run prints" session can text)
 
 room(tools/interface plant "a plant of any topology behind tables of variables: steps, state, derivatives")

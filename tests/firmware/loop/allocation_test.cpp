@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CppUTest/TestHarness.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "firmware/loop/loop.hpp"
 #include "firmware/plant/plant.hpp"
 #include "firmware/plant/reference_plant.hpp"
+#include "firmware/session/live_session.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/sim/manual_clock.hpp"
 #include "hal/sim/plant_bus.hpp"
@@ -83,6 +86,28 @@ TEST(Allocation, CyclesOfTheFullDirectMassAllocateNothing) {
   Direct::Parameters parameters;
   parameters.effects.active.fill(true);
   check_that_loop_allocates_nothing<Direct, hal::sim::ManualClock>(parameters, 10'000);
+}
+
+TEST(Allocation, CyclesThatAreShownInALiveViewAllocateNothing) {
+  using Pace = OwnPace<hal::sim::ManualClock>;
+  constexpr std::uint64_t kCycles = 10'000;
+  Plant<Direct> plant({}, 1e-3);
+  hal::sim::SimulatedPlantBus bus({}, 1e-3);
+  hal::sim::ManualClock clock;
+  Options options;
+  options.live_view = "/dev/shm/hotfire-allocation-" + std::to_string(getpid());
+  CycleOutputs outputs;
+  const auto loop =
+      std::make_unique<Loop<Plant<Direct>, hal::sim::SimulatedPlantBus, hal::sim::ManualClock, Pace, CycleOutputs>>(
+          plant, bus, clock, LoopSettings{1'000'000, kCycles, 0, OverrunPolicy::catch_up}, Pace(clock, 1'000'000), &outputs);
+  LiveSession live(options);
+  CHECK(!live.start(RecordedPlant::of(plant, {}), {}, loop->result(), outputs));
+  CHECK(outputs.view != nullptr);
+  const AllocationGuard guard;
+  loop->run(false, []() noexcept {});
+  UNSIGNED_LONGS_EQUAL(0, guard.allocations());
+  UNSIGNED_LONGS_EQUAL(0, guard.releases());
+  UNSIGNED_LONGS_EQUAL(kCycles, loop->result().account.cycles());
 }
 
 TEST(Allocation, CyclesOnTheRealClockAllocateNothing) {

@@ -33,5 +33,6 @@ void add_stiffness(CLI::App& program);
 void add_strings(CLI::App& program);
 void add_sweep(CLI::App& program);
 void add_timing(CLI::App& program);
+void add_watch(CLI::App& program);
 
 }  // namespace hotfire

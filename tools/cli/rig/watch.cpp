@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "tools/cli/shared/commands.hpp"
+#include "tools/watch/server.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct WatchOptions {
+  std::string file;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8137;
+};
+
+void watch_until_stopped(const WatchOptions& options) {
+  sigset_t stops;
+  sigemptyset(&stops);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    sigaddset(&stops, signal);
+  }
+  // Before any thread is started, so that all of them leave these signals to this one.
+  pthread_sigmask(SIG_BLOCK, &stops, nullptr);
+  const watch::Watcher watcher(options.file);
+  const watch::Server server(watcher, options.address, options.port);
+  std::cout << server.url() << std::endl;
+  std::cerr << "hotfire: open this address in a browser; Ctrl-C ends the page, not the program that it shows\n";
+  int signal = 0;
+  sigwait(&stops, &signal);
+}
+
+}  // namespace
+
+void add_watch(CLI::App& program) {
+  const auto options = std::make_shared<WatchOptions>();
+  CLI::App* command = program.add_subcommand("watch", "Show a running plant, lab or controller in a browser");
+  command->add_option("FILE", options->file, "file of its option --watch; the program may start later")->required();
+  command->add_option("--port", options->port, "of the page; 0: any that is free; default 8137");
+  command->add_option("--address", options->address,
+                      "number of the interface that the page is served at; default 127.0.0.1: this machine only. Anyone who "
+                      "reaches another one can read it");
+  command->footer(
+      "Example: hotfire plant --model explained.toml --bus sim --watch /dev/shm/plant\n"
+      "         hotfire watch /dev/shm/plant\n"
+      "Prints the address of the page and serves it until Ctrl-C. The page only shows: it changes nothing. The program that "
+      "it shows may end and start again.");
+  command->callback([options] { watch_until_stopped(*options); });
+}
+
+}  // namespace hotfire
