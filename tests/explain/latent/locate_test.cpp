@@ -45,7 +45,7 @@ TEST(Locate, ABowedSensorIsTheSensorsAndNotThePlants) {
   CHECK(!located.allows("load_spring"));
 }
 
-TEST(Locate, ADeadBandActsOnTheOilWhichWithoutItsPressureNoSignalTellsFromTheValveOrThePiston) {
+TEST(Locate, ADeadBandActsOnTheOilWhichWithoutItsPressureNoSignalSeparatesFromTheValveOrThePiston) {
   const Located located = located_in(with_effect<model::ValveDeadband>({0.01}));
   CHECK(located.is_single);
   CHECK(located.allows("valve"));

@@ -143,7 +143,7 @@ TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther)
 
 // LuGre holds Dahl at a static ratio of 1, the end of its range: a fit that ends just above it has an interval that reaches
 // it.
-TEST(Refiner, AParameterThatTheDataDoNotTellFromTheEndOfItsRangeIsLeftOutWithItsLaw) {
+TEST(Refiner, AParameterThatTheDataDoNotSeparateFromTheEndOfItsRangeIsLeftOutWithItsLaw) {
   for (const char* made : {"dahl", "lugre"}) {
     const Strokes strokes(made);
     auto lugre = strokes.refiner.ranked(guided_mass(strokes.data, strokes.scales, "lugre", 0.1), explain::kRanking);

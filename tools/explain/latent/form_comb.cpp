@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "tools/explain/latent/correlation.hpp"
 #include "tools/explain/fit/curve_points.hpp"
+#include "tools/explain/latent/correlation.hpp"
 
 namespace hotfire::explain {
 
@@ -218,7 +218,7 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
     add(Memory::quantise, [&](auto& memory) { memory.width = width * size; });
     add(Memory::slew, [&](auto& memory) { memory.width = width * rate; });
   }
-  // A period is told from its neighbours by a quarter of it at the ends of the argument's range.
+  // Two periods are separated by a quarter of it at the ends of the argument's range.
   for (int quarters = 3; quarters <= 40; ++quarters) {
     add(Memory::periodic, [&](auto& memory) { memory.width = 8.0 * size / quarters; });
   }

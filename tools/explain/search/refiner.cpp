@@ -128,7 +128,7 @@ template <class Family>
 std::vector<OfLaw<Family>> Refiner<Family>::of_richer_laws(int round, const Assessed<Family>& winner,
                                                            const Candidate& candidate) const {
   std::vector<OfLaw<Family>> richer;
-  if (lacks_nothing(data_, winner)) {
+  if (is_complete(data_, winner)) {
     return richer;
   }
   const std::size_t own = effect_parameters<Family>(winner.model.base, candidate, scales_).size();
@@ -200,7 +200,7 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
 
 template <class Family>
 bool Refiner<Family>::is_done(const Assessed<Family>& winner) const {
-  return lacks_nothing(data_, winner) || watch_.interrupted();
+  return is_complete(data_, winner) || watch_.interrupted();
 }
 
 template <class Family>

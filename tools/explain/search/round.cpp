@@ -61,7 +61,8 @@ RoundResult<Family> Round<Family>::run() {
   const bool kept =
       best_ && result.model.good() && is_supported(trials_[*best_]) && is_worth_a_name(trials_[*best_], result.model);
   for (std::size_t i = 0; i < trials_.size(); ++i) {
-    const bool is_tied = kept && trials_[i].refined && trials_[i].delta_criterion - trials_[*best_].delta_criterion < policy().strong_evidence;
+    const bool is_tied = kept && trials_[i].refined &&
+                         trials_[i].delta_criterion - trials_[*best_].delta_criterion < policy().strong_evidence;
     trials_[i].decision = kept && i == *best_ ? "kept" : is_tied ? "tied" : "dropped";
     trials_[i].reason = reason_of(trials_[i], best_ ? &trials_[*best_] : nullptr);
   }
@@ -119,7 +120,7 @@ void Round<Family>::fit_finalists() {
     if (is_decided_against(i)) {
       continue;
     }
-    tell("with everything else", i);
+    report_progress("with everything else", i);
     const Stopwatch stopwatch;
     finalists_[i] = refiner_.of_screened(screened_[i].fitted, current_.model.u);
     trials_[i].seconds += stopwatch.seconds();
@@ -129,7 +130,7 @@ void Round<Family>::fit_finalists() {
 template <class Family>
 void Round<Family>::cross_ripples() {
   for (const std::size_t i : contenders_of(order_, screened_, finalists_)) {
-    tell("over ripples", i);
+    report_progress("over ripples", i);
     const Stopwatch stopwatch;
     finalists_[i] = refiner_.over_ripples(std::move(finalists_[i]));
     trials_[i].seconds += stopwatch.seconds();
@@ -182,7 +183,7 @@ template <class Family>
 Assessed<Family> Round<Family>::winner() {
   Assessed<Family> winner = finalists_[*best_];
   if (is_near_noise(*best_)) {
-    tell("with fine steps", *best_);
+    report_progress("with fine steps", *best_);
     if (!is_supported(trials_[*best_])) {
       winner = refiner_.settled(winner.model, kCheck);
       if (winner.good()) {
@@ -235,7 +236,7 @@ std::optional<Rival<Family>> Round<Family>::rival_of(const Kept& kept) const {
 }
 
 template <class Family>
-void Round<Family>::tell(const std::string& what, std::size_t finalist) const {
+void Round<Family>::report_progress(const std::string& what, std::size_t finalist) const {
   watch_.progress(fmt::format("round {}: fitting {} {}", number_, label(screened_[finalist].candidate), what));
 }
 

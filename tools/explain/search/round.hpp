@@ -45,7 +45,7 @@ class Round {
   Assessed<Family> winner();
   RoundResult<Family> undecided();
   std::optional<Rival<Family>> rival_of(const Kept& kept) const;
-  void tell(const std::string& what, std::size_t finalist) const;
+  void report_progress(const std::string& what, std::size_t finalist) const;
 
   int number_;
   const Dataset& data_;

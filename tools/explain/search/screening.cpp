@@ -299,12 +299,12 @@ Screened<Family> Screening<Family>::restart(const Candidate& candidate, const st
     }
   });
   sort_best_first(restarts);
-  Screened<Family> stands{candidate, fitted, 0.0, 0.0, true};
-  stands.fitted.u = frozen_.u;
-  stands.fitted.u.insert(stands.fitted.u.end(), own.begin(), own.end());
-  improve(stands, Stage::scan);
+  Screened<Family> unmoved{candidate, fitted, 0.0, 0.0, true};
+  unmoved.fitted.u = frozen_.u;
+  unmoved.fitted.u.insert(unmoved.fitted.u.end(), own.begin(), own.end());
+  improve(unmoved, Stage::scan);
   const bool elsewhere =
-      !restarts.empty() && (!stands.good || restarts.front().criterion < stands.criterion - policy().strong_evidence);
+      !restarts.empty() && (!unmoved.good || restarts.front().criterion < unmoved.criterion - policy().strong_evidence);
   return elsewhere ? restarts.front() : Screened<Family>{candidate, fitted, 0.0, 0.0, false};
 }
 

@@ -79,7 +79,7 @@ class Search {
     result_.explained = result_.calibrated;
     for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
       const int round = result_.next_round();
-      if (lacks_nothing(data_, result_.explained) || !add_effect(round, unlisted_.locate_about(result_.explained))) {
+      if (is_complete(data_, result_.explained) || !add_effect(round, unlisted_.locate_about(result_.explained))) {
         break;
       }
       take_out_superfluous(round);
@@ -333,7 +333,7 @@ class Search {
         compare(trial, rest, result_.explained, rest.goodness.fitted);
       }
       trial.seconds = stopwatch.seconds();
-      if (rest.good() && (is_as_good(trial) || lacks_nothing(data_, rest))) {
+      if (rest.good() && (is_as_good(trial) || is_complete(data_, rest))) {
         result_.trials.push_back(trial);
         if (i == newest) {
           result_.rival.reset();

@@ -37,7 +37,7 @@ void UnlistedStage<Family>::replace_names_that_explain_little() {
     return;
   }
   look_instead();
-  if (instead_->best && lacks_nothing(data_, instead_->model)) {
+  if (instead_->best && is_complete(data_, instead_->model)) {
     take_instead_if_better();
   }
 }
@@ -77,7 +77,8 @@ bool UnlistedStage<Family>::leaves_clearly_less(const Assessed<Family>& model, d
 /// The share of what the listed effects leave that a term of unknown law has to stay below.
 template <class Family>
 double UnlistedStage<Family>::advantage() const {
-  return !result_.kept.empty() && left_by_listed() > policy().little_explained ? policy().held_out_less : policy().clearly_less;
+  return !result_.kept.empty() && left_by_listed() > policy().little_explained ? policy().held_out_less
+                                                                               : policy().clearly_less;
 }
 
 template <class Family>

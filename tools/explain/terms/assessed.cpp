@@ -56,8 +56,7 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
 
 template <class Family>
 bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
-  return excess_over_noise(data, assessed.prediction) <=
-         (assessed.model.chaotic ? policy().chaotic : policy().immaterial);
+  return excess_over_noise(data, assessed.prediction) <= (assessed.model.chaotic ? policy().chaotic : policy().immaterial);
 }
 
 template <class Family>
@@ -78,7 +77,7 @@ bool is_within_tolerances(const Fitted<Family>& model) {
 }
 
 template <class Family>
-bool lacks_nothing(const Dataset& data, const Assessed<Family>& assessed) {
+bool is_complete(const Dataset& data, const Assessed<Family>& assessed) {
   return reaches_noise(data, assessed) && is_within_tolerances(assessed.model);
 }
 
@@ -140,7 +139,7 @@ double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& with
   template bool reaches_noise(const Dataset&, const Assessed<Family>&);                                               \
   template Moved farthest_from_declared(const Fitted<Family>&);                                                       \
   template bool is_within_tolerances(const Fitted<Family>&);                                                          \
-  template bool lacks_nothing(const Dataset&, const Assessed<Family>&);                                               \
+  template bool is_complete(const Dataset&, const Assessed<Family>&);                                                 \
   template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
   template Fitted<Family> with_declared_values(Fitted<Family>);                                                       \
   template bool is_far_from_declared(const Fitted<Family>&);                                                          \

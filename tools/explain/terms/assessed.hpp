@@ -63,7 +63,7 @@ bool is_within_tolerances(const Fitted<Family>& model);
 
 /// True if a model reaches the noise within its tolerances: there is nothing to search for.
 template <class Family>
-bool lacks_nothing(const Dataset& data, const Assessed<Family>& assessed);
+bool is_complete(const Dataset& data, const Assessed<Family>& assessed);
 
 /// Takes the free parameters of which `unwanted` is true out of a model.
 template <class Family, class F>
