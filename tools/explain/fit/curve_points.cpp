@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/terms/trial.hpp"
 
 namespace hotfire::explain {
 
