@@ -2,7 +2,10 @@
 #include <CppUTest/TestHarness.h>
 #include <ceres/jet.h>
 
+#include <functional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "model/keys.hpp"
 #include "tests/model/support/plants.hpp"
@@ -42,27 +45,33 @@ auto planted(int option) {
   }
 }
 
-/// Calls `f(name, value)` for each parameter that can be fitted: of the effect's law, or of every declared part if `E` is
-/// void.
-template <class E, class Parameters, class F>
-void visit_fitted(Parameters& parameters, int option, F&& f) {
-  model::visit_parameters(parameters, [&](const model::Key& key, const auto& field, auto& value) {
-    bool wanted = !key.is_effect;
-    if constexpr (!std::is_void_v<E>) {
-      wanted = key.is_effect && key.section == E::name && used_by(field, option);
-    }
-    if (wanted) {
+/// Calls `f(name, value)` for each parameter that can be fitted: of the effect `law`, or of every declared part if it is
+/// empty. What follows takes laws by their name: compiled once for each law, this file takes minutes.
+template <class S, class Parameters>
+void visit_fitted(Parameters& parameters, std::string_view law, int option,
+                  const std::function<void(const std::string&, S&)>& f) {
+  model::visit_parameters(parameters, [&](const model::Key& key, const auto& field, S& value) {
+    if (law.empty() ? !key.is_effect : key.is_effect && key.section == law && used_by(field, option)) {
       f(std::string(key.section).append(".").append(field.name), value);
     }
   });
 }
 
+/// The parameters of a plant in double and in dual numbers, and which of them are fitted.
+template <class Family>
+struct Case {
+  typename Family::template Plant<double>::Parameters plain;
+  typename Family::template Plant<Dual>::Parameters dual;
+  std::string_view law;
+  int option;
+};
+
 /// The record with parameter number `which` changed by the factor 1 + `change`.
-template <class Family, class E>
-auto record_with(int option, int which, double change) {
-  auto parameters = planted<Family, E, double>(option);
+template <class Family>
+auto record_with(const Case<Family>& of, int which, double change) {
+  auto parameters = of.plain;
   int index = 0;
-  visit_fitted<E>(parameters, option, [&](const std::string&, double& value) {
+  visit_fitted<double>(parameters, of.law, of.option, [&](const std::string&, double& value) {
     if (index++ == which) {
       value *= 1.0 + change;
     }
@@ -71,11 +80,11 @@ auto record_with(int option, int which, double change) {
 }
 
 /// Compares the derivative in slot `slot` of a dual record with the central difference over parameter number `which`.
-template <class Family, class E, class Rows>
-void check_column(const Rows& rows, int slot, int option, int which, const std::string& name, double value) {
+template <class Family, class Rows>
+void check_column(const Case<Family>& of, const Rows& rows, int slot, int which, const std::string& name, double value) {
   constexpr double change = 1e-4;
-  const auto up = record_with<Family, E>(option, which, change);
-  const auto down = record_with<Family, E>(option, which, -change);
+  const auto up = record_with(of, which, change);
+  const auto down = record_with(of, which, -change);
   for (std::size_t channel = 0; channel < rows[0].size(); ++channel) {
     double error = 0.0;
     double size = 0.0;
@@ -90,39 +99,48 @@ void check_column(const Rows& rows, int slot, int option, int which, const std::
     // The central difference itself errs by change^2 = 1e-8 of the curvature, and by the rounding of the run, 1e-12 of the
     // signal over 2e-4: 1e-4 of a column whose elasticity is 1e-4.
     if (!(std::sqrt(error) <= 1e-4 * std::sqrt(size) + 1e-8 * std::sqrt(signal))) {
-      FAIL((name + " of option " + std::to_string(option) + " in channel " + std::to_string(channel) + ": off by " +
+      FAIL((name + " of option " + std::to_string(of.option) + " in channel " + std::to_string(channel) + ": off by " +
             std::to_string(std::sqrt(error / size)))
                .c_str());
     }
   }
 }
 
-template <class Family, class E>
-void check_gradients(int option) {
-  using Plant = typename Family::template Plant<Dual>;
-  auto plain_parameters = planted<Family, E, double>(option);
+template <class Family>
+void check_columns(const Case<Family>& of) {
+  auto plain_parameters = of.plain;
   std::vector<std::string> names;
   std::vector<double> values;
-  visit_fitted<E>(plain_parameters, option, [&](const std::string& name, double value) {
+  visit_fitted<double>(plain_parameters, of.law, of.option, [&](const std::string& name, double& value) {
     names.push_back(name);
     values.push_back(value);
   });
   for (int first = 0; first < static_cast<int>(names.size()); first += 4) {
-    auto parameters = planted<Family, E, Dual>(option);
+    auto parameters = of.dual;
     int index = 0;
-    visit_fitted<E>(parameters, option, [&](const std::string&, Dual& value) {
+    visit_fitted<Dual>(parameters, of.law, of.option, [&](const std::string&, Dual& value) {
       if (index >= first && index < first + 4) {
         value.v[index - first] = 1.0;
       }
       ++index;
     });
-    const auto rows = record<Plant>(parameters, kDuration, kSample, 2);
+    const auto rows = record<typename Family::template Plant<Dual>>(parameters, kDuration, kSample, 2);
     for (int slot = 0; slot < 4 && first + slot < static_cast<int>(names.size()); ++slot) {
       const int which = first + slot;
       const auto at = static_cast<std::size_t>(which);
-      check_column<Family, E>(rows, slot, option, which, names[at], values[at]);
+      check_column(of, rows, slot, which, names[at], values[at]);
     }
   }
+}
+
+/// The law E, or all declared parts if E is void.
+template <class Family, class E>
+void check_gradients(int option) {
+  std::string_view law;
+  if constexpr (!std::is_void_v<E>) {
+    law = E::name;
+  }
+  check_columns<Family>({planted<Family, E, double>(option), planted<Family, E, Dual>(option), law, option});
 }
 
 }  // namespace

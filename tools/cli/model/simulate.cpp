@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -50,7 +51,9 @@ void run_simulation(const SimulateOptions& options) {
   const Record inputs = load_record_or_log(options.input, options.candump);
 
   const auto before = std::chrono::steady_clock::now();
+  const std::clock_t processor_before = std::clock();
   const Record outputs = run(inputs);
+  const double processor_took = static_cast<double>(std::clock() - processor_before) / CLOCKS_PER_SEC;
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   write_record(outputs, options.output);
 
@@ -60,6 +63,7 @@ void run_simulation(const SimulateOptions& options) {
                                         {"rows", outputs.rows},
                                         {"simulated_seconds", simulated},
                                         {"seconds", took},
+                                        {"processor_seconds", processor_took},
                                         {"times_real_time", simulated / took}};
     std::cout << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   } else {
