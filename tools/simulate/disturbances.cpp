@@ -100,7 +100,7 @@ std::vector<Disturbance> disturbances_of(const Record& inputs, std::span<const m
       require_bounds(inputs, *one.channel, 0.0, kind_of(one).upper, kind_of(one).unit);
     }
     if (one.kind == DisturbanceKind::vibration &&
-        gimbals[one.place / 2].friction.option == model::BearingFriction<double>::kVibrated) {
+        gimbals[one.place / 2].friction.law() == model::BearingFriction<double>::Law::vibrated_lugre) {
       throw FileError(
           fmt::format("{}:1: {}: the model's gimbal has law \"vibrated_lugre\"; it and a recorded vibration are two ways "
                       "to the same physics; give one of them",

@@ -71,7 +71,7 @@ hotfire_status check_value(hotfire_model* model, const Variable& variable, doubl
     return fail(model, HOTFIRE_BAD_DATA, "%s = %g: not a finite number; allowed: a number in %s", variable.name.c_str(),
                 value, variable.unit.c_str());
   }
-  if (!model::is_inside(value, variable.lower, variable.upper)) {
+  if (!hotfire::model::is_inside(value, variable.lower, variable.upper)) {
     return fail(model, HOTFIRE_BAD_DATA, "%s = %g: outside its bounds; allowed: %g to %g %s", variable.name.c_str(), value,
                 variable.lower, variable.upper, variable.unit.c_str());
   }
