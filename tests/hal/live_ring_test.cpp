@@ -185,7 +185,7 @@ TEST_GROUP(LiveFile) {
     const auto refused = file.create(text, words, 10);
     CHECK(refused.has_value());
     STRCMP_CONTAINS(why, refused->what.c_str());
-    CHECK(!refused->mend.empty());
+    CHECK(!refused->remedy.empty());
   }
 };
 

@@ -57,7 +57,7 @@ TEST_GROUP(FormSearch){};
 
 // Eleven points over the range would put none inside of +-0.3 mrad, a twentieth of it.
 TEST(FormSearch, ANarrowKinkIsFoundWithItsWidth) {
-  constexpr double kWidth = 3e-4;
+  static constexpr double kWidth = 3e-4;
   const Best best(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }));
   CHECK(best.form.form.argument == Argument::command);
   CHECK(best.form.score.left < 1.1);

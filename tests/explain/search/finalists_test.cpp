@@ -45,7 +45,7 @@ TEST(Finalists, WhereNoneReachesTheNoiseTheClosestLawOfEachNameMayWinYet) {
       finalists[i].goodness.fitted = {{.rows = 100.0, .mean_square = left[i].second * left[i].second}};
     }
   }
-  // 3.3 is more than kContender times 1.5.
+  // 3.3 is clearly more than 1.5.
   const std::vector<std::size_t> contenders = contenders_of<SimplexFamily>({0, 1, 2, 3, 4}, all, finalists);
   CHECK((contenders == std::vector<std::size_t>{1, 0}));
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/explain/oscillator.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/terms/trial.hpp"
 
 namespace {
@@ -41,6 +42,6 @@ TEST(Screening, WhatTheModelsOwnParametersGainBesideACandidateIsNotTheCandidates
   const auto screened = screened_beside_nearly_calibrated();
   CHECK_FALSE(screened.empty());
   for (const Screened<DirectFamily>& candidate : screened) {
-    CHECK_TRUE(candidate.criterion > -explain::kStrongEvidence);
+    CHECK_TRUE(candidate.criterion > -explain::policy().strong_evidence);
   }
 }
