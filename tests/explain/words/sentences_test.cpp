@@ -7,6 +7,7 @@
 #include "tests/explain/words/sentence_check.hpp"
 #include "tools/explain/experiment/test_profiles.hpp"
 #include "tools/explain/latent/form.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/result/trace.hpp"
 #include "tools/explain/result/verdict.hpp"
 #include "tools/explain/terms/unlisted.hpp"
@@ -355,6 +356,9 @@ TEST(Sentences, EverySentenceOfTheReportIsShortFilledAndInStandardTerms) {
   sentences.of_warnings();
   sentences.of_comparisons();
   sentences.of_refusals();
+  for (const PolicyConstant& constant : kPolicyConstants) {
+    every.add(std::string(constant.reason));
+  }
   std::ofstream file(HOTFIRE_SENTENCES);
   for (const std::string& text : every.texts()) {
     file << text << "\n";

@@ -12,8 +12,8 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Correlation times of the signal, in time constants of the servo: slower than its transients and faster than a profile, as
-/// fast as the servo, as fast as its oil.
+/// Correlation times of the signal, in time constants of the servo: slower than its transients and faster than a profile; of
+/// a sensor also as fast as the servo, and as fast as its oil.
 constexpr double kSlowest = 8.5;
 constexpr std::array kFaster{1.4, 0.24};
 /// Deviation of the start from the simulated one, over the scales of the states: a twentieth of what full opening does.
@@ -269,10 +269,13 @@ LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& p
   for (double logarithm = kSmallest; logarithm < kLargest + 0.5; logarithm += kCoarse) {
     look({std::exp(logarithm), kSlowest});
   }
-  // Beyond 1 / T the density of the signal is that of its deviation's square over T.
+  // The plant smooths what acts at a port. Only what a sensor adds is read as fast as it is. Beyond 1 / T the density of the
+  // signal is that of its deviation's square over T.
   const double density = best.prior.deviation / std::sqrt(kSlowest);
-  for (const double time : kFaster) {
-    look({density * std::sqrt(time), time});
+  if (!place.port) {
+    for (const double time : kFaster) {
+      look({density * std::sqrt(time), time});
+    }
   }
   double step = kCoarse;
   for (int i = 0; i < kRefinements; ++i) {

@@ -74,8 +74,7 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
   parallel_for(wanted.size(), threads, [&](std::size_t i) {
     tried[i].second = most_likely_input(problem, wanted[i].first);
     const LatentInput& input = tried[i].second;
-    tried[i].first = {wanted[i].second, input.log_likelihood - without, {}, false, wanted[i].first, input.prior,
-                      input.move};
+    tried[i].first = {wanted[i].second, input.log_likelihood - without, {}, false, wanted[i].first, input.prior, input.move};
   });
   const double best = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; }).first.gain;
   if (best < policy().least_gain) {
@@ -90,19 +89,25 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
       }
     });
   };
-  close_to_best(policy().tied_share);
-  // The likelihood compares places by how well their prior fits as well; what is left compares them by the records alone.
+  close_to_best(policy().scatter);
+  // The likelihood compares places by how well their prior fits as well. A place that leaves clearly more than another one
+  // close to it owes its gain to that.
   const auto most_left = [](const auto& t) { return t.first.leaves.empty() ? HUGE_VAL : std::ranges::max(t.first.leaves); };
-  const std::vector<double> least = std::ranges::min(tried, {}, most_left).first.leaves;
-  located.is_single = std::ranges::all_of(least, [](double leaves) { return leaves < policy().left_by_single; });
+  const auto& first = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; });
+  const auto& least = std::ranges::min(tried, {}, most_left);
+  const Place& chosen = (most_left(first) <= policy().tied_leaves * std::max(1.0, most_left(least)) ? first : least).first;
+  const std::vector<double> leaves = chosen.leaves;
+  const double tied_from = chosen.gain - std::max(policy().tied_gain, policy().tied_share * chosen.gain);
+  located.is_single = std::ranges::all_of(leaves, [](double left) { return left < policy().left_by_single; });
   if (!located.is_single) {
     close_to_best(policy().open_share);
   }
   for (auto& [place, input] : tried) {
     place.is_likely = !place.leaves.empty() &&
-                      (!located.is_single || std::ranges::equal(place.leaves, least, [](double one, double other) {
-                        return one <= policy().tied_leaves * std::max(1.0, other);
-                      }));
+                      (!located.is_single ||
+                       (place.gain >= tied_from && std::ranges::equal(place.leaves, leaves, [](double one, double other) {
+                          return one <= policy().tied_leaves * std::max(1.0, other);
+                        })));
   }
   std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first.gain; });
   for (auto& [place, input] : tried) {

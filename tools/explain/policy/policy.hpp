@@ -36,15 +36,16 @@ struct Policy {
   double near_noise = 3.0;
   /// Tolerances from its declared value at which a parameter compensates for a missing effect.
   double farthest_from_declared = 5.0;
-  /// Share of a curve, an energy or a record's error that is the scatter of an estimate.
+  /// Share of a curve, an energy, a record's error or a gain that is the scatter of an estimate.
   double scatter = 0.05;
   /// Least gain in log likelihood of an unknown signal.
   double least_gain = 50.0;
   /// Places are tied below this difference in log likelihood,
   double tied_gain = 150.0;
   /// ... or below this share of the best gain,
-  double tied_share = 0.05;
-  /// ... if they leave no more than this factor of the mean square of the place that leaves least.
+  double tied_share = 0.01;
+  /// ... if they leave no more than this factor of the best place's mean square. A place with the best gain that leaves more
+  /// than this factor of what a place within `scatter` of its gain leaves is not the best.
   double tied_leaves = 1.25;
   /// Mean square over the noise that a single signal leaves at most.
   double left_by_single = 1.9;
