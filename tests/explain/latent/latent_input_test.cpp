@@ -123,6 +123,25 @@ TEST(LatentInput, TheZeroOfASensorChangesNothingOfTheSignalButItsLevel) {
   CHECK(of.input.move(1) > before.input.move(1));
 }
 
+// A tone of 37 Hz, and the same at a tenth of a hertz: the first is faster than the servo by far, the second slower.
+TEST(LatentInput, TheSignalOfASensorIsAsFastAsItIsAndThatOfAPortIsSlow) {
+  constexpr LatentPlace kPistonSensor{std::nullopt, 0};
+  const auto most_likely = [](double frequency, const LatentPlace& place) {
+    Record record = record_of();
+    for (std::size_t row = 0; row < record.rows; ++row) {
+      const double t = static_cast<double>(row) * record.period;
+      record.channels[1].values[row] += 10.0 * kNoise * std::sin(2.0 * std::numbers::pi * frequency * t);
+    }
+    const ModelFile model = declared();
+    const Dataset data = explain::make_dataset(model, {record});
+    return explain::most_likely_input(explain::latent_problem(data, Smoothed::about(model), 1), place).prior;
+  };
+  const double fast = most_likely(37.0, kPistonSensor).correlation_time;
+  CHECK(fast < 1.0);
+  CHECK(most_likely(0.1, kPistonSensor).correlation_time > fast);
+  CHECK(most_likely(37.0, {Port::engine, 0}).correlation_time > 5.0);
+}
+
 TEST(LatentInput, HeldOutRowsAreNotLookedAt) {
   const ModelFile model = declared();
   Dataset data = explain::make_dataset(model, {record_of()});

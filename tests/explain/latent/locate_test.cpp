@@ -54,22 +54,6 @@ TEST(Locate, ADeadBandActsOnTheOilWhichWithoutItsPressureNoSignalSeparatesFromTh
   CHECK(!located.allows("load_spring"));
 }
 
-// The prior of a slow signal would compare places by how well it fits a fast one, which the plant smooths at every place but
-// the sensor's.
-TEST(Locate, AFastSignalOfASensorIsTheSensors) {
-  Record record = record_of(declared());
-  for (std::size_t row = 0; row < record.rows; ++row) {
-    const double t = static_cast<double>(row) * record.period;
-    record.channels[1].values[row] += 10.0 * kPistonNoise * std::sin(0.7 * t) * std::sin(2.0 * std::numbers::pi * 37.0 * t);
-  }
-  const Located located = explain::locate(explain::make_dataset(declared(), {record}), about_declared(), 2);
-  CHECK(located.is_single);
-  CHECK(located.allows("sensor.piston"));
-  CHECK(!located.allows("sensor.engine"));
-  CHECK(!located.allows("engine_torque"));
-  CHECK(located.places.front().prior.correlation_time < 1.0);
-}
-
 TEST(Locate, AnInvisibleMissingTermIsNoPlace) {
   // A thousandth of the torque that the test above locates: below what 20 s of the sensors show.
   CHECK(located_in(with_effect<model::DuctHardening>({3e6})).places.empty());
