@@ -9,8 +9,8 @@
 
 #include "firmware/image/image_entries.hpp"
 #include "firmware/text/text.hpp"
-#include "model/checks.hpp"
 #include "hal/recording/header.hpp"
+#include "model/checks.hpp"
 #include "model/vehicle_keys.hpp"
 
 namespace hotfire::firmware {

@@ -66,8 +66,8 @@ class Disturbances {
 
  private:
   struct Signal {
-    DisturbanceKind kind;
-    std::size_t place;
+    DisturbanceKind kind{};
+    std::size_t place = 0;
     Excitation mean;  ///< over plant step `step` of a row
   };
 

@@ -23,8 +23,8 @@ std::set<std::string> keys_of(const json& object) {
 
 void expect_keys(const std::set<std::string>& wanted, const json& object) { CHECK_TRUE(wanted == keys_of(object)); }
 
-const std::set<std::string> kAlways{"schema",  "model",           "name",     "verdict",    "sentence",
-                                    "records", "held_out",        "warnings", "channels",   "effects",
+const std::set<std::string> kAlways{"schema",  "model",           "name",     "verdict",     "sentence",
+                                    "records", "held_out",        "warnings", "channels",    "effects",
                                     "search",  "identifiability", "residual", "calibration", "policy"};
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST(Sensitivity, APolicyIsInForceWhileItLivesAndNoLonger) {
 }
 
 TEST(Sensitivity, OnlyCasesThatWereRuledOnBothWaysAreCompared) {
-  const std::vector<Ruling> rulings{{"", 1.0, "a", true},        {"", 1.0, "b", false},       {"", 1.0, "c", true},
+  const std::vector<Ruling> rulings{{"", 1.0, "a", true},         {"", 1.0, "b", false},       {"", 1.0, "c", true},
                                     {kConstant, 0.7, "a", false}, {kConstant, 0.7, "b", true}, {kConstant, 0.7, "c", true},
                                     {kConstant, 0.7, "d", true},  {kConstant, 1.4, "a", true}};
   const auto changes = changes_of(rulings, variations({kConstant}));

@@ -66,7 +66,8 @@ std::string harm_of(const Dataset& data, const Prediction& model, const Predicti
     for (std::size_t i = 0; i < after.size(); ++i) {
       const bool has_signal =
           signal[i].rms > kSignalOverNoise * signal[i].noise && signal[i].rms > kSignalShare * std::sqrt(whole);
-      if (has_signal && policy().little_explained * after[i].rms > before[i].rms && after[i].rms > policy().chaotic * after[i].noise) {
+      if (has_signal && policy().little_explained * after[i].rms > before[i].rms &&
+          after[i].rms > policy().chaotic * after[i].noise) {
         return words::worse_band(data.channels[c], after[i].rms / before[i].rms - 1.0, after[i].from, after[i].to);
       }
     }

@@ -15,8 +15,8 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
 /// Output of a form without its curve, and the smoothed signal less its mean, of every few rows of all records.
 std::pair<std::vector<double>, std::vector<double>> output_and_signal(const FormRegression& regression, const Form& form);
 
-/// Share of the smoothed signal's variance that a function of the form's output explains, or of its output less its argument,
-/// whichever is more.
+/// Share of the smoothed signal's variance that a function of the form's output explains, or of its output less its
+/// argument, whichever is more.
 double explained_share(const FormRegression& regression, const Form& form);
 
 }  // namespace hotfire::explain

@@ -159,7 +159,8 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   }
   const std::vector<Form> likely = screened(regression, plain, forms, threads);
 
-  // A curve costs a regressor a point: it is laid for what a gain explains best and for what the signal is most a function of.
+  // A curve costs a regressor a point: it is laid for what a gain explains best and for what the signal is most a function
+  // of.
   std::vector<ScoredForm> laid = scored(regression, likely, threads);
   std::vector<ScoredForm> by_gain = laid;
   keep_best(by_gain, kCurved);

@@ -56,10 +56,11 @@ double likelihood_without(const LatentProblem& problem);
 /// The most likely size of a signal at `place`, and at a sensor its most likely correlation time: what a sensor adds may be
 /// fast, and a slow prior would compare places by how well it fits.
 ///
-/// w' = -w / T + white noise, T several time constants of the servo, at a sensor down to a fraction of one. The plant's deviation, linear along its simulation, and w
-/// are the state of a Kalman filter; records reset them. Declared parameters are constants over all records, zeros over one:
-/// the filter runs on their sensitivities beside the residuals, and their move follows by least squares on the innovations,
-/// with tolerances and deviations as prior [de Jong 1991, The diffuse Kalman filter, Annals of Statistics 19].
+/// w' = -w / T + white noise, T several time constants of the servo, at a sensor down to a fraction of one. The plant's
+/// deviation, linear along its simulation, and w are the state of a Kalman filter; records reset them. Declared parameters
+/// are constants over all records, zeros over one: the filter runs on their sensitivities beside the residuals, and their
+/// move follows by least squares on the innovations, with tolerances and deviations as prior [de Jong 1991, The diffuse
+/// Kalman filter, Annals of Statistics 19].
 LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& place);
 
 /// The same with signal and what is left, by a fixed-interval smoother [Bryson and Frazier 1963].

@@ -57,12 +57,13 @@ struct Policy {
 struct PolicyConstant {
   std::string_view name;
   std::string_view unit;
-  double Policy::* value;
+  double Policy::*value;
   std::string_view reason;  ///< derivation, source or measurement
 };
 
 inline constexpr std::array kPolicyConstants{
-    PolicyConstant{"strong_evidence", "BIC", &Policy::strong_evidence, "odds beyond 150 to 1 (Kass and Raftery 1995, p. 777)"},
+    PolicyConstant{"strong_evidence", "BIC", &Policy::strong_evidence,
+                   "odds beyond 150 to 1 (Kass and Raftery 1995, p. 777)"},
     PolicyConstant{"least_held_out_drop", "1", &Policy::least_held_out_drop,
                    "standard error of an rms over some thousand effective samples"},
     PolicyConstant{"hardly_less", "1", &Policy::hardly_less,
@@ -74,7 +75,8 @@ inline constexpr std::array kPolicyConstants{
     PolicyConstant{"term_found", "1", &Policy::term_found, "a tenth of the mean square is unexplained"},
     PolicyConstant{"nothing_left", "noise", &Policy::nothing_left,
                    "the noise itself is known to one or two percent, which is as much"},
-    PolicyConstant{"immaterial", "noise", &Policy::immaterial, "the model is then twice as close to the truth as the sensor"},
+    PolicyConstant{"immaterial", "noise", &Policy::immaterial,
+                   "the model is then twice as close to the truth as the sensor"},
     PolicyConstant{"visible", "noise", &Policy::visible, "as large as the noise"},
     PolicyConstant{"chaotic", "noise", &Policy::chaotic,
                    "stick-slip of two models of one truth parts at the first slip that one of them misses"},
@@ -90,7 +92,8 @@ inline constexpr std::array kPolicyConstants{
     PolicyConstant{"tied_leaves", "1", &Policy::tied_leaves, "scatter of a mean square over some hundred effective samples"},
     PolicyConstant{"left_by_single", "1", &Policy::left_by_single,
                    "chi square over N of two simultaneous effects is larger (design study, 25 cases)"},
-    PolicyConstant{"open_share", "1", &Policy::open_share, "the second of two effects explains a tenth of the first or more"},
+    PolicyConstant{"open_share", "1", &Policy::open_share,
+                   "the second of two effects explains a tenth of the first or more"},
 };
 
 /// The policy of this process. The same for every search but in `WithPolicy`.

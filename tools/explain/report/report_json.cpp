@@ -157,10 +157,8 @@ json search_json(const SearchRow& row) {
 }
 
 json policy_json(const PolicyConstant& constant) {
-  return {{"name", constant.name},
-          {"value", policy().*constant.value},
-          {"unit", constant.unit},
-          {"reason", constant.reason}};
+  return {
+      {"name", constant.name}, {"value", policy().*constant.value}, {"unit", constant.unit}, {"reason", constant.reason}};
 }
 
 json located_json(const LocatedResult& located) {

@@ -42,7 +42,7 @@ std::string reason_of(const Trial& trial, const Trial* best) {
   }
   if (!trial.refined) {
     return std::string(words::text(trial.delta_criterion > -policy().strong_evidence ? words::Reason::no_lower_criterion
-                                                                            : words::Reason::behind_finalists));
+                                                                                     : words::Reason::behind_finalists));
   }
   if (best != &trial && best->delta_criterion < trial.delta_criterion) {
     return words::is_better(label(best->candidate), trial.delta_criterion - best->delta_criterion);

@@ -64,8 +64,7 @@ std::vector<Variation> variations(const std::vector<std::string>& only) {
 }
 
 std::vector<Ruling> sensitivity(const std::vector<std::filesystem::path>& folders, const std::vector<Variation>& varied,
-                                std::vector<Ruling> known, unsigned threads,
-                                const std::function<void(const Ruling&)>& say) {
+                                std::vector<Ruling> known, unsigned threads, const std::function<void(const Ruling&)>& say) {
   for (const Variation& variation : varied) {
     const explain::WithPolicy with(varied_policy(variation));
     for (const std::filesystem::path& folder : folders) {
@@ -105,9 +104,9 @@ std::vector<Change> changes_of(const std::vector<Ruling>& rulings, const std::ve
 std::string table_of(const std::vector<Change>& changes) {
   std::string text = fmt::format("{:<24} {:>6} {:>7} {:>7} {:>7}\n", "constant", "factor", "better", "worse", "cases");
   for (const Change& change : changes) {
-    text += fmt::format("{:<24} {:>6} {:>7} {:>7} {:>7}{}\n", change.variation.constant, change.variation.factor,
-                        change.better, change.worse, change.of,
-                        change.better + change.worse > kMostChanges ? "  MORE THAN TWO" : "");
+    text +=
+        fmt::format("{:<24} {:>6} {:>7} {:>7} {:>7}{}\n", change.variation.constant, change.variation.factor, change.better,
+                    change.worse, change.of, change.better + change.worse > kMostChanges ? "  MORE THAN TWO" : "");
   }
   return text;
 }
@@ -126,8 +125,8 @@ std::vector<Ruling> load_rulings(const std::filesystem::path& path) {
       rulings.push_back({object.at("constant").get<std::string>(), object.at("factor").get<double>(),
                          object.at("case").get<std::string>(), object.at("good").get<bool>()});
     } catch (const nlohmann::json::exception&) {
-      throw FileError(fmt::format("{}:{}: is no ruling of this command; give another file, or delete the line",
-                                  path.string(), number));
+      throw FileError(
+          fmt::format("{}:{}: is no ruling of this command; give another file, or delete the line", path.string(), number));
     }
   }
   return rulings;

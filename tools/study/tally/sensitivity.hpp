@@ -24,16 +24,15 @@ std::vector<Variation> variations(const std::vector<std::string>& only);
 struct Ruling {
   std::string constant;  ///< empty: the policy as it is
   double factor = 1.0;
-  std::string name;  ///< of the case
-  bool good = false;  ///< listed: named right and below the noise; unlisted: no wrong name, right site, error halved; null: no
-                      ///< find
+  std::string name;   ///< of the case
+  bool good = false;  ///< listed: named right and below the noise; unlisted: no wrong name, right site, error halved; null:
+                      ///< no find
 };
 
 /// Explains every case under every variation and says each ruling as it is made. Rulings of `known` are not made again: a
 /// run that was stopped goes on. Throws FileError if a folder is no case.
 std::vector<Ruling> sensitivity(const std::vector<std::filesystem::path>& folders, const std::vector<Variation>& varied,
-                                std::vector<Ruling> known, unsigned threads,
-                                const std::function<void(const Ruling&)>& say);
+                                std::vector<Ruling> known, unsigned threads, const std::function<void(const Ruling&)>& say);
 
 /// Cases whose ruling a variation changes, out of those that were ruled on under it and under the policy as it is.
 struct Change {
