@@ -261,6 +261,16 @@ Dataset thinned(const Dataset& data, double period) {
   return thin;
 }
 
+Dataset thinned_to_rows(const Dataset& data, double rows) {
+  double all = 0.0;
+  double seconds = 0.0;
+  for (const Experiment& experiment : data.experiments) {
+    all += static_cast<double>(experiment.rows());
+    seconds += static_cast<double>(experiment.rows()) * experiment.period;
+  }
+  return all > rows ? thinned(data, seconds / rows) : data;
+}
+
 std::vector<std::string> held_out_names(const Dataset& data) {
   std::vector<std::string> names;
   for (const Experiment& experiment : data.experiments) {

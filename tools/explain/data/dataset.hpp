@@ -76,6 +76,8 @@ void fit_every_row(Dataset& data);
 /// The records at a period of about `period` [s]: every k-th row, under the mean of the commands held from it to the next.
 /// The rows that a fit sees, are held out or excluded stay so. Records that are no faster are left as they are.
 Dataset thinned(const Dataset& data, double period);
+/// The records with about `rows` rows together; fewer are left as they are.
+Dataset thinned_to_rows(const Dataset& data, double rows);
 
 /// "steps.csv@8.0-12.0" for every held-out block.
 std::vector<std::string> held_out_names(const Dataset& data);

@@ -15,36 +15,6 @@ constexpr std::size_t kBins = 32;
 constexpr Eigen::Index kEvery = 4;
 constexpr std::size_t kSampled = 500;
 
-/// The smoothed signal less its mean.
-std::vector<double> centered_signal(const FormRegression& regression) {
-  std::vector<double> values;
-  double sum = 0.0;
-  for (const Eigen::VectorXd& signal : regression.signal()) {
-    for (Eigen::Index row = 0; row < signal.size(); row += kEvery) {
-      values.push_back(signal(row));
-      sum += signal(row);
-    }
-  }
-  const double mean = sum / static_cast<double>(values.size());
-  std::ranges::transform(values, values.begin(), [&](double value) { return value - mean; });
-  return values;
-}
-
-/// The form's output, and its output less its argument.
-std::pair<std::vector<double>, std::vector<double>> output_and_distortion(const FormRegression& regression,
-                                                                          const Form& form) {
-  std::pair<std::vector<double>, std::vector<double>> both;
-  for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
-    const Eigen::VectorXd argument = argument_of(form, regression.quantities()[e]);
-    const Eigen::VectorXd own = remembered(form, argument, regression.problem().data.experiments[e].period);
-    for (Eigen::Index row = 0; row < own.size(); row += kEvery) {
-      both.first.push_back(own(row));
-      both.second.push_back(own(row) - argument(row));
-    }
-  }
-  return both;
-}
-
 }  // namespace
 
 double correlation_ratio(const std::vector<double>& x, const std::vector<double>& signal) {
@@ -75,15 +45,45 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
   return whole > 0.0 ? between / whole : 0.0;
 }
 
-std::pair<std::vector<double>, std::vector<double>> output_and_signal(const FormRegression& regression, const Form& form) {
-  return {output_and_distortion(regression, form).first, centered_signal(regression)};
+SignalCorrelation::SignalCorrelation(const FormRegression& regression) : regression_(regression) {
+  double sum = 0.0;
+  for (const Eigen::VectorXd& signal : regression.signal()) {
+    for (Eigen::Index row = 0; row < signal.size(); row += kEvery) {
+      signal_.push_back(signal(row));
+      sum += signal(row);
+    }
+  }
+  const double mean = sum / static_cast<double>(signal_.size());
+  std::ranges::transform(signal_, signal_.begin(), [&](double value) { return value - mean; });
 }
 
-double explained_share(const FormRegression& regression, const Form& form) {
-  const auto [output, distortion] = output_and_distortion(regression, form);
-  const std::vector<double> signal = centered_signal(regression);
-  const double share = correlation_ratio(output, signal);
-  return form.has_direct() ? std::max(share, correlation_ratio(distortion, signal)) : share;
+std::vector<double> SignalCorrelation::output(const Form& form) const {
+  std::vector<double> values;
+  values.reserve(signal_.size());
+  for (std::size_t e = 0; e < regression_.quantities().size(); ++e) {
+    const Eigen::VectorXd argument = argument_of(form, regression_.quantities()[e]);
+    const Eigen::VectorXd own = remembered(form, argument, regression_.problem().data.experiments[e].period);
+    for (Eigen::Index row = 0; row < own.size(); row += kEvery) {
+      values.push_back(own(row));
+    }
+  }
+  return values;
+}
+
+double SignalCorrelation::explained_share(const Form& form) const {
+  std::vector<double> values = output(form);
+  const double share = correlation_ratio(values, signal_);
+  if (!form.has_direct()) {
+    return share;
+  }
+  std::size_t i = 0;
+  for (const Eigen::MatrixXd& quantities : regression_.quantities()) {
+    const Eigen::VectorXd argument = argument_of(form, quantities);
+    for (Eigen::Index row = 0; row < argument.size(); row += kEvery) {
+      values[i++] -= argument(row);
+    }
+  }
+  return std::max(share, correlation_ratio(values, signal_));
 }
 
 }  // namespace hotfire::explain

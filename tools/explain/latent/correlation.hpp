@@ -12,11 +12,23 @@ namespace hotfire::explain {
 /// ends of x (Pearson 1905, On the general theory of skew correlation). It asks for no shape of the function.
 double correlation_ratio(const std::vector<double>& x, const std::vector<double>& signal);
 
-/// Output of a form without its curve, and the smoothed signal less its mean, of every few rows of all records.
-std::pair<std::vector<double>, std::vector<double>> output_and_signal(const FormRegression& regression, const Form& form);
+/// The smoothed signal of a place against outputs of forms, over every few rows of all records.
+class SignalCorrelation {
+ public:
+  /// The regression is to outlive it.
+  explicit SignalCorrelation(const FormRegression& regression);
 
-/// Share of the smoothed signal's variance that a function of the form's output explains, or of its output less its
-/// argument, whichever is more.
-double explained_share(const FormRegression& regression, const Form& form);
+  /// The smoothed signal less its mean.
+  const std::vector<double>& signal() const { return signal_; }
+  /// Output of a form without its curve, row by row as the signal.
+  std::vector<double> output(const Form& form) const;
+  /// Share of the signal's variance that a function of the form's output explains, or of its output less its argument,
+  /// whichever is more.
+  double explained_share(const Form& form) const;
+
+ private:
+  const FormRegression& regression_;
+  std::vector<double> signal_;
+};
 
 }  // namespace hotfire::explain

@@ -121,7 +121,9 @@ std::vector<double> spread_points(const std::vector<double>& sorted) {
 /// Points where a curve over the form's output has to bend to follow the smoothed signal. Its scatter about any function of
 /// the output is its noise.
 std::vector<double> followed_points(const FormRegression& regression, const Form& form) {
-  const auto [x, signal] = output_and_signal(regression, form);
+  const SignalCorrelation correlation(regression);
+  const std::vector<double> x = correlation.output(form);
+  const std::vector<double>& signal = correlation.signal();
   std::vector<double> sorted = x;
   std::ranges::sort(sorted);
   const double low = quantile(sorted, kEnds);

@@ -75,12 +75,12 @@ std::vector<ScoredForm> scored(const FormRegression& regression, std::vector<For
 
 /// Moves the parameter of a form's memory to where a function of its output explains most of the signal: a curve that bends
 /// several times over the output shows only close to the right parameter, and a comb is never that dense.
-void tune(const FormRegression& regression, ScoredForm& scored) {
+void tune(const SignalCorrelation& correlation, ScoredForm& scored) {
   double factor = 1.2;
   for (int i = 0; i < kTunings; ++i) {
     bool moved = false;
     for (Form& form : neighbours(scored.form, factor)) {
-      const double left = 1.0 - explained_share(regression, form);
+      const double left = 1.0 - correlation.explained_share(form);
       if (left < scored.score.criterion) {
         scored.form = std::move(form);
         scored.score.criterion = left;
@@ -96,11 +96,12 @@ void tune(const FormRegression& regression, ScoredForm& scored) {
 /// of them would crowd out whatever else there is.
 std::vector<Form> screened(const FormRegression& regression, const std::vector<Form>& plain,
                            const std::vector<Form>& remembering, unsigned threads) {
+  const SignalCorrelation correlation(regression);
   const auto scored_by_ratio = [&](const std::vector<Form>& forms) {
     std::vector<ScoredForm> all(forms.size());
     parallel_for(forms.size(), threads, [&](std::size_t i) {
       all[i] = {forms[i], {}};
-      all[i].score.criterion = 1.0 - explained_share(regression, forms[i]);
+      all[i].score.criterion = 1.0 - correlation.explained_share(forms[i]);
     });
     return all;
   };
@@ -116,7 +117,7 @@ std::vector<Form> screened(const FormRegression& regression, const std::vector<F
     best.push_back(std::move(scored.form));
   }
   moving = best_of_each(std::move(moving), kTuned);
-  parallel_for(moving.size(), threads, [&](std::size_t i) { tune(regression, moving[i]); });
+  parallel_for(moving.size(), threads, [&](std::size_t i) { tune(correlation, moving[i]); });
   const std::size_t most = best.size() + kScreenedMoving;
   for (ScoredForm& scored : best_of_each(std::move(moving), kTuned)) {
     const auto of_same = std::ranges::count_if(best, [&](const Form& form) { return is_of_same(scored.form, form); });

@@ -39,10 +39,15 @@ std::vector<std::pair<LatentPlace, std::vector<std::string>>> places_of(const Da
 
 }  // namespace
 
+bool Place::has(const std::string& site) const { return std::ranges::find(sites, site) != sites.end(); }
+
 bool Located::allows(const std::string& site) const {
-  return places.empty() || std::ranges::any_of(places, [&](const Place& place) {
-           return place.is_likely && std::ranges::find(place.sites, site) != place.sites.end();
-         });
+  return places.empty() ||
+         std::ranges::any_of(places, [&](const Place& place) { return place.is_likely && place.has(site); });
+}
+
+bool Located::refutes(const std::string& site) const {
+  return is_single && std::ranges::none_of(places, [&](const Place& place) { return place.is_possible && place.has(site); });
 }
 
 std::vector<std::string> Located::likely_sites() const {
@@ -56,13 +61,7 @@ std::vector<std::string> Located::likely_sites() const {
 }
 
 Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads) {
-  double rows = 0.0;
-  double seconds = 0.0;
-  for (const Experiment& experiment : data.experiments) {
-    rows += static_cast<double>(experiment.rows());
-    seconds += static_cast<double>(experiment.rows()) * experiment.period;
-  }
-  const Dataset thin = rows > kMostRows ? thinned(data, seconds / kMostRows) : data;
+  const Dataset thin = thinned_to_rows(data, kMostRows);
   Located located;
   const LatentProblem problem = latent_problem(thin, around, threads);
   if (problem.flows.empty()) {
@@ -74,7 +73,12 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
   parallel_for(wanted.size(), threads, [&](std::size_t i) {
     tried[i].second = most_likely_input(problem, wanted[i].first);
     const LatentInput& input = tried[i].second;
-    tried[i].first = {wanted[i].second, input.log_likelihood - without, {}, false, wanted[i].first, input.prior, input.move};
+    Place& place = tried[i].first;
+    place.sites = wanted[i].second;
+    place.gain = input.log_likelihood - without;
+    place.where = wanted[i].first;
+    place.prior = input.prior;
+    place.move = input.move;
   });
   const double best = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; }).first.gain;
   if (best < policy().least_gain) {
@@ -103,11 +107,11 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
     close_to_best(policy().open_share);
   }
   for (auto& [place, input] : tried) {
-    place.is_likely = !place.leaves.empty() &&
-                      (!located.is_single ||
-                       (place.gain >= tied_from && std::ranges::equal(place.leaves, leaves, [](double one, double other) {
-                          return one <= policy().tied_leaves * std::max(1.0, other);
-                        })));
+    place.is_possible = !place.leaves.empty() &&
+                        (!located.is_single || std::ranges::equal(place.leaves, leaves, [](double one, double other) {
+                           return one <= policy().tied_leaves * std::max(1.0, other);
+                         }));
+    place.is_likely = place.is_possible && (!located.is_single || place.gain >= tied_from);
   }
   std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first.gain; });
   for (auto& [place, input] : tried) {

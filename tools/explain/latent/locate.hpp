@@ -14,10 +14,13 @@ struct Place {
   std::vector<std::string> sites;  ///< "load_spring", "structure"
   double gain = 0.0;               ///< log likelihood with the most likely signal less that without any
   std::vector<double> leaves;      ///< by channel: mean square over noise of what the signal leaves; of likely places only
-  bool is_likely = false;          ///< no other place explains clearly more
+  bool is_possible = false;        ///< a law that is no smooth signal may act here: an event costs a signal likelihood
+  bool is_likely = false;          ///< ... and no other place explains clearly more
   LatentPlace where{};
   LatentPrior prior{};     ///< of the most likely signal
   Eigen::VectorXd move{};  ///< of the parameters of its problem beside it
+
+  bool has(const std::string& site) const;
 };
 
 /// Where the term acts that a model is missing.
@@ -27,6 +30,8 @@ struct Located {
 
   /// False if a term at `site` cannot be what is missing.
   bool allows(const std::string& site) const;
+  /// True if one signal explains the records, and no law at `site` can be what is missing.
+  bool refutes(const std::string& site) const;
   /// The sites of all likely places.
   std::vector<std::string> likely_sites() const;
 };

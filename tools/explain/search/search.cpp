@@ -79,7 +79,7 @@ class Search {
     result_.explained = result_.calibrated;
     for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
       const int round = result_.next_round();
-      if (is_complete(data_, result_.explained) || !add_effect(round, unlisted_.locate_about(result_.explained))) {
+      if (is_complete(data_, result_.explained) || !add_effect(round, unlisted_.locate_explained())) {
         break;
       }
       take_out_superfluous(round);
@@ -111,7 +111,7 @@ class Search {
     std::vector<Candidate> candidates = all_candidates<Family>(data_);
     std::erase_if(candidates, [&](const Candidate& c) {
       return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c) ||
-             is_measured_load(data_, c.site) || (where.is_single && !where.allows(c.site));
+             is_measured_load(data_, c.site) || where.refutes(c.site);
     });
     if (candidates.empty()) {
       return false;

@@ -133,13 +133,7 @@ std::optional<Screened<SimplexFamily>> start_of(const Fitted<SimplexFamily>& aro
 std::vector<Screened<SimplexFamily>> propose_terms(const Dataset& data, const Fitted<SimplexFamily>& around,
                                                    const Located& located, const Scales& scales, unsigned threads,
                                                    const Watch& watch) {
-  double rows = 0.0;
-  double seconds = 0.0;
-  for (const Experiment& experiment : data.experiments) {
-    rows += static_cast<double>(experiment.rows());
-    seconds += static_cast<double>(experiment.rows()) * experiment.period;
-  }
-  const Dataset thin = rows > kMostRows ? thinned(data, seconds / kMostRows) : data;
+  const Dataset thin = thinned_to_rows(data, kMostRows);
   std::vector<Screened<SimplexFamily>> proposals;
   const LatentProblem problem = latent_problem(thin, around, threads);
   if (problem.flows.empty()) {

@@ -53,7 +53,7 @@ void UnlistedStage<Family>::finish() {
     drop_names_that_explain_little();
   }
   if (!options_.watch.interrupted() && excess_over_noise(data_, result_.explained.prediction) > policy().visible) {
-    result_.located = result_.kept.empty() ? located() : locate_about(result_.explained);
+    result_.located = locate_explained();
   }
 }
 
@@ -98,6 +98,11 @@ const Located& UnlistedStage<Family>::located() {
     located_ = locate_about(result_.calibrated);
   }
   return *located_;
+}
+
+template <class Family>
+Located UnlistedStage<Family>::locate_explained() {
+  return result_.kept.empty() ? located() : locate_about(result_.explained);
 }
 
 template <class Family>
@@ -178,7 +183,7 @@ void UnlistedStage<Family>::add_beside() {
     while (!result_.kept.empty() && static_cast<int>(result_.kept.size()) < options_.most_effects &&
            excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
       const UnlistedSearch<Family> beside =
-          search_unlisted(data_, refiner_, result_.explained, locate_about(result_.explained), scales_, options_.threads,
+          search_unlisted(data_, refiner_, result_.explained, locate_explained(), scales_, options_.threads,
                           options_.watch, result_.next_round());
       const std::size_t first = result_.trials.size();
       result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());

@@ -26,8 +26,8 @@ class UnlistedStage {
   /// names or comes beside them where it leaves clearly less; names without weight are dropped; what is left is located.
   void finish();
 
-  /// Where the term acts that a model is missing; nowhere for a mass, which has one place only.
-  Located locate_about(const Assessed<Family>& model) const;
+  /// Where the term acts that the explained model is missing; nowhere for a mass, which has one place only.
+  Located locate_explained();
 
   /// The calibrated model is another now.
   void forget() {
@@ -40,6 +40,7 @@ class UnlistedStage {
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
   double advantage() const;
   bool leaves_clearly_less(const Assessed<Family>& model, double share) const;
+  Located locate_about(const Assessed<Family>& model) const;
   const Located& located();
   void take_out_names(const std::string& why);
   void refuse_misplaced_names();
