@@ -225,9 +225,9 @@ Assessed<Family> Refiner<Family>::in_place_of(const Fitted<Family>& model, const
 }
 
 template <class Family>
-Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted) const {
+Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted, double height) const {
   const double left = excess_over_noise(data_, fitted.prediction);
-  if (left < policy().nothing_left || left >= policy().near_noise || watch_.interrupted()) {
+  if (left < policy().nothing_left || left >= height || watch_.interrupted()) {
     return fitted;
   }
   Assessed<Family> beyond = ranked(fitted.model, kOverRipples);

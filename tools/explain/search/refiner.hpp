@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/screening.hpp"
 #include "tools/explain/terms/assessed.hpp"
 
@@ -42,10 +43,10 @@ class Refiner {
     return refined(fine_, fine_, threads_, fitted, effort);
   }
 
-  /// A model that is as near the noise as the ripples of its error are high, and leaves something, may sit in one: it is
+  /// A model that leaves something, but less beyond the noise than the ripples of its error are high, may sit in one: it is
   /// fitted along differences that are wider than a ripple, and then along exact derivatives, from where those ended. The
-  /// best of all.
-  Assessed<Family> over_ripples(Assessed<Family> fitted) const;
+  /// best of all. `height`: of the ripples, over the noise.
+  Assessed<Family> over_ripples(Assessed<Family> fitted, double height = policy().near_noise) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
   Assessed<Family> from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const;
 

@@ -182,9 +182,8 @@ void UnlistedStage<Family>::add_beside() {
   if constexpr (std::is_same_v<Family, SimplexFamily>) {
     while (!result_.kept.empty() && static_cast<int>(result_.kept.size()) < options_.most_effects &&
            excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
-      const UnlistedSearch<Family> beside =
-          search_unlisted(data_, refiner_, result_.explained, locate_explained(), scales_, options_.threads,
-                          options_.watch, result_.next_round());
+      const UnlistedSearch<Family> beside = search_unlisted(data_, refiner_, result_.explained, locate_explained(), scales_,
+                                                            options_.threads, options_.watch, result_.next_round());
       const std::size_t first = result_.trials.size();
       result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
       if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||
