@@ -103,9 +103,7 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
   const std::vector<double> leaves = chosen.leaves;
   const double tied_from = chosen.gain - std::max(policy().tied_gain, policy().tied_share * chosen.gain);
   located.is_single = std::ranges::all_of(leaves, [](double left) { return left < policy().left_by_single; });
-  if (!located.is_single) {
-    close_to_best(policy().open_share);
-  }
+  close_to_best(located.is_single ? 1.0 : policy().open_share);
   for (auto& [place, input] : tried) {
     place.is_possible = !place.leaves.empty() &&
                         (!located.is_single || std::ranges::equal(place.leaves, leaves, [](double one, double other) {

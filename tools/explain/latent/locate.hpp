@@ -13,8 +13,8 @@ namespace hotfire::explain {
 struct Place {
   std::vector<std::string> sites;  ///< "load_spring", "structure"
   double gain = 0.0;               ///< log likelihood with the most likely signal less that without any
-  std::vector<double> leaves;      ///< by channel: mean square over noise of what the signal leaves; of likely places only
-  bool is_possible = false;        ///< a law that is no smooth signal may act here: an event costs a signal likelihood
+  std::vector<double> leaves;      ///< by channel: mean square over noise of what the signal leaves; empty: far from the best
+  bool is_possible = false;        ///< it leaves as little as the best: a law may act here, which costs less than a signal
   bool is_likely = false;          ///< ... and no other place explains clearly more
   LatentPlace where{};
   LatentPrior prior{};     ///< of the most likely signal
