@@ -10,7 +10,7 @@
 namespace hotfire::analysis {
 namespace {
 
-constexpr double kPeriod = 1e-3;
+constexpr double kStepPeriod = 1e-3;
 
 /// Steps at 1 s to 2 and at 3 s back to 0, until 5 s.
 std::vector<double> command() {
@@ -33,11 +33,11 @@ TEST(Steps, OfASecondOrderSystemHaveItsOvershootAndRise) {
   for (const double value : commands) {
     channel.push_back(position);
     for (int k = 0; k < 100; ++k) {
-      speed += 0.01 * kPeriod * (400.0 * (value - position) - 20.0 * speed);
-      position += 0.01 * kPeriod * speed;
+      speed += 0.01 * kStepPeriod * (400.0 * (value - position) - 20.0 * speed);
+      position += 0.01 * kStepPeriod * speed;
     }
   }
-  const std::vector<StepResponse> steps = step_responses(commands, channel, kPeriod, 1.0);
+  const std::vector<StepResponse> steps = step_responses(commands, channel, kStepPeriod, 1.0);
   LONGS_EQUAL(2, steps.size());
   DOUBLES_EQUAL(2.0, steps[0].change, 1e-3);
   DOUBLES_EQUAL(-2.0, steps[1].change, 1e-3);
@@ -59,7 +59,7 @@ TEST(Steps, ThatWaitAndStallSayHowLong) {
     const double share = time < 0.05 ? 0.0 : time < 0.1 ? 12.0 * (time - 0.05) : time < 0.3 ? 0.6 : 0.6 + 4.0 * (time - 0.3);
     channel[k] = 2.0 * std::min(1.0, share);
   }
-  const StepResponse step = step_responses(commands, channel, kPeriod, 1.0).front();
+  const StepResponse step = step_responses(commands, channel, kStepPeriod, 1.0).front();
   DOUBLES_EQUAL(0.2, step.hesitation, 0.005);
   DOUBLES_EQUAL(0.0, step.overshoot, 1e-9);
 }
@@ -69,16 +69,16 @@ TEST(Steps, ThatAreNotHeldAreNone) {
   for (std::size_t k = 0; k < ramp.size(); ++k) {
     ramp[k] = static_cast<double>(k);
   }
-  LONGS_EQUAL(0, step_responses(ramp, ramp, kPeriod, 0.5).size());
+  LONGS_EQUAL(0, step_responses(ramp, ramp, kStepPeriod, 0.5).size());
 }
 
 TEST(Steps, ThatDoNotSettleHaveNoSettlingTime) {
   const std::vector<double> commands = command();
   std::vector<double> channel = commands;
   for (std::size_t k = 1000; k < channel.size(); ++k) {
-    channel[k] += 0.5 * std::sin(30.0 * static_cast<double>(k) * kPeriod);
+    channel[k] += 0.5 * std::sin(30.0 * static_cast<double>(k) * kStepPeriod);
   }
-  CHECK_TRUE(std::isnan(step_responses(commands, channel, kPeriod, 1.0).front().settling_time));
+  CHECK_TRUE(std::isnan(step_responses(commands, channel, kStepPeriod, 1.0).front().settling_time));
 }
 
 }  // namespace hotfire::analysis

@@ -11,18 +11,18 @@ namespace {
 using hotfire::explain::Block;
 using hotfire::explain::Experiment;
 
-constexpr double kPeriod = 2e-3;
-constexpr std::size_t kRows = 32 * 500;  // 32 s: eight blocks of four seconds
-constexpr std::size_t kBlock = kRows / 8;
+constexpr double kHoldOutPeriod = 2e-3;
+constexpr std::size_t kHoldOutRows = 32 * 500;  // 32 s: eight blocks of four seconds
+constexpr std::size_t kBlock = kHoldOutRows / 8;
 
 /// A sine of amplitude 1, and of `amplitude` within one block.
 Experiment sines(std::size_t block, double amplitude) {
   Experiment experiment;
-  experiment.period = kPeriod;
+  experiment.period = kHoldOutPeriod;
   experiment.measured.emplace_back();
-  for (std::size_t row = 0; row < kRows; ++row) {
+  for (std::size_t row = 0; row < kHoldOutRows; ++row) {
     const double size = row / kBlock == block ? amplitude : 1.0;
-    experiment.input.push_back(size * std::sin(2.0 * std::numbers::pi * static_cast<double>(row) * kPeriod));
+    experiment.input.push_back(size * std::sin(2.0 * std::numbers::pi * static_cast<double>(row) * kHoldOutPeriod));
     experiment.measured.front().push_back(experiment.input.back());
   }
   return experiment;

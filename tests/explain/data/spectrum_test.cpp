@@ -9,21 +9,21 @@
 
 namespace {
 
-constexpr double kPeriod = 2e-3;
-constexpr double kNoise = 8e-6;
+constexpr double kSpectrumPeriod = 2e-3;
+constexpr double kSpectrumNoise = 8e-6;
 
 hotfire::Record record(const char* name, std::size_t rows, double frequency, double phase, unsigned seed) {
   std::mt19937_64 generator(seed);
-  std::normal_distribution<double> normal(0.0, kNoise);
+  std::normal_distribution<double> normal(0.0, kSpectrumNoise);
   hotfire::Record result;
   result.name = name;
   result.path = name;
-  result.period = kPeriod;
+  result.period = kSpectrumPeriod;
   result.rows = rows;
   std::vector<double> piston;
   for (std::size_t row = 0; row < rows; ++row) {
-    piston.push_back(2.0 * kNoise *
-                         std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(row) * kPeriod + phase) +
+    piston.push_back(2.0 * kSpectrumNoise *
+                         std::sin(2.0 * std::numbers::pi * frequency * static_cast<double>(row) * kSpectrumPeriod + phase) +
                      normal(generator));
   }
   result.channels = {{"command", "rad", std::vector<double>(rows, 0.0)}, {"piston", "m", piston}};
@@ -40,7 +40,7 @@ TEST_GROUP(Spectrum){};
 TEST(Spectrum, ASinusoidIsIdentifiedToASmallPartOfACycleOverTheLongestRecord) {
   hotfire::ModelFile model;
   model.parameters = hotfire::SimplexParameters{};
-  model.noise = {{"piston", kNoise}};
+  model.noise = {{"piston", kSpectrumNoise}};
   for (const double frequency : {1.37, 5.043, 13.3074}) {
     const auto data = hotfire::explain::make_dataset(
         model, {record("a.csv", 30000, frequency, 0.3, 1), record("b.csv", 15000, frequency, 2.0, 2)});
@@ -49,7 +49,7 @@ TEST(Spectrum, ASinusoidIsIdentifiedToASmallPartOfACycleOverTheLongestRecord) {
     const auto strongest = hotfire::explain::strongest_frequencies(data, prediction, 0, 1);
     CHECK_EQUAL(std::size_t{1}, strongest.size());
     const auto sharpened = hotfire::explain::sharpened_frequencies(data, prediction, 0, strongest);
-    constexpr double kLongest = 30000 * kPeriod;
+    constexpr double kLongest = 30000 * kSpectrumPeriod;
     DOUBLES_EQUAL(frequency, sharpened.front(), 0.05 / kLongest);
   }
 }

@@ -9,8 +9,8 @@
 
 namespace {
 
-constexpr double kPeriod = 0.001;
-constexpr double kNoise = 1e-7;
+constexpr double kStartStatePeriod = 0.001;
+constexpr double kStartStateNoise = 1e-7;
 
 /// A mass of 95 kg with an undeclared constant friction of 20 N, under a force that jumps to 90 N and rises: closed form.
 struct Pushed {
@@ -21,7 +21,7 @@ struct Pushed {
     std::mt19937_64 generator(7);
     std::normal_distribution<double> normal(0.0, noise);
     for (int row = 0; row < 200; ++row) {
-      const double t = row * kPeriod;
+      const double t = row * kStartStatePeriod;
       force.push_back(90.0 + 2000.0 * t);
       position.push_back(0.1 + velocity * t + (70.0 * t * t / 2 + 2000.0 * t * t * t / 6) / 95.0 + normal(generator));
     }
@@ -33,7 +33,7 @@ hotfire::explain::StartState start_of(const Pushed& pushed) {
   mass.mass.inertia = 95.0;
   mass.mass.damping = 0.0;
   mass.mass.stiffness = 0.0;
-  return hotfire::explain::start_state(mass, pushed.force, pushed.position, kPeriod, kNoise);
+  return hotfire::explain::start_state(mass, pushed.force, pushed.position, kStartStatePeriod, kStartStateNoise);
 }
 
 }  // namespace
@@ -41,15 +41,15 @@ hotfire::explain::StartState start_of(const Pushed& pushed) {
 TEST_GROUP(StartState){};
 
 TEST(StartState, AMassThatMovesAtTheFirstRowIsFoundMovingWithinFourStandardErrors) {
-  const auto start = start_of(Pushed(0.0065, kNoise));
+  const auto start = start_of(Pushed(0.0065, kStartStateNoise));
   CHECK(start.moves());
   CHECK(std::abs(start.velocity - 0.0065) < 4.0 * start.velocity_error);
   CHECK(std::abs(start.position - 0.1) < 4.0 * start.position_error);
   // Twenty rows and a free constant force: 192 noise / (n^3)^(1/2) / period bounds the slope's error of a parabola fit.
-  CHECK(start.velocity_error < 192.0 * kNoise / std::sqrt(8000.0) / kPeriod);
+  CHECK(start.velocity_error < 192.0 * kStartStateNoise / std::sqrt(8000.0) / kStartStatePeriod);
 }
 
-TEST(StartState, AMassThatIsPushedFromRestIsNotTakenToMove) { CHECK(!start_of(Pushed(0.0, kNoise)).moves()); }
+TEST(StartState, AMassThatIsPushedFromRestIsNotTakenToMove) { CHECK(!start_of(Pushed(0.0, kStartStateNoise)).moves()); }
 
 TEST(StartState, ARecordOfFewRowsTakesItsFirstRowAsPosition) {
   Pushed pushed(0.0, 0.0);

@@ -13,7 +13,7 @@ using namespace hotfire::explain;
 
 namespace {
 
-constexpr double kNoise = 8e-6;
+constexpr double kZerosNoise = 8e-6;
 constexpr double kDeviation = 1e-3;
 constexpr std::size_t kRows = 600;
 
@@ -22,7 +22,7 @@ Dataset moving_axis(double deviation) {
   Dataset data;
   data.channels = {"piston", "engine", "load_pressure"};
   data.used = {true, true, false};
-  data.noise = {kNoise, 6e-5, 1.0};
+  data.noise = {kZerosNoise, 6e-5, 1.0};
   data.noise_source.assign(3, NoiseSource::declared);
   Experiment experiment;
   experiment.name = "smooth";
@@ -65,13 +65,13 @@ TEST(Zeros, AChannelThatReadsOffIsMetByItsZeroOnHeldOutRowsToo) {
   Prediction prediction;
   Zeros zeros;
   CHECK_TRUE(Evaluator<SimplexFamily>(data, Resolution::fine).predict({}, {}, {}, 1, prediction, zeros));
-  DOUBLES_EQUAL(5e-4, zeros[0][0], 4.0 * kNoise / std::sqrt(500.0));
+  DOUBLES_EQUAL(5e-4, zeros[0][0], 4.0 * kZerosNoise / std::sqrt(500.0));
   const Experiment& experiment = data.experiments.front();
   double square = 0.0;
   for (std::size_t i = 200; i < 300; ++i) {
     square += std::pow(experiment.measured[0][i] - prediction[0][0][i], 2);
   }
-  DOUBLES_EQUAL(kNoise, std::sqrt(square / 100.0), 0.3 * kNoise);
+  DOUBLES_EQUAL(kZerosNoise, std::sqrt(square / 100.0), 0.3 * kZerosNoise);
 }
 
 /// Whitened by its prior, a zero of z deviations costs z^2 beside what the noise costs (completed square), however many rows
@@ -132,6 +132,6 @@ TEST(Zeros, AShiftThatAZeroCanBeIsNotIdentified) {
     CHECK_TRUE(other.predict({}, {}, {}, 1, prediction));
     shift[i++] = other.residuals(prediction) - before;
   }
-  const double expected = 1.0 / std::sqrt(1.0 + 500.0 * std::pow(kDeviation / kNoise, 2));
+  const double expected = 1.0 / std::sqrt(1.0 + 500.0 * std::pow(kDeviation / kZerosNoise, 2));
   DOUBLES_EQUAL(expected, shift[0].norm() / shift[1].norm(), 0.01 * expected);
 }

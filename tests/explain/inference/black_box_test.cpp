@@ -12,9 +12,9 @@ using namespace hotfire::explain;
 
 namespace {
 
-constexpr double kPeriod = 2e-3;
-constexpr std::size_t kRows = 8000;
-constexpr double kNoise = 1e-3;
+constexpr double kBlackBoxPeriod = 2e-3;
+constexpr std::size_t kBlackBoxRows = 8000;
+constexpr double kBlackBoxNoise = 1e-3;
 constexpr std::size_t kLate = 7;
 
 /// Two records of a lightly damped second-order lag of 5 Hz that answers `kLate` rows late, each with a zero of its own.
@@ -22,16 +22,16 @@ Dataset lagging() {
   Dataset data;
   data.channels = {"piston"};
   data.used = {true};
-  data.noise = {kNoise};
+  data.noise = {kBlackBoxNoise};
   data.noise_source = {NoiseSource::declared};
   std::mt19937_64 generator(11);
   std::normal_distribution<double> normal(0.0, 1.0);
   for (int e = 0; e < 2; ++e) {
     Experiment experiment;
     experiment.name = "lagging";
-    experiment.period = kPeriod;
-    for (std::size_t i = 0; i < kRows; ++i) {
-      const double time = static_cast<double>(i) * kPeriod;
+    experiment.period = kBlackBoxPeriod;
+    for (std::size_t i = 0; i < kBlackBoxRows; ++i) {
+      const double time = static_cast<double>(i) * kBlackBoxPeriod;
       experiment.input.push_back(std::sin(2.0 * time * (1.0 + time)) + (i / 1000 % 2 == 0 ? 0.3 : -0.2));
     }
     const double natural = 2.0 * 3.141592653589793 * 5.0;
@@ -39,18 +39,18 @@ Dataset lagging() {
     double v = 0.0;
     std::vector<double> measured;
     constexpr int kSteps = 50;
-    for (std::size_t i = 0; i < kRows; ++i) {
-      measured.push_back(x + (e == 0 ? 0.5 : -0.2) + kNoise * normal(generator));
+    for (std::size_t i = 0; i < kBlackBoxRows; ++i) {
+      measured.push_back(x + (e == 0 ? 0.5 : -0.2) + kBlackBoxNoise * normal(generator));
       const double command = experiment.input[i >= kLate ? i - kLate : 0];
       for (int k = 0; k < kSteps; ++k) {
-        v += kPeriod / kSteps * natural * (natural * (command - x) - 0.4 * v);
-        x += kPeriod / kSteps * v;
+        v += kBlackBoxPeriod / kSteps * natural * (natural * (command - x) - 0.4 * v);
+        x += kBlackBoxPeriod / kSteps * v;
       }
     }
     experiment.measured = {std::move(measured)};
     experiment.noise = data.noise;
     experiment.zero_deviation = {1.0};
-    experiment.fitted = {{0, 2000}, {3000, kRows}};
+    experiment.fitted = {{0, 2000}, {3000, kBlackBoxRows}};
     experiment.held_out = {{2000, 3000}};
     data.experiments.push_back(std::move(experiment));
   }
@@ -70,15 +70,15 @@ TEST(BlackBox, ALinearRigIsMetDownToItsNoiseWithItsOrderAndItsDelay) {
   LONGS_EQUAL(2, box.channels[0]->order());
   LONGS_EQUAL(kLate + 1, box.channels[0]->delay);
   const Goodness reached = goodness(data, simulated(box, data));
-  CHECK(reached.held_out[0].rms < 1.1 * kNoise);
-  CHECK(reached.held_out[0].rms > 0.9 * kNoise);
+  CHECK(reached.held_out[0].rms < 1.1 * kBlackBoxNoise);
+  CHECK(reached.held_out[0].rms > 0.9 * kBlackBoxNoise);
 }
 
 // Fitted to the next row instead, the same equation with this noise has poles that are far too fast.
 TEST(BlackBox, AnOrderThatIsNotThereIsNotTaken) {
   Dataset data = lagging();
   for (Experiment& experiment : data.experiments) {
-    for (std::size_t i = 0; i < kRows; ++i) {
+    for (std::size_t i = 0; i < kBlackBoxRows; ++i) {
       experiment.measured[0][i] = 2.0 * experiment.input[i >= 3 ? i - 3 : 0];
     }
   }

@@ -14,7 +14,7 @@ using test::refusal;
 
 namespace {
 
-std::string refused(const std::string& text) {
+std::string refused_dbc(const std::string& text) {
   return refusal([&] { read_dbc(text, "rig.dbc"); });
 }
 
@@ -96,12 +96,12 @@ TEST(Dbc, what_is_wrong_is_refused_with_file_and_line) {
   const auto refused_signal = [](const std::string& signal, const std::string& after = "") {
     return refusal([&] { with_signal(signal, after); });
   };
-  expect_message(refused("\x7F"
-                         "ELF"),
+  expect_message(refused_dbc("\x7F"
+                             "ELF"),
                  {"rig.dbc: no message; a DBC file has lines like BO_"});
-  expect_message(refused("BO_ 256 A 8\n"), {"rig.dbc:1: not a message; allowed: BO_ id name: length sender"});
-  expect_message(refused("BO_ 3000 A: 8 X\n"), {"rig.dbc:1: A: id 3000; allowed: 0 to 2047"});
-  expect_message(refused("BO_ 1 A: 8 X\nBO_ 1 B: 8 X\n"), {"rig.dbc:2: B: its name or its id 1 is used before"});
+  expect_message(refused_dbc("BO_ 256 A 8\n"), {"rig.dbc:1: not a message; allowed: BO_ id name: length sender"});
+  expect_message(refused_dbc("BO_ 3000 A: 8 X\n"), {"rig.dbc:1: A: id 3000; allowed: 0 to 2047"});
+  expect_message(refused_dbc("BO_ 1 A: 8 X\nBO_ 1 B: 8 X\n"), {"rig.dbc:2: B: its name or its id 1 is used before"});
   expect_message(refused_signal("s : 60|8@1+ (1,0) [0|0] \"\" X"), {"rig.dbc:2: s: bits 60 to 67 of a frame of 64"});
   expect_message(refused_signal("s : 56|16@0+ (1,0) [0|0] \"\" X"), {"rig.dbc:2: s: bits 63 to 78 of a frame of 64"});
   expect_message(refused_signal("s : 0|8@1+ (0,0) [0|0] \"\" X"), {"rig.dbc:2: s: factor 0"});
@@ -112,7 +112,7 @@ TEST(Dbc, what_is_wrong_is_refused_with_file_and_line) {
                  {"rig.dbc:3: s: 8 bits; allowed: 32 for single"});
   expect_message(refused_signal("s : 0|8@1+ (1,0) [0|0] \"\" X", "SIG_VALTYPE_ 257 s : 1;\n"),
                  {"rig.dbc:3: of message 257, which is none"});
-  expect_message(refused("BO_ 1 A: 8 X\nCM_ \"begun\n\n"), {"rig.dbc:2: a text begins here that never ends"});
+  expect_message(refused_dbc("BO_ 1 A: 8 X\nCM_ \"begun\n\n"), {"rig.dbc:2: a text begins here that never ends"});
   expect_message(refused_signal("s : 0|8@1+ (1,0) [0|0 \"\" X"), {"rig.dbc:2: not a signal"});
   expect_message(refused_signal("s : 0|8@1+ (1,0) [0|0] \"\" X", "SG_MUL_VAL_ 256 s which ;\n"),
                  {"rig.dbc:3: not multiplexing"});
@@ -121,9 +121,9 @@ TEST(Dbc, what_is_wrong_is_refused_with_file_and_line) {
 
 TEST(Dbc, line_of_100_kB_is_refused_with_its_line_and_the_limit) {
   const std::string unit(100'000, 'x');
-  expect_message(refused("BO_ 256 A: 8 X\n SG_ s : 0|8@1+ (1,0) [0|0] \"" + unit + "\" X\n"),
+  expect_message(refused_dbc("BO_ 256 A: 8 X\n SG_ s : 0|8@1+ (1,0) [0|0] \"" + unit + "\" X\n"),
                  {"rig.dbc:2: a line of 1000", "allowed: up to 65536"});
-  expect_message(refused("BO_ 256 A: 8 X\nCM_ \"" + unit + "\";\n"),
+  expect_message(refused_dbc("BO_ 256 A: 8 X\nCM_ \"" + unit + "\";\n"),
                  {"rig.dbc:2: a line of 100007", "allowed: up to 65536"});
 }
 
@@ -132,7 +132,7 @@ TEST(Dbc, line_up_to_its_limit_is_read) {
   const std::string after = "\" X";
   const std::string unit(65536 - 5 - before.size() - after.size(), 'x');
   STRCMP_EQUAL(unit.c_str(), with_signal(before + unit + after).messages.front().signals.front().unit.c_str());
-  expect_message(refused("BO_ 256 A: 8 X\n SG_ " + before + unit + "x" + after), {"rig.dbc:2: a line of 65537"});
+  expect_message(refused_dbc("BO_ 256 A: 8 X\n SG_ " + before + unit + "x" + after), {"rig.dbc:2: a line of 65537"});
 }
 
 TEST(Dbc, more_messages_or_signals_than_any_file_has_are_refused_where_they_begin) {
@@ -140,13 +140,13 @@ TEST(Dbc, more_messages_or_signals_than_any_file_has_are_refused_where_they_begi
   for (int id = 0; id <= 10'000; ++id) {
     messages += "BO_ " + std::to_string(0x80000000U + static_cast<unsigned>(id)) + " M" + std::to_string(id) + ": 8 X\n";
   }
-  expect_message(refused(messages), {"rig.dbc:10001: more than 10000 messages"});
+  expect_message(refused_dbc(messages), {"rig.dbc:10001: more than 10000 messages"});
   std::string signals = "BO_ 256 A: 8 X\n";
   for (int i = 0; i <= 1024; ++i) {
     signals += " SG_ s" + std::to_string(i) + " : 0|8@1+ (1,0) [0|0] \"\" X\n";
   }
-  expect_message(refused(signals), {"rig.dbc:1026: A: more than 1024 signals"});
-  expect_message(refused(std::string((16U << 20U) + 1, '\n')), {"rig.dbc:1: over 16777216 bytes"});
+  expect_message(refused_dbc(signals), {"rig.dbc:1026: A: more than 1024 signals"});
+  expect_message(refused_dbc(std::string((16U << 20U) + 1, '\n')), {"rig.dbc:1: over 16777216 bytes"});
 }
 
 }  // namespace hotfire

@@ -17,7 +17,7 @@ using Clock = hal::sim::ManualClock;
 using Controller = ControllerBus<Wire::Node, Clock>;
 static_assert(hal::PlantBus<Controller>);
 
-constexpr std::int64_t kMillisecond = 1'000'000;
+constexpr std::int64_t kControllerBusMillisecond = 1'000'000;
 constexpr std::size_t kActuators = 8;
 
 /// Frames that came at made-up times.
@@ -29,7 +29,7 @@ class ListedFrames {
       return false;
     }
     frame = frames[next];
-    arrival_ns = static_cast<std::int64_t>(++next) * kMillisecond;
+    arrival_ns = static_cast<std::int64_t>(++next) * kControllerBusMillisecond;
     return true;
   }
   void add(std::uint8_t counter, bool damaged = false) {
@@ -52,8 +52,8 @@ TEST_GROUP(CanControllerBus) {
   NodeIds of_plant = plant_ids(Layout::fd, kActuators);
   Wire::Node node{wire, own.subscriptions, own.senders};
   Wire::Node plant_node{wire, of_plant.subscriptions, of_plant.senders};
-  Controller controller{node, clock, {Layout::fd, kActuators, 5.0, kMillisecond}};
-  PlantBus<Wire::Node, Clock> plant{plant_node, clock, {Layout::fd, kActuators, 1, 5.0, kMillisecond}};
+  Controller controller{node, clock, {Layout::fd, kActuators, 5.0, kControllerBusMillisecond}};
+  PlantBus<Wire::Node, Clock> plant{plant_node, clock, {Layout::fd, kActuators, 1, 5.0, kControllerBusMillisecond}};
   hal::Command pistons;
 };
 
@@ -108,7 +108,7 @@ TEST(CanSyncSource, NewestSyncIsGivenAndTheOlderOnesAreCounted) {
   frames.add(255);
   frames.add(0);
   CHECK(source.wait_for_sync(0, sync));
-  LONGS_EQUAL(3 * kMillisecond, sync.arrival_ns);
+  LONGS_EQUAL(3 * kControllerBusMillisecond, sync.arrival_ns);
   UNSIGNED_LONGS_EQUAL(2, sync.superseded);
   CHECK(!source.wait_for_sync(0, sync));
 }
@@ -119,32 +119,33 @@ TEST(CanSyncSource, DamagedOrRepeatedFrameIsNoSync) {
   frames.add(8);
   frames.add(8);
   CHECK(source.wait_for_sync(0, sync));
-  LONGS_EQUAL(2 * kMillisecond, sync.arrival_ns);
+  LONGS_EQUAL(2 * kControllerBusMillisecond, sync.arrival_ns);
   UNSIGNED_LONGS_EQUAL(0, sync.superseded);
 }
 
 TEST_GROUP(CanBusLoad){};
 
 TEST(CanBusLoad, ClassicLayoutFitsAMegabitAndNotHalfOfIt) {
-  CHECK(bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6) < hal::kLargestBusLoad);
-  CHECK(bus_load(Layout::classic, 2, kMillisecond, 500e3, 500e3) > hal::kLargestBusLoad);
-  CHECK(bus_load(Layout::fd, 8, kMillisecond, 1e6, 5e6) < hal::kLargestBusLoad);
+  CHECK(bus_load(Layout::classic, 2, kControllerBusMillisecond, 1e6, 1e6) < hal::kLargestBusLoad);
+  CHECK(bus_load(Layout::classic, 2, kControllerBusMillisecond, 500e3, 500e3) > hal::kLargestBusLoad);
+  CHECK(bus_load(Layout::fd, 8, kControllerBusMillisecond, 1e6, 5e6) < hal::kLargestBusLoad);
   // The figures of docs/can-map.md.
-  DOUBLES_EQUAL(0.471, bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6), 5e-4);
-  DOUBLES_EQUAL(0.661, bus_load(Layout::classic_split, 2, kMillisecond, 1e6, 1e6), 5e-4);
-  DOUBLES_EQUAL(0.361, bus_load(Layout::fd, 8, kMillisecond, 1e6, 5e6), 5e-4);
-  DOUBLES_EQUAL(0.467, bus_load(Layout::fd_split, 8, kMillisecond, 1e6, 5e6), 5e-4);
+  DOUBLES_EQUAL(0.471, bus_load(Layout::classic, 2, kControllerBusMillisecond, 1e6, 1e6), 5e-4);
+  DOUBLES_EQUAL(0.661, bus_load(Layout::classic_split, 2, kControllerBusMillisecond, 1e6, 1e6), 5e-4);
+  DOUBLES_EQUAL(0.361, bus_load(Layout::fd, 8, kControllerBusMillisecond, 1e6, 5e6), 5e-4);
+  DOUBLES_EQUAL(0.467, bus_load(Layout::fd_split, 8, kControllerBusMillisecond, 1e6, 5e6), 5e-4);
   const double strings = 2.0 * hal::longest_classic_frame(8, 1e6) / 4e-3;
-  DOUBLES_EQUAL(bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6) + strings,
-                bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6, {.strings = true}), 1e-12);
+  DOUBLES_EQUAL(bus_load(Layout::classic, 2, kControllerBusMillisecond, 1e6, 1e6) + strings,
+                bus_load(Layout::classic, 2, kControllerBusMillisecond, 1e6, 1e6, {.strings = true}), 1e-12);
   // Load pressures once a period, however often the map says.
   const double pressures = hal::longest_classic_frame(8, 1e6) / 2e-3;
-  DOUBLES_EQUAL(bus_load(Layout::classic_split, 2, 2 * kMillisecond, 1e6, 1e6) + pressures,
-                bus_load(Layout::classic_split, 2, 2 * kMillisecond, 1e6, 1e6, {.load_pressure = true}), 1e-12);
-  DOUBLES_EQUAL(0.796, bus_load(Layout::classic_split, 2, kMillisecond, 1e6, 1e6, {.load_pressure = true}), 5e-4);
-  DOUBLES_EQUAL(0.606, bus_load(Layout::classic, 2, kMillisecond, 1e6, 1e6, {.load_pressure = true}), 5e-4);
-  DOUBLES_EQUAL(0.499, bus_load(Layout::fd, 8, kMillisecond, 1e6, 5e6, {.load_pressure = true}), 5e-4);
-  DOUBLES_EQUAL(0.604, bus_load(Layout::fd_split, 8, kMillisecond, 1e6, 5e6, {.load_pressure = true}), 5e-4);
+  DOUBLES_EQUAL(bus_load(Layout::classic_split, 2, 2 * kControllerBusMillisecond, 1e6, 1e6) + pressures,
+                bus_load(Layout::classic_split, 2, 2 * kControllerBusMillisecond, 1e6, 1e6, {.load_pressure = true}), 1e-12);
+  DOUBLES_EQUAL(0.796, bus_load(Layout::classic_split, 2, kControllerBusMillisecond, 1e6, 1e6, {.load_pressure = true}),
+                5e-4);
+  DOUBLES_EQUAL(0.606, bus_load(Layout::classic, 2, kControllerBusMillisecond, 1e6, 1e6, {.load_pressure = true}), 5e-4);
+  DOUBLES_EQUAL(0.499, bus_load(Layout::fd, 8, kControllerBusMillisecond, 1e6, 5e6, {.load_pressure = true}), 5e-4);
+  DOUBLES_EQUAL(0.604, bus_load(Layout::fd_split, 8, kControllerBusMillisecond, 1e6, 5e6, {.load_pressure = true}), 5e-4);
 }
 
 }  // namespace hotfire::firmware::can

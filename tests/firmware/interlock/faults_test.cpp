@@ -15,7 +15,7 @@ namespace hotfire::firmware {
 
 namespace {
 
-constexpr double kPeriod = 1e-3;
+constexpr double kFaultsPeriod = 1e-3;
 constexpr ActuatorLimits kActuatorLimits{3'000'000, -0.1, 0.1, 1000.0};
 constexpr FaultLimits kLimits = [] {
   FaultLimits limits{5'000'000, -0.2, 0.2, 1e-3, 1.0, 0.01, 20, 5, 3};
@@ -40,7 +40,7 @@ std::vector<std::string> sections() {
 }  // namespace
 
 TEST_GROUP(Faults) {
-  FaultChecks checks{kLimits, kPeriod};
+  FaultChecks checks{kLimits, kFaultsPeriod};
   ObservedRig rig;
   std::vector<ObservedActuator> actuators{8};
 
@@ -138,7 +138,7 @@ TEST(Faults, PositionCommandAndItsRateAreLimited) {
 TEST(Faults, EveryActuatorHasItsOwnLimitsOfPositionSpeedAndAge) {
   FaultLimits own = kLimits;
   own.actuators[3] = {1'000'000, -0.01, 0.02, 0.5};
-  checks = FaultChecks(own, kPeriod);
+  checks = FaultChecks(own, kFaultsPeriod);
   for (const std::size_t i : {2, 3}) {
     const bool narrow = i == 3;
     actuators[i].readings = {0.03, 0.03};
@@ -156,12 +156,12 @@ TEST(Faults, MeasuredSpeedIsThatOverItsTimeAndLimited) {
   FaultLimits own = kLimits;
   own.actuators[1].speed = 0.5;
   own.position_error = 1.0;
-  checks = FaultChecks(own, kPeriod);
+  checks = FaultChecks(own, kFaultsPeriod);
   const auto move = [&](double speed, int cycles) {
     FaultSet found;
     for (int i = 0; i < cycles; ++i) {
       for (double& reading : actuators[1].readings) {
-        reading += speed * kPeriod;
+        reading += speed * kFaultsPeriod;
       }
       found |= checks.look(rig, actuators);
     }
@@ -186,7 +186,7 @@ TEST(Faults, LoadPressureOfEveryActuatorHasItsOwnLimitEitherWayAndAnAge) {
     own.actuators[i].load_pressure = 1e6 * static_cast<double>(i + 1);
   }
   CHECK(own.has_load_pressure());
-  checks = FaultChecks(own, kPeriod);
+  checks = FaultChecks(own, kFaultsPeriod);
   for (std::size_t i = 0; i < hal::kMaxActuators; ++i) {
     for (const double way : {1.0, -1.0}) {
       actuators[i].load_pressure = way * own.actuators[i].load_pressure;

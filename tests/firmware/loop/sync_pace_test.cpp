@@ -14,7 +14,7 @@ using test::ScriptedWorld;
 
 namespace {
 
-constexpr std::int64_t kPeriod = ScriptedWorld::kPeriodNs;
+constexpr std::int64_t kSyncPacePeriod = ScriptedWorld::kPeriodNs;
 using Syncs = hal::sim::SimulatedSyncSource<hal::sim::ManualClock>;
 using Pace = SyncPace<hal::sim::ManualClock, Syncs>;
 
@@ -45,14 +45,14 @@ TEST_GROUP(SyncPace) {
   std::uint64_t silent_from = ~std::uint64_t{0};
   std::uint64_t silent_to = ~std::uint64_t{0};
   std::uint64_t most_missed = 5;
-  std::int64_t patience = kPeriod / 2;
+  std::int64_t patience = kSyncPacePeriod / 2;
 
-  LoopResult run_locked(const LoopSettings& settings, std::int64_t sync_period_ns = kPeriod) {
+  LoopResult run_locked(const LoopSettings& settings, std::int64_t sync_period_ns = kSyncPacePeriod) {
     Syncs syncs(world.clock, sync_period_ns);
     SilencingPlant plant(world, syncs, silent_from, silent_to);
     ScriptedBus bus(world);
     const auto loop = std::make_unique<Loop<SilencingPlant, ScriptedBus, hal::sim::ManualClock, Pace>>(
-        plant, bus, world.clock, settings, Pace(world.clock, syncs, kPeriod, most_missed, patience), nullptr);
+        plant, bus, world.clock, settings, Pace(world.clock, syncs, kSyncPacePeriod, most_missed, patience), nullptr);
     loop->run(false, []() noexcept {});
     return loop->result();
   }
@@ -61,8 +61,8 @@ TEST_GROUP(SyncPace) {
 // The rig's period is a thousandth longer than the loop's: a loop on its own clock would drift a period in a thousand
 // cycles.
 TEST(SyncPace, CyclesFollowTheSyncsAndNotTheLoopsOwnPeriod) {
-  const std::int64_t rig_period = kPeriod + 1000;
-  const LoopResult result = run_locked({kPeriod, 3000, 0, OverrunPolicy::catch_up}, rig_period);
+  const std::int64_t rig_period = kSyncPacePeriod + 1000;
+  const LoopResult result = run_locked({kSyncPacePeriod, 3000, 0, OverrunPolicy::catch_up}, rig_period);
   UNSIGNED_LONGS_EQUAL(3000, result.account.cycles());
   UNSIGNED_LONGS_EQUAL(0, result.missed_syncs);
   UNSIGNED_LONGS_EQUAL(0, result.account.overruns());
@@ -71,49 +71,49 @@ TEST(SyncPace, CyclesFollowTheSyncsAndNotTheLoopsOwnPeriod) {
 
 TEST(SyncPace, LatencyIsCountedFromTheArrivalOfTheSync) {
   world.delays[7].wake_up_ns = 123'000;
-  LONGS_EQUAL(123'000, run_locked({kPeriod, 20, 0, OverrunPolicy::catch_up}).account.latency().greatest_ns());
+  LONGS_EQUAL(123'000, run_locked({kSyncPacePeriod, 20, 0, OverrunPolicy::catch_up}).account.latency().greatest_ns());
 }
 
 TEST(SyncPace, MissedSyncIsCountedAndItsCycleRunWithoutIt) {
   silent_from = 10;
   silent_to = 13;
-  const LoopResult result = run_locked({kPeriod, 100, 0, OverrunPolicy::catch_up});
+  const LoopResult result = run_locked({kSyncPacePeriod, 100, 0, OverrunPolicy::catch_up});
   CHECK(result.ending == Ending::completed);
   UNSIGNED_LONGS_EQUAL(3, result.missed_syncs);
   UNSIGNED_LONGS_EQUAL(100, result.account.cycles());
   // No period was lost: the hundredth cycle comes with the hundredth sync.
-  LONGS_EQUAL(100 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
+  LONGS_EQUAL(100 * kSyncPacePeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
 }
 
 TEST(SyncPace, MoreThanTheMostMissedInARowEndTheLoop) {
   silent_from = 10;
-  const LoopResult result = run_locked({kPeriod, 100, 0, OverrunPolicy::catch_up});
+  const LoopResult result = run_locked({kSyncPacePeriod, 100, 0, OverrunPolicy::catch_up});
   CHECK(result.ending == Ending::sync_lost);
   UNSIGNED_LONGS_EQUAL(most_missed + 1, result.missed_syncs);
 }
 
 TEST(SyncPace, PatienceWaitsForALateSyncInsteadOfRunningItsCycleWithoutIt) {
-  patience = 300 * kPeriod;
-  const LoopResult result = run_locked({kPeriod, 10, 0, OverrunPolicy::catch_up}, 250 * kPeriod);
+  patience = 300 * kSyncPacePeriod;
+  const LoopResult result = run_locked({kSyncPacePeriod, 10, 0, OverrunPolicy::catch_up}, 250 * kSyncPacePeriod);
   UNSIGNED_LONGS_EQUAL(10, result.account.cycles());
   UNSIGNED_LONGS_EQUAL(0, result.missed_syncs);
-  LONGS_EQUAL(10 * 250 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
+  LONGS_EQUAL(10 * 250 * kSyncPacePeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
 }
 
 TEST(SyncPace, CatchUpRunsACycleForEverySyncThatCameDuringAnOverrun) {
-  world.delays[3].step_ns = 3 * kPeriod + 500'000;
-  const LoopResult result = run_locked({kPeriod, 10, 0, OverrunPolicy::catch_up});
+  world.delays[3].step_ns = 3 * kSyncPacePeriod + 500'000;
+  const LoopResult result = run_locked({kSyncPacePeriod, 10, 0, OverrunPolicy::catch_up});
   UNSIGNED_LONGS_EQUAL(10, result.account.cycles());
   UNSIGNED_LONGS_EQUAL(0, result.missed_syncs);
   UNSIGNED_LONGS_EQUAL(1, result.account.blamed(Blame::step));
-  LONGS_EQUAL(10 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
+  LONGS_EQUAL(10 * kSyncPacePeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
 }
 
 TEST(SyncPace, SkipLeavesOutTheSyncsThatCameDuringAnOverrun) {
-  world.delays[3].step_ns = 3 * kPeriod + 500'000;
-  const LoopResult result = run_locked({kPeriod, 10, 0, OverrunPolicy::skip});
+  world.delays[3].step_ns = 3 * kSyncPacePeriod + 500'000;
+  const LoopResult result = run_locked({kSyncPacePeriod, 10, 0, OverrunPolicy::skip});
   UNSIGNED_LONGS_EQUAL(3, result.skipped);
-  LONGS_EQUAL(13 * kPeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
+  LONGS_EQUAL(13 * kSyncPacePeriod + 3 * ScriptedWorld::kPhaseNs, world.clock.now_ns());
 }
 
 namespace {
@@ -133,22 +133,22 @@ struct OneSync {
 }  // namespace
 
 TEST(SyncPace, SyncThatCameAfterTheWritingIsNotOverdueAndHasItsCycle) {
-  OneSync source{kPeriod};
-  SyncPace<hal::sim::ManualClock, OneSync> pace(world.clock, source, kPeriod, most_missed, patience);
+  OneSync source{kSyncPacePeriod};
+  SyncPace<hal::sim::ManualClock, OneSync> pace(world.clock, source, kSyncPacePeriod, most_missed, patience);
   Wake wake;
   CHECK(pace.wait(wake));
-  source.arrival_ns = 5 * kPeriod;
-  UNSIGNED_LONGS_EQUAL(0, pace.drop_overdue(4 * kPeriod));
+  source.arrival_ns = 5 * kSyncPacePeriod;
+  UNSIGNED_LONGS_EQUAL(0, pace.drop_overdue(4 * kSyncPacePeriod));
   CHECK(pace.wait(wake));
-  LONGS_EQUAL(5 * kPeriod, wake.release_ns);
-  source.arrival_ns = 6 * kPeriod;
-  UNSIGNED_LONGS_EQUAL(1, pace.drop_overdue(7 * kPeriod));
+  LONGS_EQUAL(5 * kSyncPacePeriod, wake.release_ns);
+  source.arrival_ns = 6 * kSyncPacePeriod;
+  UNSIGNED_LONGS_EQUAL(1, pace.drop_overdue(7 * kSyncPacePeriod));
 }
 
 TEST(SyncPace, LoopThatWaitsForItsFirstSyncCanBeAskedToStop) {
-  Syncs syncs(world.clock, kPeriod);
+  Syncs syncs(world.clock, kSyncPacePeriod);
   syncs.set_silent(true);
-  Pace pace(world.clock, syncs, kPeriod, most_missed, patience);
+  Pace pace(world.clock, syncs, kSyncPacePeriod, most_missed, patience);
   Wake wake;
   CHECK(!pace.wait(wake));
   LONGS_EQUAL(Pace::kLongestWaitNs, world.clock.now_ns());
@@ -174,22 +174,22 @@ struct LateAnswers {
 TEST_GROUP(LockstepPace) {
   hal::sim::ManualClock clock;
   LateAnswers answers{clock};
-  LockstepPace<hal::sim::ManualClock, LateAnswers> pace{clock, answers, kPeriod};
+  LockstepPace<hal::sim::ManualClock, LateAnswers> pace{clock, answers, kSyncPacePeriod};
   Wake wake;
 };
 
 TEST(LockstepPace, CyclesOfAQuickPlantAreAPeriodApart) {
   for (int cycle = 0; cycle < 5; ++cycle) {
     CHECK(pace.wait(wake));
-    LONGS_EQUAL(cycle * kPeriod, wake.release_ns);
+    LONGS_EQUAL(cycle * kSyncPacePeriod, wake.release_ns);
   }
 }
 
 TEST(LockstepPace, NoCycleBeginsBeforeTheAnswerToTheLastOne) {
   CHECK(pace.wait(wake));
-  answers.after_ns = 3 * kPeriod;
+  answers.after_ns = 3 * kSyncPacePeriod;
   CHECK(pace.wait(wake));
-  LONGS_EQUAL(3 * kPeriod, wake.release_ns);
+  LONGS_EQUAL(3 * kSyncPacePeriod, wake.release_ns);
   CHECK(!wake.slept);
   answers.silent = true;
   CHECK(!pace.wait(wake));

@@ -22,7 +22,7 @@ using test::Masv;
 using test::Taos;
 using Rows = std::vector<std::vector<double>>;
 
-constexpr double kPeriod = 1e-3;
+constexpr double kVehiclePlantPeriod = 1e-3;
 constexpr std::int64_t kPeriodNs = 1'000'000;
 constexpr std::size_t kChannels = Masv::kChannels;
 
@@ -43,12 +43,12 @@ using MasvLoop = Loop<VehiclePlant<Masv>, hal::sim::SimulatedPlantBus, hal::sim:
 Rows played(const std::vector<PlayedFault>& faults) {
   model::InstrumentedVehicle<Taos> rig;
   rig.vehicle = test::hot_fire<Taos>();
-  const auto plant = std::make_unique<VehiclePlant<Taos>>(rig, kPeriod, faults);
+  const auto plant = std::make_unique<VehiclePlant<Taos>>(rig, kVehiclePlantPeriod, faults);
   Rows rows;
   hal::Command command;
   for (int cycle = 0; cycle < 400; ++cycle) {
-    command.values[0] = 0.02 * std::sin(20.0 * cycle * kPeriod);
-    command.values[1] = 0.015 * std::sin(31.0 * cycle * kPeriod);
+    command.values[0] = 0.02 * std::sin(20.0 * cycle * kVehiclePlantPeriod);
+    command.values[1] = 0.015 * std::sin(31.0 * cycle * kVehiclePlantPeriod);
     plant->step(command);
     rows.emplace_back(plant->measured().begin(), plant->measured().end());
   }
@@ -91,18 +91,18 @@ TEST(VehiclePlant, LoopGivesTheBitsOfOfflineStepping) {
   const hal::sim::CommandSource source{hal::sim::CommandSource::Shape::steps, 0.01, 1.2};
   const hal::FlushDenormals flush;
   const auto rig = hot_masv();
-  const auto plant = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
-  hal::sim::SimulatedPlantBus bus(source, kPeriod);
+  const auto plant = std::make_unique<VehiclePlant<Masv>>(*rig, kVehiclePlantPeriod);
+  hal::sim::SimulatedPlantBus bus(source, kVehiclePlantPeriod);
   hal::sim::ManualClock clock;
   const auto loop =
       std::make_unique<MasvLoop>(*plant, bus, clock, LoopSettings{kPeriodNs, kCycles - 50, 50, OverrunPolicy::catch_up});
   loop->run(false, [&]() noexcept { clock.delay_next_wake_up_ns(3 * kPeriodNs); });
 
-  const auto vehicle = std::make_unique<Masv>(rig->vehicle, kPeriod / 2);
+  const auto vehicle = std::make_unique<Masv>(rig->vehicle, kVehiclePlantPeriod / 2);
   const auto state = std::make_unique<Masv::State>(vehicle->steady({}));
   Masv::Inputs inputs;
   for (std::uint64_t cycle = 0; cycle < kCycles; ++cycle) {
-    inputs.commands.fill(source.at(static_cast<double>(cycle) * kPeriod));
+    inputs.commands.fill(source.at(static_cast<double>(cycle) * kVehiclePlantPeriod));
     vehicle->step(*state, inputs);
     vehicle->step(*state, inputs);
   }
@@ -121,9 +121,9 @@ TEST(VehiclePlant, CyclesOfFourEnginesWithModesStringsAndFaultsAllocateNothing) 
                                 PlayedKind::delayed, PlayedKind::leak, PlayedKind::torque, PlayedKind::thrust}) {
     faults.push_back({kind, 0.1, 0.3, 0, 0, 1e-9});
   }
-  const auto plant = std::make_unique<VehiclePlant<Masv>>(*hot_masv(), kPeriod, faults);
+  const auto plant = std::make_unique<VehiclePlant<Masv>>(*hot_masv(), kVehiclePlantPeriod, faults);
   plant->string_up();
-  hal::sim::SimulatedPlantBus bus({}, kPeriod);
+  hal::sim::SimulatedPlantBus bus({}, kVehiclePlantPeriod);
   hal::sim::ManualClock clock;
   const auto loop =
       std::make_unique<MasvLoop>(*plant, bus, clock, LoopSettings{kPeriodNs, 1000, 0, OverrunPolicy::catch_up});
@@ -135,7 +135,8 @@ TEST(VehiclePlant, CyclesOfFourEnginesWithModesStringsAndFaultsAllocateNothing) 
 }
 
 TEST(VehiclePlant, ActuatorsAreTheAxesInTheirOrder) {
-  const auto plant = std::make_unique<VehiclePlant<Masv>>(*std::make_unique<model::InstrumentedVehicle<Masv>>(), kPeriod);
+  const auto plant =
+      std::make_unique<VehiclePlant<Masv>>(*std::make_unique<model::InstrumentedVehicle<Masv>>(), kVehiclePlantPeriod);
   UNSIGNED_LONGS_EQUAL(8, plant->actuators());
   UNSIGNED_LONGS_EQUAL(8 * kChannels, plant->measured().size());
   hal::Command command;
@@ -151,10 +152,10 @@ TEST(VehiclePlant, ActuatorsAreTheAxesInTheirOrder) {
 
 TEST(VehiclePlant, StringsReadAnglesBearingAndStructureAndChangeNoBitOfTheRest) {
   const auto rig = hot_masv();
-  const auto plain = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
-  const auto stringed = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
+  const auto plain = std::make_unique<VehiclePlant<Masv>>(*rig, kVehiclePlantPeriod);
+  const auto stringed = std::make_unique<VehiclePlant<Masv>>(*rig, kVehiclePlantPeriod);
   rig->sensors.string_shape.setZero();
-  const auto still = std::make_unique<VehiclePlant<Masv>>(*rig, kPeriod);
+  const auto still = std::make_unique<VehiclePlant<Masv>>(*rig, kVehiclePlantPeriod);
   stringed->string_up();
   still->string_up();
   UNSIGNED_LONGS_EQUAL(0, plain->strings().size());
@@ -213,15 +214,15 @@ TEST(VehiclePlant, ThrustAndTorqueThatAreSwitchedGiveTheBitsOfOfflineStepping) {
   const hal::FlushDenormals flush;
   const model::InstrumentedVehicle<Taos> rig = followed_thrust();
   const auto plant = std::make_unique<VehiclePlant<Taos>>(
-      rig, kPeriod,
+      rig, kVehiclePlantPeriod,
       std::vector<PlayedFault>{{PlayedKind::thrust, 0.1, 0.3, 1, 0, 0.0}, {PlayedKind::torque, 0.2, 0.35, 2, 0, 5e3}});
-  const auto vehicle = std::make_unique<Taos>(rig.vehicle, kPeriod / 2);
+  const auto vehicle = std::make_unique<Taos>(rig.vehicle, kVehiclePlantPeriod / 2);
   const auto state = std::make_unique<Taos::State>(vehicle->steady({}));
   for (int cycle = 0; cycle < 400; ++cycle) {
     Taos::Inputs inputs;
     hal::Command command;
-    command.values[0] = inputs.commands[0] = 0.02 * std::sin(20.0 * cycle * kPeriod);
-    command.values[1] = inputs.commands[1] = 0.015 * std::sin(31.0 * cycle * kPeriod);
+    command.values[0] = inputs.commands[0] = 0.02 * std::sin(20.0 * cycle * kVehiclePlantPeriod);
+    command.values[1] = inputs.commands[1] = 0.015 * std::sin(31.0 * cycle * kVehiclePlantPeriod);
     inputs.thrust[0] = cycle >= 100 && cycle < 300 ? -rig.vehicle.gimbals[0].bearing.thrust : 0.0;
     inputs.torque[1] = cycle >= 200 && cycle < 350 ? 5e3 : 0.0;
     plant->step(command);
@@ -242,7 +243,7 @@ TEST(VehiclePlant, FrictionDiffersBetweenNoThrustAndFullThrustByMuNR) {
   constexpr int kCycles = 4000;  // of a triangle, at 0.05 rad/s
   const model::InstrumentedVehicle<Taos> rig = followed_thrust();
   const auto plant = std::make_unique<VehiclePlant<Taos>>(
-      rig, kPeriod, std::vector<PlayedFault>{{PlayedKind::thrust, 1e-3 * 2 * kCycles, 1e9, 0, 0, 0.0}});
+      rig, kVehiclePlantPeriod, std::vector<PlayedFault>{{PlayedKind::thrust, 1e-3 * 2 * kCycles, 1e9, 0, 0, 0.0}});
   std::array<double, 2> resistance{};  // under full thrust, without
   for (std::size_t part = 0; part < resistance.size(); ++part) {
     std::array<double, 2> sum{};  // on the way down, up

@@ -27,9 +27,9 @@ using Masv = model::Masv<double>;
 using Rows = std::vector<std::vector<double>>;
 
 constexpr std::size_t kAxes = Masv::kAxes;
-constexpr double kPeriod = 1e-3;
+constexpr double kVehicleRecordingPeriod = 1e-3;
 
-int status_of(const std::string& arguments) {
+int exit_status_of(const std::string& arguments) {
   return WEXITSTATUS(std::system((std::string{HOTFIRE_PROGRAM} + " " + arguments + " >/dev/null 2>&1").c_str()));
 }
 
@@ -37,7 +37,7 @@ int status_of(const std::string& arguments) {
 /// has what the sensors read at the end of the last cycle.
 Record simulated(const VehicleFile& vehicle, const Rows& commands) {
   Record record;
-  record.period = kPeriod;
+  record.period = kVehicleRecordingPeriod;
   record.rows = commands.size() + 1;
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     Channel channel{"command." + axis_names(Masv::kEngines)[axis], "rad", {}};
@@ -79,9 +79,10 @@ TEST_GROUP(VehicleRecording) {
 };
 
 TEST(VehicleRecording, ProgramInRealTimeGivesTheBitsOfTheOfflineSimulationAndReplaysThem) {
-  LONGS_EQUAL(0, status_of("plant --model " + model + " --bus sim --cycles 1500 --warm-up 20 --command sine --amplitude " +
-                           "0.02 --frequency 3 --record " + path));
-  LONGS_EQUAL(0, status_of("replay " + path));
+  LONGS_EQUAL(0,
+              exit_status_of("plant --model " + model + " --bus sim --cycles 1500 --warm-up 20 --command sine --amplitude " +
+                             "0.02 --frequency 3 --record " + path));
+  LONGS_EQUAL(0, exit_status_of("replay " + path));
   hal::RecordingReader reader(path);
   STRCMP_EQUAL("masv", reader.header().topology.c_str());
   UNSIGNED_LONGS_EQUAL(kAxes, reader.header().actuators);
@@ -98,8 +99,8 @@ TEST(VehicleRecording, ProgramInRealTimeGivesTheBitsOfTheOfflineSimulationAndRep
 }
 
 TEST(VehicleRecording, IsARecordOfAllItsAxesWhoseSimulationGivesTheSameBits) {
-  LONGS_EQUAL(0,
-              status_of("plant --model " + model + " --bus sim --cycles 400 --warm-up 0 --command sine --record " + path));
+  LONGS_EQUAL(
+      0, exit_status_of("plant --model " + model + " --bus sim --cycles 400 --warm-up 0 --command sine --record " + path));
   const Record record = load_record(path);
   UNSIGNED_LONGS_EQUAL(400, record.rows);
   UNSIGNED_LONGS_EQUAL(kAxes * (1 + Masv::kChannels), record.channels.size());
@@ -113,8 +114,8 @@ TEST(VehicleRecording, IsARecordOfAllItsAxesWhoseSimulationGivesTheSameBits) {
   DOUBLES_EQUAL(record.find("engine.yaw3")->values[101], later.find("engine.yaw3")->values[0], 0.0);
   const Record one = load_recording(path, {6});
   CHECK(one.find("engine")->values == record.find("engine.yaw3")->values);
-  LONGS_EQUAL(0,
-              status_of("simulate --model " + model + " --input " + path + " --output " + scratch.path("s.csv").string()));
+  LONGS_EQUAL(
+      0, exit_status_of("simulate --model " + model + " --input " + path + " --output " + scratch.path("s.csv").string()));
 }
 
 TEST(VehicleRecording, EveryAxisUnderItsOwnCommandGivesTheBitsOfTheOfflineSimulationStringsToo) {
@@ -123,7 +124,7 @@ TEST(VehicleRecording, EveryAxisUnderItsOwnCommandGivesTheBitsOfTheOfflineSimula
   Normal normal(VehicleRun{}.seed);
   const auto parameters = std::make_unique<model::InstrumentedVehicle<Masv>>(model::InstrumentedVehicle<Masv>{
       std::get<MasvParameters>(vehicle.parameters), sensors_in_place<Masv>(vehicle.sensors, normal)});
-  const auto plant = std::make_unique<firmware::VehiclePlant<Masv>>(*parameters, kPeriod);
+  const auto plant = std::make_unique<firmware::VehiclePlant<Masv>>(*parameters, kVehicleRecordingPeriod);
   plant->string_up();
   Rows commands;
   Rows readings;
@@ -132,7 +133,7 @@ TEST(VehicleRecording, EveryAxisUnderItsOwnCommandGivesTheBitsOfTheOfflineSimula
   for (std::size_t cycle = 0; cycle < kCycles; ++cycle) {
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       const double rate = 5.0 + 3.0 * static_cast<double>(axis);
-      command.values[axis] = 0.01 * std::sin(rate * static_cast<double>(cycle) * kPeriod);
+      command.values[axis] = 0.01 * std::sin(rate * static_cast<double>(cycle) * kVehicleRecordingPeriod);
     }
     plant->step(command);
     commands.emplace_back(command.values.begin(), command.values.end());
@@ -161,10 +162,11 @@ TEST(VehicleRecording, NoiseAndFaultsOfTheirFilesAreReplayedToTheSameBits) {
                  "[[fault]]\nkind = \"lost_supply\"\nactuator = 8\nfrom = 0.2\nvalue = \"200 psi\"\n"
                  "[[fault]]\nkind = \"biased\"\nchannel = \"engine\"\nfrom = 0.25\nvalue = \"1 deg\"\n")
           .string();
-  LONGS_EQUAL(0, status_of("plant --model " + noisy + " --faults " + faults + " --bus sim --cycles 500 --record " + path));
-  LONGS_EQUAL(0, status_of("replay " + path));
+  LONGS_EQUAL(0,
+              exit_status_of("plant --model " + noisy + " --faults " + faults + " --bus sim --cycles 500 --record " + path));
+  LONGS_EQUAL(0, exit_status_of("replay " + path));
   scratch.write("faults.toml", "schema = 1\n[[fault]]\nkind = \"leak\"\nactuator = 9\nfrom = 0\nvalue = 1e-9\n");
-  LONGS_EQUAL(6, status_of("plant --model " + model + " --faults " + faults + " --bus sim --cycles 10"));
+  LONGS_EQUAL(6, exit_status_of("plant --model " + model + " --faults " + faults + " --bus sim --cycles 10"));
 }
 
 // The executable with the allocation guard linked in; a build with sanitizers has none and prints no such line.
@@ -183,9 +185,9 @@ TEST(VehicleRecording, LoopOfTheProgramTakesNothingFromTheHeap) {
 }
 
 TEST(VehicleRecording, NumberOfActuatorsFollowsFromTheModelAndAnotherIsRefused) {
-  LONGS_EQUAL(0, status_of("timing --model " + model + " --cycles 50 --max-overruns 1000 --actuators 8"));
-  LONGS_EQUAL(2, status_of("plant --model " + model + " --bus sim --cycles 50 --actuators 4"));
-  LONGS_EQUAL(2, status_of("plant --model " + model + " --bus can0 --layout classic --cycles 50"));
+  LONGS_EQUAL(0, exit_status_of("timing --model " + model + " --cycles 50 --max-overruns 1000 --actuators 8"));
+  LONGS_EQUAL(2, exit_status_of("plant --model " + model + " --bus sim --cycles 50 --actuators 4"));
+  LONGS_EQUAL(2, exit_status_of("plant --model " + model + " --bus can0 --layout classic --cycles 50"));
 }
 
 }  // namespace hotfire

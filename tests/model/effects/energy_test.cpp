@@ -12,7 +12,7 @@
 namespace hotfire::test {
 namespace {
 
-constexpr double kStep = 1e-3;
+constexpr double kEnergyStep = 1e-3;
 constexpr double kPeriod = 1.0;
 
 /// Effects whose force or flow takes energy and stores it at most: friction and leakage. The springs at `mass_force` and
@@ -31,10 +31,10 @@ model::Motion<double> imposed_motion(double amplitude, double third, int k) {
     constexpr double w = 2.0 * std::numbers::pi / kPeriod;
     return amplitude * (std::sin(w * t) + third * std::sin(3.0 * w * t + 0.5));
   };
-  const double start = position(k * kStep);
-  const double end = position((k + 1) * kStep);
-  const double velocity = (end - start) / kStep;
-  return {0.5 * (start + end), velocity, velocity, 1e-30, kStep};
+  const double start = position(k * kEnergyStep);
+  const double end = position((k + 1) * kEnergyStep);
+  const double velocity = (end - start) / kEnergyStep;
+  return {0.5 * (start + end), velocity, velocity, 1e-30, kEnergyStep};
 }
 
 /// Friction values within a factor of ten of the typical ones, so that stick, slip and what lies between are all met.
@@ -66,10 +66,10 @@ Work work_over_cycles(const ParamsOf<E, double>& params, double amplitude, doubl
   StateOf<E, double> state{};
   Work work;
   double total = 0.0;
-  const int steps = static_cast<int>(kPeriod / kStep);
+  const int steps = static_cast<int>(kPeriod / kEnergyStep);
   for (int k = 0; k < 3 * steps; ++k) {
     const auto motion = imposed_motion(amplitude, third, k);
-    const double done = E::step(params, state, motion) * motion.velocity * kStep;
+    const double done = E::step(params, state, motion) * motion.velocity * kEnergyStep;
     total += done;
     work.least = std::min(work.least, total);
     work.traded += std::abs(done);
@@ -105,7 +105,7 @@ TEST(Energy, IsLostInLeakageAtEveryInstant) {
       Random random(6);
       for (int i = 0; i < 1000; ++i) {
         const auto params = random_params<E>(random, option);
-        const auto input = random_input<E>(random, kStep);
+        const auto input = random_input<E>(random, kEnergyStep);
         StateOf<E, double> state{};
         CHECK_TRUE_TEXT(E::step(params, state, input) * input.load_pressure <= 0.0, label<E>(option).c_str());
       }
@@ -134,7 +134,7 @@ TEST(Energy, IsStoredByTheSoftSpringAndTheBacklash) {
       StateOf<E, double> state{};
       double last = -1.0;
       for (int k = -400; k <= 400; ++k) {
-        const auto input = reference_spring(2e-6 * k, 0.0, kStep);
+        const auto input = reference_spring(2e-6 * k, 0.0, kEnergyStep);
         // The smooth laws are found by iteration from the last force: a second call is at rest.
         static_cast<void>(E::step(params, state, input));
         const double force = E::step(params, state, input).deflection;
@@ -165,12 +165,12 @@ TEST(Energy, IsLostInASpringThatRelaxesAsItsTimeConstantSays) {
     StateOf<E, double> state{};
     double work = 0.0;
     double stiffness = 0.0;
-    const int rows = static_cast<int>(kPeriod / kStep);
+    const int rows = static_cast<int>(kPeriod / kEnergyStep);
     // What it remembers of its start is gone after ten time constants.
     for (int k = 0; k < 11 * rows; ++k) {
-      const double from = a * std::sin(w * kStep * k);
-      const double to = a * std::sin(w * kStep * (k + 1));
-      const auto input = reference_spring(0.5 * (from + to), 0.0, kStep);
+      const double from = a * std::sin(w * kEnergyStep * k);
+      const double to = a * std::sin(w * kEnergyStep * (k + 1));
+      const auto input = reference_spring(0.5 * (from + to), 0.0, kEnergyStep);
       stiffness = input.stiffness;
       const double force = stiffness * E::step(params, state, input).deflection;
       work += k >= 10 * rows ? force * (to - from) : 0.0;
@@ -191,10 +191,10 @@ TEST(Energy, IsLostInAJointThatSlipsByTheAreaOfItsLoop) {
     StateOf<E, double> state{};
     double work = 0.0;
     double stiffness = 0.0;
-    const int rows = static_cast<int>(period / kStep);
+    const int rows = static_cast<int>(period / kEnergyStep);
     const auto at = [&](int k) { return a * std::sin(2.0 * std::numbers::pi * k / rows); };
     for (int k = 0; k < 2 * rows; ++k) {
-      const auto input = reference_spring(0.5 * (at(k) + at(k + 1)), 0.0, kStep);
+      const auto input = reference_spring(0.5 * (at(k) + at(k + 1)), 0.0, kEnergyStep);
       stiffness = input.stiffness;
       const double force = stiffness * E::step(params, state, input).deflection;
       work += k >= rows ? force * (at(k + 1) - at(k)) : 0.0;
@@ -212,9 +212,9 @@ TEST(Energy, IsTheSameInStrokeAndTorqueOfAVariableArm) {
   StateOf<E, double> state{};
   constexpr double d = 1e-4;
   for (double angle = -0.2; angle <= 0.2; angle += 0.01) {
-    const double up = E::step(params, state, reference_spring(1e-3, angle + d, kStep)).deflection;
-    const double down = E::step(params, state, reference_spring(1e-3, angle - d, kStep)).deflection;
-    const double arm = E::step(params, state, reference_spring(1e-3, angle, kStep)).arm;
+    const double up = E::step(params, state, reference_spring(1e-3, angle + d, kEnergyStep)).deflection;
+    const double down = E::step(params, state, reference_spring(1e-3, angle - d, kEnergyStep)).deflection;
+    const double arm = E::step(params, state, reference_spring(1e-3, angle, kEnergyStep)).arm;
     DOUBLES_EQUAL(arm - 0.7544, -(up - down) / (2.0 * d), 1e-8);
   }
 }
@@ -230,9 +230,9 @@ TEST(Energy, IsNotCreatedByAStructuralMode) {
     double total = 0.0;
     double traded = 0.0;
     for (int k = 0; k < 3000; ++k) {
-      const double force = 3e4 * std::sin(random.uniform(0.1, 40.0) * k * kStep);
+      const double force = 3e4 * std::sin(random.uniform(0.1, 40.0) * k * kEnergyStep);
       const double before = state.displacement;
-      static_cast<void>(E::step(params, state, model::AttachPoint<double>{force, kStep}));
+      static_cast<void>(E::step(params, state, model::AttachPoint<double>{force, kEnergyStep}));
       const double done = force * params.shape * (state.displacement - before);
       total += done;
       traded += std::abs(done);

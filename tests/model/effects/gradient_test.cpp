@@ -16,7 +16,7 @@ namespace {
 using Dual = ceres::Jet<double, 4>;
 
 constexpr double kDuration = 0.6;
-constexpr double kSample = 1e-3;
+constexpr double kGradientSample = 1e-3;
 
 struct SimplexIn {
   template <class S>
@@ -76,7 +76,7 @@ auto record_with(const Case<Family>& of, int which, double change) {
       value *= 1.0 + change;
     }
   });
-  return record<typename Family::template Plant<double>>(parameters, kDuration, kSample, 2);
+  return record<typename Family::template Plant<double>>(parameters, kDuration, kGradientSample, 2);
 }
 
 /// Compares the derivative in slot `slot` of a dual record with the central difference over parameter number `which`.
@@ -124,7 +124,7 @@ void check_columns(const Case<Family>& of) {
       }
       ++index;
     });
-    const auto rows = record<typename Family::template Plant<Dual>>(parameters, kDuration, kSample, 2);
+    const auto rows = record<typename Family::template Plant<Dual>>(parameters, kDuration, kGradientSample, 2);
     for (int slot = 0; slot < 4 && first + slot < static_cast<int>(names.size()); ++slot) {
       const int which = first + slot;
       const auto at = static_cast<std::size_t>(which);

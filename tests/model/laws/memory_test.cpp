@@ -14,7 +14,7 @@ namespace {
 using model::Memory;
 using Parameters = model::MemoryParameters<double>;
 
-constexpr double kStep = 1e-3;
+constexpr double kMemoryStep = 1e-3;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 Parameters of(Memory kind) {
@@ -26,12 +26,12 @@ Parameters of(Memory kind) {
 /// Complex gain of a linear memory at a frequency [Hz], by correlation over the last ten of forty periods.
 std::complex<double> gain_at(const Parameters& parameters, double frequency) {
   model::MemoryState<double> state;
-  const auto period = static_cast<int>(std::lround(1.0 / (frequency * kStep)));
+  const auto period = static_cast<int>(std::lround(1.0 / (frequency * kMemoryStep)));
   std::complex<double> gain = 0.0;
   for (int n = 0; n < 40 * period; ++n) {
     // The argument is held over a step: its mean over the step is that of the middle.
     const double phase = kTurn * (n + 0.5) / period;
-    const double output = state.step(parameters, std::sin(phase), kStep);
+    const double output = state.step(parameters, std::sin(phase), kMemoryStep);
     if (n >= 30 * period) {
       gain += output * std::exp(std::complex<double>(0.0, -phase)) * std::complex<double>(0.0, 2.0) / (10.0 * period);
     }
@@ -84,7 +84,7 @@ TEST(TermMemory, DelayReadsTheArgumentOfThenAtAnyLength) {
     model::MemoryState<double> state;
     double output = 0.0;
     for (int n = 0; n <= 600; ++n) {
-      output = state.step(parameters, 5.0 * n * kStep, kStep);
+      output = state.step(parameters, 5.0 * n * kMemoryStep, kMemoryStep);
     }
     DOUBLES_EQUAL(5.0 * (0.6 - delay), output, 1e-9);
   }
@@ -107,18 +107,18 @@ TEST(TermMemory, SlewFollowsNoFasterThanItsLimit) {
   Parameters parameters = of(Memory::slew);
   parameters.width = 3.0;
   model::MemoryState<double> state;
-  state.step(parameters, 0.0, kStep);
+  state.step(parameters, 0.0, kMemoryStep);
   for (int n = 1; n <= 100; ++n) {
-    DOUBLES_EQUAL(n * 3.0 * kStep, state.step(parameters, 1.0, kStep), 1e-12);
+    DOUBLES_EQUAL(n * 3.0 * kMemoryStep, state.step(parameters, 1.0, kMemoryStep), 1e-12);
   }
 }
 
 TEST(TermMemory, HoldKeepsTheSampleOfEveryPeriod) {
   Parameters parameters = of(Memory::hold);
-  parameters.time = 5.0 * kStep;
+  parameters.time = 5.0 * kMemoryStep;
   model::MemoryState<double> state;
   for (int n = 0; n < 50; ++n) {
-    DOUBLES_EQUAL(n - n % 5, state.step(parameters, n, kStep), 1e-12);
+    DOUBLES_EQUAL(n - n % 5, state.step(parameters, n, kMemoryStep), 1e-12);
   }
 }
 
@@ -126,13 +126,13 @@ TEST(TermMemory, MemorylessDistortionsAreWhatTheyAreCalled) {
   model::MemoryState<double> state;
   Parameters parameters = of(Memory::quantise);
   parameters.width = 0.4;
-  DOUBLES_EQUAL(0.8, state.step(parameters, 0.93, kStep), 1e-12);
+  DOUBLES_EQUAL(0.8, state.step(parameters, 0.93, kMemoryStep), 1e-12);
   parameters.kind = Memory::dead_zone;
-  DOUBLES_EQUAL(-0.53, state.step(parameters, -0.93, kStep), 1e-12);
+  DOUBLES_EQUAL(-0.53, state.step(parameters, -0.93, kMemoryStep), 1e-12);
   parameters.kind = Memory::saturation;
-  DOUBLES_EQUAL(-0.4, state.step(parameters, -0.93, kStep), 1e-12);
+  DOUBLES_EQUAL(-0.4, state.step(parameters, -0.93, kMemoryStep), 1e-12);
   parameters.kind = Memory::periodic;
-  DOUBLES_EQUAL(0.13, state.step(parameters, 0.93, kStep), 1e-12);
+  DOUBLES_EQUAL(0.13, state.step(parameters, 0.93, kMemoryStep), 1e-12);
 }
 
 TEST(TermMemory, AMemoryThatHasNotStartedRestsUnderItsArgument) {
@@ -141,10 +141,10 @@ TEST(TermMemory, AMemoryThatHasNotStartedRestsUnderItsArgument) {
     parameters.time = 0.05;
     parameters.width = 100.0;
     model::MemoryState<double> first;
-    const double start = first.step(parameters, 0.7, kStep);
+    const double start = first.step(parameters, 0.7, kMemoryStep);
     double later = start;
     for (int n = 0; n < 200; ++n) {
-      later = first.step(parameters, 0.7, kStep);
+      later = first.step(parameters, 0.7, kMemoryStep);
     }
     DOUBLES_EQUAL(start, later, 1e-12);
   }

@@ -17,13 +17,13 @@ using Friction = model::BearingFriction<double>;
 using Pair = model::Pair<double>;
 using Slip = model::Slip<double>;
 
-constexpr double kStep = 1e-4;
+constexpr double kVectorFrictionStep = 1e-4;
 
 /// A slip that nothing can change: the torque is the law's own.
-Slip imposed(const Pair& velocity) { return {velocity, velocity, {}, kStep}; }
+Slip imposed(const Pair& velocity) { return {velocity, velocity, {}, kVectorFrictionStep}; }
 
 /// A slip that the torque slows, unequally in the two directions.
-Slip resisted(const Pair& free_velocity) { return {free_velocity, free_velocity, {3e-8, 2e-8, 5e-9}, kStep}; }
+Slip resisted(const Pair& free_velocity) { return {free_velocity, free_velocity, {3e-8, 2e-8, 5e-9}, kVectorFrictionStep}; }
 
 Friction law(int option) { return {option, 8e3, 1e8, 1.2, 0.01, 1e3, 0.5, 0.02}; }
 Friction law(Friction::Law own) { return law(static_cast<int>(own)); }
@@ -34,9 +34,9 @@ template <class Velocity>
 double mean_friction(const Friction& friction, double duration, int periods, Velocity&& velocity) {
   Pair deflection;
   double sum = 0.0;
-  const int steps = static_cast<int>(std::lround(duration / kStep));
+  const int steps = static_cast<int>(std::lround(duration / kVectorFrictionStep));
   for (int k = -steps; k < steps * periods; ++k) {
-    const Pair torque = friction.torque(deflection, imposed(velocity((k + 0.5) * kStep)));
+    const Pair torque = friction.torque(deflection, imposed(velocity((k + 0.5) * kVectorFrictionStep)));
     sum += k < 0 ? 0.0 : torque.pitch;
   }
   return sum / (steps * periods * friction.coulomb_torque);
@@ -88,7 +88,7 @@ TEST(VectorFriction, IsTheScalarLawAlongOneDirection) {
     const double velocity = random.either_sign(1e-6, 1.0);
     const double free_velocity = velocity * random.uniform(0.5, 2.0);
     const double start = random.uniform(-8e-5, 8e-5);
-    const model::Motion<double> motion{0.0, velocity, free_velocity, 3e-8, kStep};
+    const model::Motion<double> motion{0.0, velocity, free_velocity, 3e-8, kVectorFrictionStep};
     double scalar_deflection = start;
     const double scalar = model::bristle_force<double>(scalar_deflection, motion, 8e3, bristle);
     for (const bool yaw : {false, true}) {
@@ -96,7 +96,7 @@ TEST(VectorFriction, IsTheScalarLawAlongOneDirection) {
       const auto check = [&](const Pair& expected, const Pair& value, double tolerance) {
         DOUBLES_EQUAL(0.0, (expected - value).length(), tolerance);
       };
-      const Slip slip{along(velocity), along(free_velocity), {3e-8, 3e-8, 0.0}, kStep};
+      const Slip slip{along(velocity), along(free_velocity), {3e-8, 3e-8, 0.0}, kVectorFrictionStep};
       Pair deflection = along(start);
       check(along(scalar), model::bristle_torque<double>(deflection, slip, std::abs(velocity), 8e3, bristle), 1e-9);
       check(along(scalar_deflection), deflection, 1e-17);
@@ -151,7 +151,8 @@ TEST(VectorFriction, TakesNoEnergyOutOfARoundTrip) {
         const double angle = 2.0 * std::numbers::pi * k / 10'000;
         const Slip slip = imposed({speed * std::cos(angle), speed * std::sin(2.0 * angle)});
         const Pair torque = friction.torque(deflection, slip);
-        work += k < 10'000 ? 0.0 : kStep * (torque.pitch * slip.velocity.pitch + torque.yaw * slip.velocity.yaw);
+        work +=
+            k < 10'000 ? 0.0 : kVectorFrictionStep * (torque.pitch * slip.velocity.pitch + torque.yaw * slip.velocity.yaw);
       }
       CHECK_TRUE(work >= 0.0);
     }

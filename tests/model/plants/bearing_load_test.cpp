@@ -15,7 +15,7 @@ namespace {
 using Friction = model::BearingFriction<double>;
 using Pair = model::Pair<double>;
 
-constexpr double kStep = 5e-4;
+constexpr double kBearingLoadStep = 5e-4;
 
 /// Hot fire whose friction, structure, bearing and trim follow the thrust.
 template <class Vehicle>
@@ -40,7 +40,7 @@ double sliding(const Friction& friction, double speed, double load) {
   Pair bristle;
   Pair torque;
   for (int k = 0; k < 4000; ++k) {
-    torque = friction.torque(bristle, {{speed, 0.0}, {speed, 0.0}, {}, kStep}, {load, 1.0});
+    torque = friction.torque(bristle, {{speed, 0.0}, {speed, 0.0}, {}, kBearingLoadStep}, {load, 1.0});
   }
   return torque.pitch;
 }
@@ -53,13 +53,13 @@ int check_sliding(double thrust, Command&& command) {
   constexpr int kStepsToSlide = 50;  // 2 mrad: ten times the travel of the bristles under full thrust
   const Taos::Parameters parameters = thrust_dependent<Taos>(thrust);
   const auto& friction = parameters.gimbals[0].friction;
-  const auto plant = std::make_unique<Taos>(parameters, kStep);
+  const auto plant = std::make_unique<Taos>(parameters, kBearingLoadStep);
   const auto state = std::make_unique<Taos::State>(plant->steady({}));
   Taos::Inputs inputs;
   int fast = 0;
   int checked = 0;
   for (int k = 0; k < 2000; ++k) {
-    inputs.commands[0] = command(k * kStep);
+    inputs.commands[0] = command(k * kBearingLoadStep);
     plant->step(*state, inputs);
     fast = std::abs(state->axes[0].y(Taos::AxisModel::kAngleRate)) > kFast ? fast + 1 : 0;
     if (fast < kStepsToSlide) {
@@ -104,7 +104,7 @@ TEST(BearingUnderLoad, ForgetsItsBristleWhereNothingRubs) {
   Friction friction{2, 0.0, 1e8};
   friction.coefficient = 0.08;
   Pair bristle{1e-4, -1e-4};
-  const Pair torque = friction.torque(bristle, {{0.1, 0.0}, {0.1, 0.0}, {}, kStep}, {0.0, 1.0});
+  const Pair torque = friction.torque(bristle, {{0.1, 0.0}, {0.1, 0.0}, {}, kBearingLoadStep}, {0.0, 1.0});
   DOUBLES_EQUAL(0.0, torque.length(), 0.0);
   DOUBLES_EQUAL(0.0, bristle.length(), 0.0);
 }
@@ -129,11 +129,11 @@ TEST(BearingUnderLoad, YieldsByDahlsExponent) {
     double reference = 0.0;
     const auto slope = [&](double t) { return kStiffness * kSpeed * std::pow(std::max(0.0, 1.0 - t / kLevel), exponent); };
     for (int k = 0; k < 400; ++k) {
-      friction.torque(bristle, {{kSpeed, 0.0}, {kSpeed, 0.0}, {}, kStep});
+      friction.torque(bristle, {{kSpeed, 0.0}, {kSpeed, 0.0}, {}, kBearingLoadStep});
       torque = kStiffness * bristle.pitch;
       for (int i = 0; i < 100; ++i) {
         const double first = slope(reference);
-        reference += 0.5 * kStep / 100.0 * (first + slope(reference + kStep / 100.0 * first));
+        reference += 0.5 * kBearingLoadStep / 100.0 * (first + slope(reference + kBearingLoadStep / 100.0 * first));
       }
       DOUBLES_EQUAL(reference, torque, 0.01 * kLevel);
     }
@@ -149,7 +149,7 @@ TEST(BearingUnderLoad, MakesNoWorkAroundALoopOfForces) {
   gimbal.stiffness(1, 1) = 5e8;
   gimbal.bearing.unloaded_stiffness = 0.2;
   gimbal.bearing.load_scale = 5e5;
-  const model::GimbalSpring<double> spring(gimbal, kStep);
+  const model::GimbalSpring<double> spring(gimbal, kBearingLoadStep);
   constexpr int kPoints = 20000;
   const auto force_at = [](int k) {
     const double angle = 2.0 * std::numbers::pi * k / kPoints;
@@ -173,7 +173,7 @@ TEST(BearingUnderLoad, IsSofterWithoutIt) {
   gimbal.stiffness = bearing_stiffness();
   gimbal.bearing.unloaded_stiffness = 0.2;
   gimbal.bearing.load_scale = 5e5;
-  const model::GimbalSpring<double> spring(gimbal, kStep);
+  const model::GimbalSpring<double> spring(gimbal, kBearingLoadStep);
   DOUBLES_EQUAL(5.0, spring.softness({0.0, 0.0, 0.0}), 1e-12);
   DOUBLES_EQUAL(1.0 + 4.0 * std::exp(-1.0), spring.softness({5e5, 0.0, 0.0}), 1e-9);
   DOUBLES_EQUAL(1.0, spring.softness({3e6, 0.0, 0.0}), 1e-9);
@@ -182,14 +182,14 @@ TEST(BearingUnderLoad, IsSofterWithoutIt) {
 // A step's thrust is the declared one and what is put in: it does not matter which of them says it.
 TEST(BearingUnderLoad, DoesNotMatterWhetherThrustIsDeclaredOrPutIn) {
   for (const double thrust : {0.0, 0.9e6, 1.86e6}) {
-    const auto declared = std::make_unique<Taos>(thrust_dependent<Taos>(thrust), kStep);
-    const auto put_in = std::make_unique<Taos>(thrust_dependent<Taos>(1.86e6), kStep);
+    const auto declared = std::make_unique<Taos>(thrust_dependent<Taos>(thrust), kBearingLoadStep);
+    const auto put_in = std::make_unique<Taos>(thrust_dependent<Taos>(1.86e6), kBearingLoadStep);
     Taos::State one = declared->steady({});
     Taos::State other = put_in->steady({}, {thrust - 1.86e6});
     Taos::Inputs inputs;
     double largest = 0.0;
     for (int k = 0; k < 2000; ++k) {
-      const double time = k * kStep;
+      const double time = k * kBearingLoadStep;
       inputs.thrust = {};
       inputs.commands = {0.01 * std::sin(40.0 * time), 0.007 * std::sin(25.0 * time)};
       declared->step(one, inputs);
@@ -206,9 +206,9 @@ TEST(BearingUnderLoad, DoesNotMatterWhetherThrustIsDeclaredOrPutIn) {
 
 TEST(BearingUnderLoad, IsWhatATorqueOnTheEngineIsThatAnEffectNames) {
   Taos::Parameters parameters = hot_fire<Taos>();
-  const auto pushed = std::make_unique<Taos>(parameters, kStep);
+  const auto pushed = std::make_unique<Taos>(parameters, kBearingLoadStep);
   activate_in<model::TorqueOffset, Taos>(parameters, 0, {0, -5e3});
-  const auto named = std::make_unique<Taos>(parameters, kStep);
+  const auto named = std::make_unique<Taos>(parameters, kBearingLoadStep);
   Taos::State one = pushed->steady({});
   Taos::State other = one;
   Taos::Inputs inputs;

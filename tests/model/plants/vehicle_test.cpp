@@ -12,7 +12,7 @@
 namespace hotfire::test {
 namespace {
 
-constexpr double kStep = 5e-4;
+constexpr double kVehicleStep = 5e-4;
 
 /// Hot fire on modes, which is every part of the code at work.
 template <class Vehicle>
@@ -74,7 +74,7 @@ double time_to(const Taos& plant, double from, double to, double part) {
   for (int k = 0; k < 6000; ++k) {
     plant.step(state, {{to, 0.0}, {}});
     if ((state.measured[1] - start) / (to - from) > part) {
-      return k * kStep;
+      return k * kVehicleStep;
     }
   }
   return 0.0;
@@ -89,15 +89,15 @@ TEST(Vehicle, IsTheSimplexAsLongAsOneAxisMovesALittle) {
   using Axis = model::Simplex<double>;
   Taos::Parameters parameters;
   parameters.axes[0].structure.stiffness = parameters.axes[1].structure.stiffness = 5.75e7;
-  const Taos taos(parameters, kStep);
-  const Axis axis(Axis::Parameters{}, kStep);
+  const Taos taos(parameters, kVehicleStep);
+  const Axis axis(Axis::Parameters{}, kVehicleStep);
   for (const bool yaw : {false, true}) {
     Taos::State both = taos.steady({});
     Axis::State alone = axis.steady(0.0);
     double largest = 0.0;
     double gap = 0.0;
     for (int k = 0; k < 2000; ++k) {
-      const double command = 1e-4 * std::sin(20.0 * k * kStep);
+      const double command = 1e-4 * std::sin(20.0 * k * kVehicleStep);
       taos.step(both, {yaw ? std::array{0.0, command} : std::array{command, 0.0}, {}});
       axis.step(alone, command);
       const std::size_t first = yaw ? 3 : 0;
@@ -109,7 +109,7 @@ TEST(Vehicle, IsTheSimplexAsLongAsOneAxisMovesALittle) {
 }
 
 TEST(Vehicle, StaysInItsSteadyState) {
-  const Taos plant(everything<Taos>(24), kStep);
+  const Taos plant(everything<Taos>(24), kVehicleStep);
   for (const std::array<double, 2> commands : {std::array{0.0, 0.0}, std::array{0.03, -0.05}, std::array{-0.1, 0.1}}) {
     Taos::State state = plant.steady(commands);
     const auto start = state.measured;
@@ -136,7 +136,7 @@ TEST(Vehicle, LosesEnergyWhenItsValvesAreShut) {
   }
   for (const double friction : {0.0, 8e3}) {
     parameters.gimbals[0].friction = {1, friction, 1e7, 1.0, 0.01, 0.0, 1.0, 0.01};
-    const Taos plant(parameters, kStep);
+    const Taos plant(parameters, kVehicleStep);
     Taos::State state = plant.steady({});
     state.axes[0].y(Taos::AxisModel::kAngleRate) = 0.3;
     state.axes[1].y(Taos::AxisModel::kAngleRate) = -0.2;
@@ -160,7 +160,7 @@ TEST(Vehicle, TurnsItsBearingWhileTheFrictionSticks) {
   const auto swing = [&](bool compliant) {
     parameters.gimbals[0].compliant = compliant;
     parameters.gimbals[0].stiffness = bearing_stiffness();
-    const Taos plant(parameters, kStep);
+    const Taos plant(parameters, kVehicleStep);
     Taos::State state = plant.steady({});
     for (int k = 0; k < 1000; ++k) {
       plant.step(state, {{6e-4, 0.0}, {}});
@@ -178,9 +178,9 @@ TEST(Vehicle, IsMovedByTheThrustOnItsBearing) {
   Taos::Parameters parameters;
   parameters.gimbals[0].compliant = true;
   parameters.gimbals[0].stiffness = bearing_stiffness();
-  Taos::State cold = Taos(parameters, kStep).steady({});
+  Taos::State cold = Taos(parameters, kVehicleStep).steady({});
   parameters.gimbals[0].bearing.thrust = 1.86e6;
-  Taos::State hot = Taos(parameters, kStep).steady({});
+  Taos::State hot = Taos(parameters, kVehicleStep).steady({});
   // 1.86e6 / 2e9 = 0.93 mm forward, against the arm of 0.7544 m; the mechanical feedback holds the piston.
   DOUBLES_EQUAL(0.93e-3 / 0.7544, hot.measured[1] - cold.measured[1], 0.02 * 0.93e-3 / 0.7544);
 }
@@ -189,12 +189,12 @@ TEST(Vehicle, IsMovedByTheThrustOnItsBearing) {
 // and the friction that is left from the deflection do not.
 TEST(Vehicle, DeflectsAndReturnsDifferently) {
   Taos::Parameters linear;
-  const Taos plain(linear, kStep);
+  const Taos plain(linear, kVehicleStep);
   const double step = 0.01;
   const double plain_ratio = time_to(plain, 0.0, step, 0.5) / time_to(plain, step, 0.0, 0.5);
   DOUBLES_EQUAL(1.0, plain_ratio, 0.01);
   Taos::Parameters hot = hot_fire<Taos>();
-  const Taos plant(hot, kStep);
+  const Taos plant(hot, kVehicleStep);
   const double deflect = time_to(plant, 0.0, 6.0 * step, 0.8);
   const double back = time_to(plant, 6.0 * step, 0.0, 0.8);
   CHECK_TRUE(std::abs(deflect / back - 1.0) > 0.02);
@@ -206,7 +206,7 @@ TEST(Vehicle, CouplesEnginesThroughTheModesOnly) {
   inputs.commands[0] = 0.01;
   for (const int modes : {0, 20}) {
     parameters.modes = random_modes<Masv::Modes>(modes, 1.0 / 1.05e8, 3);
-    const Masv plant(parameters, kStep);
+    const Masv plant(parameters, kVehicleStep);
     Masv::State state = plant.steady({});
     const double before = state.measured[3 * 4 + 1];
     for (int k = 0; k < 400; ++k) {
@@ -236,7 +236,7 @@ TEST(Vehicle, AddsTheVibrationThatItIsGivenToTheSlip) {
 }
 
 TEST(Vehicle, GivesTheSameBitsWhenItIsRepeatedAndFromACopy) {
-  const Masv plant(everything<Masv>(64), kStep);
+  const Masv plant(everything<Masv>(64), kVehicleStep);
   Masv::State first = plant.steady({});
   Masv::State second = plant.steady({});
   Masv::State copy;
@@ -244,10 +244,10 @@ TEST(Vehicle, GivesTheSameBitsWhenItIsRepeatedAndFromACopy) {
     if (k == 300) {
       std::memcpy(static_cast<void*>(&copy), &first, sizeof copy);
     }
-    plant.step(first, lively<Masv>(k * kStep));
-    plant.step(second, lively<Masv>(k * kStep));
+    plant.step(first, lively<Masv>(k * kVehicleStep));
+    plant.step(second, lively<Masv>(k * kVehicleStep));
     if (k >= 300) {
-      plant.step(copy, lively<Masv>(k * kStep));
+      plant.step(copy, lively<Masv>(k * kVehicleStep));
     }
   }
   CHECK_TRUE(same_numbers(first, second));
@@ -255,11 +255,11 @@ TEST(Vehicle, GivesTheSameBitsWhenItIsRepeatedAndFromACopy) {
 }
 
 TEST(Vehicle, AllocatesNothingInAStep) {
-  const Masv plant(everything<Masv>(64), kStep);
+  const Masv plant(everything<Masv>(64), kVehicleStep);
   Masv::State state = plant.steady({});
   const AllocationGuard guard;
   for (int k = 0; k < 100; ++k) {
-    plant.step(state, lively<Masv>(k * kStep));
+    plant.step(state, lively<Masv>(k * kVehicleStep));
   }
   LONGS_EQUAL(0, guard.allocations());
 }
@@ -271,7 +271,7 @@ TEST(Vehicle, FitsIntoSixtyFourKibibytesWithSixtyFourModesAndFourEngines) {
 }
 
 TEST(Vehicle, StaysFiniteUnderRandomStatesAndCommands) {
-  const Masv plant(everything<Masv>(64), kStep);
+  const Masv plant(everything<Masv>(64), kVehicleStep);
   Random random(17);
   for (int run = 0; run < 20; ++run) {
     Masv::State state = plant.steady({});

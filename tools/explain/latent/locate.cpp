@@ -107,8 +107,8 @@ Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigne
   for (auto& [place, input] : tried) {
     place.is_possible = !place.leaves.empty() &&
                         (!located.is_single || std::ranges::equal(place.leaves, leaves, [](double one, double other) {
-                           return one <= policy().tied_leaves * std::max(1.0, other);
-                         }));
+                          return one <= policy().tied_leaves * std::max(1.0, other);
+                        }));
     place.is_likely = place.is_possible && (!located.is_single || place.gain >= tied_from);
   }
   std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first.gain; });

@@ -13,9 +13,9 @@ namespace hotfire::explain {
 struct Place {
   std::vector<std::string> sites;  ///< "load_spring", "structure"
   double gain = 0.0;               ///< log likelihood with the most likely signal less that without any
-  std::vector<double> leaves;      ///< by channel: mean square over noise of what the signal leaves; empty: far from the best
-  bool is_possible = false;        ///< it leaves as little as the best: a law may act here, which costs less than a signal
-  bool is_likely = false;          ///< ... and no other place explains clearly more
+  std::vector<double> leaves;  ///< by channel: mean square over noise of what the signal leaves; empty: far from the best
+  bool is_possible = false;    ///< it leaves as little as the best: a law may act here, which costs less than a signal
+  bool is_likely = false;      ///< ... and no other place explains clearly more
   LatentPlace where{};
   LatentPrior prior{};     ///< of the most likely signal
   Eigen::VectorXd move{};  ///< of the parameters of its problem beside it

@@ -130,10 +130,10 @@ class MapMaker {
   /// The newest message of the map must not be taken for another one of it: the checks of their data ids alone are
   /// different, and so are those of any frame of theirs with the same bytes, the checks being linear.
   void require_data_id(const CanMap& map, const DbcMessage& declared) const {
-    constexpr unsigned kLargest = 0xFFFF;
-    if (declared.data_id == 0 || declared.data_id > kLargest) {
+    constexpr unsigned kLargestCanMap = 0xFFFF;
+    if (declared.data_id == 0 || declared.data_id > kLargestCanMap) {
       refuse(declared.line, fmt::format("{}: data id {}; allowed: BA_ \"E2EDataId\" BO_ {} of 1 to {}", declared.name,
-                                        declared.data_id, declared.id, kLargest));
+                                        declared.data_id, declared.id, kLargestCanMap));
     }
     const CanMessage& message = map.messages.back();
     for (const CanMessage& other : std::span(map.messages).first(map.messages.size() - 1)) {

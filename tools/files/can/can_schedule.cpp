@@ -18,8 +18,8 @@ namespace {
 constexpr double kLowestBitRate = 10e3;
 constexpr double kHighestBitRate = 1e6;
 constexpr double kHighestDataBitRate = 8e6;
-constexpr double kShortestPeriod = 250e-6;
-constexpr double kLongestPeriod = 10.0;
+constexpr double kShortestScheduledPeriod = 250e-6;
+constexpr double kLongestScheduledPeriod = 10.0;
 
 const toml::node& required(const TomlSource& source, const toml::table& table, const std::string& where,
                            std::string_view key, std::string_view problem) {
@@ -70,7 +70,8 @@ void read_frames(const TomlSource& source, const CanMap& map, CanSchedule& sched
     if (message.fd && schedule.data_bit_rate == 0.0) {
       source.refuse(*node, "frames." + message.name, "an FD frame; allowed: classic frames, or give bus.data_bit_rate");
     }
-    const double period = number_within(source, *node, "frames." + message.name, "s", kShortestPeriod, kLongestPeriod);
+    const double period =
+        number_within(source, *node, "frames." + message.name, "s", kShortestScheduledPeriod, kLongestScheduledPeriod);
     schedule.frames.push_back({message.name, period, longest(message, schedule)});
   }
   if (schedule.frames.empty()) {

@@ -19,7 +19,7 @@ constexpr unsigned kLargestExtendedId = 0x1FFFFFFF;
 /// CANdb++ keeps signals of no frame in a message of this id and no bytes, which nobody sends.
 constexpr std::uint32_t kNoFrame = 0xC0000000;
 /// Far above any real file, so that reading one takes a bounded time and memory.
-constexpr std::size_t kLargestFile = std::size_t{16} << 20;
+constexpr std::size_t kLargestDbcFile = std::size_t{16} << 20;
 constexpr std::size_t kLongestLine = std::size_t{64} << 10;
 constexpr std::size_t kMostMessages = 10'000;
 constexpr std::size_t kMostSignals = 1024;  ///< of a message
@@ -28,9 +28,9 @@ class DbcReader {
  public:
   DbcReader(std::string_view text, const std::filesystem::path& path) : text_(text) {
     dbc_.path = path;
-    if (text.size() > kLargestFile) {
+    if (text.size() > kLargestDbcFile) {
       throw FileError(
-          fmt::format("{}:1: over {} bytes; allowed: a DBC file of at most so many", path.string(), kLargestFile));
+          fmt::format("{}:1: over {} bytes; allowed: a DBC file of at most so many", path.string(), kLargestDbcFile));
     }
   }
 
@@ -344,7 +344,7 @@ Dbc load_dbc(const std::filesystem::path& path) {
   if (!file || !std::filesystem::is_regular_file(path)) {
     throw FileError(fmt::format("{}: cannot be opened; allowed: a DBC file", path.string()));
   }
-  std::string text(kLargestFile + 1, '\0');
+  std::string text(kLargestDbcFile + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
   return read_dbc(text, path);

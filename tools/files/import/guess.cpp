@@ -21,7 +21,7 @@ namespace hotfire {
 namespace {
 
 /// Lines that are looked at: a guess need not read a gigabyte.
-constexpr std::size_t kLines = 5000;
+constexpr std::size_t kGuessedLines = 5000;
 /// Rows below a header that have to look like its own.
 constexpr std::size_t kRowsBelow = 5;
 /// Relative deviation of an interval from the median up to which a column may be a time.
@@ -183,7 +183,7 @@ std::string range_of(const Column& column) {
 std::vector<std::string> first_lines(const std::filesystem::path& source) {
   CsvLines reader(source);
   std::vector<std::string> lines;
-  for (std::string_view line; lines.size() < kLines && reader.next(line);) {
+  for (std::string_view line; lines.size() < kGuessedLines && reader.next(line);) {
     lines.emplace_back(line);
   }
   return lines;

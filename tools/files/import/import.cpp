@@ -17,12 +17,6 @@ namespace hotfire {
 
 namespace {
 
-/// Whether a channel is an input of the plant: it holds from a row to the next.
-bool is_held(const std::string& channel) {
-  const std::string own = channel.substr(0, channel.find('.'));
-  return own == "command" || own == "current";
-}
-
 /// Values in their units: times factor, plus offset.
 void scale(const std::vector<ImportColumn>& columns, std::vector<std::vector<double>>& values) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -49,7 +43,7 @@ std::string put_on_grid(const std::filesystem::path& source, ImportMap& map, std
   }
   std::vector<bool> held;
   for (const ImportColumn& column : map.columns) {
-    held.push_back(is_held(column.channel));
+    held.push_back(is_held_input(column.channel));
   }
   try {
     Resampled even = resampled(times, values, held, map.resampling_period);

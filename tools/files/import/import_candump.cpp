@@ -3,12 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 
 #include "tools/files/can/candump_frame.hpp"
 #include "tools/files/import/import.hpp"
+#include "tools/files/import/resample.hpp"
 #include "tools/files/record/time_grid.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -18,8 +18,6 @@ namespace hotfire {
 
 namespace {
 
-/// An input of the plant: a record holds it from a row to the next.
-constexpr std::array<std::string_view, 3> kHeldChannels{"command", "current", "force"};
 constexpr std::size_t kNamesShown = 5;
 
 /// A channel of the map and the signal that it is.
@@ -33,11 +31,6 @@ struct Source {
   std::string name() const { return message->name + "." + signal->name; }
 };
 
-bool is_held(std::string_view channel) {
-  const std::string_view own = channel.substr(0, channel.find('.'));
-  return std::find(kHeldChannels.begin(), kHeldChannels.end(), own) != kHeldChannels.end();
-}
-
 bool is_known(const std::string& unit) {
   try {
     require_known_unit(unit);
@@ -49,10 +42,10 @@ bool is_known(const std::string& unit) {
 
 /// Whether both are the same, whatever they are called: "deg", "degree".
 bool are_same(const std::string& unit, const std::string& other) {
-  constexpr double kRounding = 1e-12;
+  constexpr double kImportRounding = 1e-12;
   try {
     const UnitConverter convert(unit, other);
-    return std::abs(convert(0.0)) < kRounding && std::abs(convert(1.0) - 1.0) < kRounding;
+    return std::abs(convert(0.0)) < kImportRounding && std::abs(convert(1.0) - 1.0) < kImportRounding;
   } catch (const UnitError&) {
     return false;
   }
@@ -68,7 +61,8 @@ class SignalFinder {
     for (const ImportColumn& column : map_.columns) {
       Source& source = sources.emplace_back(Source{column});
       find(source);
-      source.is_held = is_held(column.channel);
+      // A load that a frame sets holds until the next.
+      source.is_held = is_held_input(column.channel) || column.channel.substr(0, column.channel.find('.')) == "force";
       source.column.unit = unit_of(source);
     }
     return sources;

@@ -151,13 +151,13 @@ class MatlabReader {
   template <class T>
   void require_exact(std::span<const T> values, const ImportColumn& column) const {
     if constexpr (std::is_integral_v<T> && sizeof(T) == sizeof(std::int64_t)) {
-      constexpr T kLargest = T{1} << std::numeric_limits<double>::digits;
+      constexpr T kLargestExact = T{1} << std::numeric_limits<double>::digits;
       const auto found = std::find_if(values.begin(), values.end(), [](T value) {
-        return value > kLargest || (std::is_signed_v<T> && value < T{0} - kLargest);
+        return value > kLargestExact || (std::is_signed_v<T> && value < T{0} - kLargestExact);
       });
       if (found != values.end()) {
         refuse(column, fmt::format("row {}: {} does not fit a double; allowed: integers of at most 2^53 = {}",
-                                   found - values.begin() + 1, *found, kLargest));
+                                   found - values.begin() + 1, *found, kLargestExact));
       }
     }
   }

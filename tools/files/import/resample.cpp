@@ -158,6 +158,11 @@ void require_good(const Series& times, const std::vector<Series>& columns) {
 
 }  // namespace
 
+bool is_held_input(std::string_view channel) {
+  const std::string_view own = channel.substr(0, channel.find('.'));
+  return own == "command" || own == "current";
+}
+
 Resampled resampled(const Series& times, const std::vector<Series>& columns, const std::vector<bool>& held, double period) {
   require_good(times, columns);
   const double length = times.back() - times.front();

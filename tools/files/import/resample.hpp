@@ -2,11 +2,15 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/files/record/drop_out.hpp"
 
 namespace hotfire {
+
+/// True for an input of the plant: "command.pitch" holds from a row to the next.
+bool is_held_input(std::string_view channel);
 
 /// Columns on an even grid.
 struct Resampled {

@@ -19,7 +19,7 @@ constexpr std::size_t kMostSegments = 10'000;
 /// Ends that are nearer than this meet: a sine of whole periods ends at its bias but for rounding [rad].
 constexpr double kMeets = 1e-9;
 /// A rate that is meant to be the limit is so but for rounding.
-constexpr double kRounding = 1.0 + 1e-9;
+constexpr double kProfileRounding = 1.0 + 1e-9;
 
 class Parts {
  public:
@@ -79,7 +79,7 @@ class Parts {
                         "and limits.highest_position, {:g} to {:g} rad",
                         i + 1, stretch.lowest(i), stretch.highest(i), limits_.lowest[i], limits_.highest[i]));
       }
-      if (stretch.rate(i) > limits_.rate[i] * kRounding) {
+      if (stretch.rate(i) > limits_.rate[i] * kProfileRounding) {
         source_.refuse_missing(table, prefix,
                                fmt::format("the command of actuator {} changes by up to {:g} rad/s; limits.command_rate and "
                                            "limits.speed allow {:g} rad/s",
