@@ -79,7 +79,7 @@ bool shows(Fault fault, const Given& given, std::int64_t age_limit_ns) {
 }
 
 constexpr std::size_t kLastCycles = 64;
-constexpr double kLabStopsPistonPerCommand = 0.5;
+constexpr double kPistonPerCommand = 0.5;
 
 }  // namespace
 
@@ -100,9 +100,9 @@ LabRecord read_lab_record(const std::string& path, const LabLimits& limits) {
     if (drives || !now.drove.empty()) {
       for (const firmware::FaultText& text : firmware::kFaults) {
         std::uint64_t& since = shown_since[static_cast<std::size_t>(text.fault)];
-        since = !shows(text.fault, {inputs, kLabStopsPistonPerCommand * cycle.commands[0]}, limits.age_ns) ? 0
-                : since == 0                                                                               ? run
-                                                                                                           : since;
+        since = !shows(text.fault, {inputs, kPistonPerCommand * cycle.commands[0]}, limits.age_ns) ? 0
+                : since == 0                                                                       ? run
+                                                                                                   : since;
       }
     }
     if (drives) {

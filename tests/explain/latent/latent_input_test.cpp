@@ -20,8 +20,8 @@ using explain::LatentProblem;
 using explain::Port;
 using explain::SimplexFamily;
 
-constexpr double kTorque = 2e3;             // N m
-constexpr double kLatentInputNoise = 1e-6;  // m, rad
+constexpr double kTorque = 2e3;  // N m
+constexpr double kNoise = 1e-6;  // m, rad
 
 /// A plant at rest under a torque against the engine that is a table over time: a triangle of 4 s.
 Record record_of() {
@@ -47,7 +47,7 @@ Record record_of() {
   for (const char* name : {"piston", "engine"}) {
     record.channels.push_back(*modelled.find(name));
     for (double& value : record.channels.back().values) {
-      value += kLatentInputNoise * normal(random);
+      value += kNoise * normal(random);
     }
   }
   return record;
@@ -56,7 +56,7 @@ Record record_of() {
 ModelFile declared() {
   ModelFile model;
   model.parameters = SimplexParameters{};
-  model.noise = {{"piston", kLatentInputNoise}, {"engine", kLatentInputNoise}};
+  model.noise = {{"piston", kNoise}, {"engine", kNoise}};
   return model;
 }
 
@@ -113,7 +113,7 @@ TEST(LatentInput, TheZeroOfASensorChangesNothingOfTheSignalButItsLevel) {
   Record record = record_of();
   const Smoothed before(record);
   for (double& value : record.channels.back().values) {
-    value += 5.0 * kLatentInputNoise;
+    value += 5.0 * kNoise;
   }
   const Smoothed of(record);
   CHECK(of.input.leaves[0] < 1.1);
@@ -130,7 +130,7 @@ TEST(LatentInput, TheSignalOfASensorIsAsFastAsItIsAndThatOfAPortIsSlow) {
     Record record = record_of();
     for (std::size_t row = 0; row < record.rows; ++row) {
       const double t = static_cast<double>(row) * record.period;
-      record.channels[1].values[row] += 10.0 * kLatentInputNoise * std::sin(2.0 * std::numbers::pi * frequency * t);
+      record.channels[1].values[row] += 10.0 * kNoise * std::sin(2.0 * std::numbers::pi * frequency * t);
     }
     const ModelFile model = declared();
     const Dataset data = explain::make_dataset(model, {record});

@@ -16,7 +16,7 @@ namespace {
 using Plant = model::Simplex<double>;
 using Complex = std::complex<double>;
 
-constexpr double kSimplexStep = 5e-4;
+constexpr double kStep = 5e-4;
 
 double load_spring(const Plant::Parameters& p) { return 1.0 / (1.0 / p.actuator.stiffness + 1.0 / p.structure.stiffness); }
 
@@ -52,7 +52,7 @@ Response response(const Plant& plant, int cycles) {
   return {std::abs(piston) * scale / plant.parameters().actuator.moment_arm, std::abs(engine) * scale};
 }
 
-double frequency(int cycles) { return cycles / (100'000 * kSimplexStep); }
+double frequency(int cycles) { return cycles / (100'000 * kStep); }
 
 /// Stored energy of an axis whose valve is shut: engine, ducts, load spring, piston, oil.
 double stored_energy(const Plant::Parameters& p, const Plant::State& state) {
@@ -118,7 +118,7 @@ TEST_GROUP(Simplex){};
 // 21 frequencies 0.02 Hz apart around the zero; the least of |H|^2 by a parabola through the lowest three. The zero's
 // damping ratio is 0.013, so the slope of the rest of the loop moves the minimum by no more than its square, 2e-4.
 TEST(Simplex, HasItsPistonNotchAtTheAnalyticZero) {
-  const Plant plant(Plant::Parameters{}, kSimplexStep);
+  const Plant plant(Plant::Parameters{}, kStep);
   const double zero = analytic_zero(plant.parameters());
   const int middle = static_cast<int>(std::lround(zero / frequency(1)));
   std::array<double, 21> squared{};
@@ -133,7 +133,7 @@ TEST(Simplex, HasItsPistonNotchAtTheAnalyticZero) {
 }
 
 TEST(Simplex, HasANotchInThePistonAndNoneInTheEngine) {
-  const Plant plant(Plant::Parameters{}, kSimplexStep);
+  const Plant plant(Plant::Parameters{}, kStep);
   const int at = static_cast<int>(std::lround(analytic_zero(plant.parameters()) / frequency(1)));
   const Response below = response(plant, at * 3 / 4);
   const Response here = response(plant, at);
@@ -146,7 +146,7 @@ TEST(Simplex, HasANotchInThePistonAndNoneInTheEngine) {
 // Wherever the loop is, engine and piston are tied by the engine's own equation: |piston / engine| at the zero is
 // D w / (K_T R), and far below it (K_n + K_T R^2) / (K_T R).
 TEST(Simplex, KeepsTheEnginesEquationBetweenPistonAndEngine) {
-  const Plant plant(Plant::Parameters{}, kSimplexStep);
+  const Plant plant(Plant::Parameters{}, kStep);
   const Plant::Parameters& p = plant.parameters();
   const double arm = p.actuator.moment_arm;
   for (const int cycles : {20, 100, 250, 388, 500}) {
@@ -162,7 +162,7 @@ TEST(Simplex, KeepsTheEnginesEquationBetweenPistonAndEngine) {
 
 // Full spool gives Q_r / A; the loop is within 2 % of it once the oil is moving and far from the end of the step.
 TEST(Simplex, MovesNoFasterThanTheSaturatedValveLets) {
-  const Plant plant(Plant::Parameters{}, kSimplexStep);
+  const Plant plant(Plant::Parameters{}, kStep);
   Plant::State state = plant.steady(0.0);
   const double fastest = plant.parameters().servovalve.rated_flow / plant.parameters().actuator.piston_area;
   double at_start = 0.0;
@@ -172,7 +172,7 @@ TEST(Simplex, MovesNoFasterThanTheSaturatedValveLets) {
     }
     plant.step(state, 0.3);
   }
-  const double rate = (state.y(Plant::kPiston) - at_start) / (800 * kSimplexStep);
+  const double rate = (state.y(Plant::kPiston) - at_start) / (800 * kStep);
   CHECK_TRUE(rate < fastest);
   CHECK_TRUE(rate > 0.9 * fastest);
 }
@@ -188,7 +188,7 @@ TEST(Simplex, StaysInItsSteadyStateWhateverTheEffect) {
         Plant::Parameters parameters;
         activate<model::TorqueOffset, Plant>(parameters, {0, 3e3});
         activate<E, Plant>(parameters, typical<E, double>(option));
-        const Plant plant(parameters, kSimplexStep);
+        const Plant plant(parameters, kStep);
         Plant::State state = plant.steady(command);
         const auto start = Plant::measured(state);
         constexpr std::array<double, 3> scale{0.05, 0.05, 1e6};
@@ -215,7 +215,7 @@ TEST(Simplex, LosesEnergyWhenItsValveIsShut) {
     if (with_friction) {
       activate<model::GimbalFriction, Plant>(parameters, {1, 8e3, 1e7, 1.0, 0.01, 0.0});
     }
-    const Plant plant(parameters, kSimplexStep);
+    const Plant plant(parameters, kStep);
     Plant::State state = plant.steady(0.0);
     state.y(Plant::kAngleRate) = 0.3;
     const double first = stored_energy(parameters, state);
@@ -250,18 +250,18 @@ TEST(Simplex, ConvergesWithTheFirstOrderWithFriction) {
 // noise (8 um) at the rig's.
 TEST(Simplex, OilThatIsMoreCompressibleByAShareIsOilOfASmallerBulkModulus) {
   for (const double share : {-0.4, 0.5, 4.0}) {
-    const double at_step = difference_of_oils(share, kSimplexStep);
+    const double at_step = difference_of_oils(share, kStep);
     CHECK_TRUE(at_step < 8e-6);
-    CHECK_TRUE(difference_of_oils(share, kSimplexStep / 2) < at_step / 3.0);
+    CHECK_TRUE(difference_of_oils(share, kStep / 2) < at_step / 3.0);
   }
 }
 
 TEST(Simplex, GivesTheSameBitsWhenItIsRepeated) {
-  const Plant plant(three_effects(), kSimplexStep);
+  const Plant plant(three_effects(), kStep);
   Plant::State first = plant.steady(0.0);
   Plant::State second = plant.steady(0.0);
   for (int k = 0; k < 2000; ++k) {
-    const double command = lively_input(plant, k * kSimplexStep);
+    const double command = lively_input(plant, k * kStep);
     plant.step(first, command);
     plant.step(second, command);
   }
@@ -271,18 +271,18 @@ TEST(Simplex, GivesTheSameBitsWhenItIsRepeated) {
 // std::tuple and Eigen's matrices declare their own copies, so the language does not call the state trivially copyable. It
 // holds no pointer: a copy of its bytes goes on as the original does, which is what a checkpoint needs.
 TEST(Simplex, GoesOnFromACopyOfTheBytesOfItsState) {
-  const Plant plant(three_effects(), kSimplexStep);
+  const Plant plant(three_effects(), kStep);
   Plant::State state = plant.steady(0.0);
   for (int k = 0; k < 500; ++k) {
-    plant.step(state, lively_input(plant, k * kSimplexStep));
+    plant.step(state, lively_input(plant, k * kStep));
   }
   alignas(Plant::State) std::array<unsigned char, sizeof(Plant::State)> bytes{};
   std::memcpy(bytes.data(), &state, bytes.size());
   Plant::State copy = plant.steady(0.01);
   std::memcpy(static_cast<void*>(&copy), bytes.data(), bytes.size());
   for (int k = 500; k < 1000; ++k) {
-    plant.step(state, lively_input(plant, k * kSimplexStep));
-    plant.step(copy, lively_input(plant, k * kSimplexStep));
+    plant.step(state, lively_input(plant, k * kStep));
+    plant.step(copy, lively_input(plant, k * kStep));
   }
   CHECK_TRUE(same_numbers(state, copy));
 }
