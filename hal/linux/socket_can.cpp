@@ -145,7 +145,7 @@ void SocketCan::receive(std::int64_t now_ns) noexcept {
     header.msg_hdr.msg_controllen = Batch::kControl;
   }
   const int count = recvmmsg(socket_, batch_->headers.data(), kMostWaiting, MSG_DONTWAIT, nullptr);
-  realtime_offset_ns_ = read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC);
+  realtime_offset_ns_ = hal::realtime_offset_ns();
   if (count < 0) {
     note_error(errno);
     return;

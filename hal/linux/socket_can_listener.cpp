@@ -56,7 +56,7 @@ bool SocketCanListener::take(CanFrame& frame, std::int64_t& arrival_ns) noexcept
   if (stamp_part != nullptr && stamp_part->cmsg_type == SO_TIMESTAMPNS) {
     timespec stamp{};
     std::memcpy(&stamp, CMSG_DATA(stamp_part), sizeof stamp);
-    arrival_ns = std::min(now_ns, nanoseconds(stamp) - (read_clock(CLOCK_REALTIME) - now_ns));
+    arrival_ns = std::min(now_ns, nanoseconds(stamp) - realtime_offset_ns());
   }
   frame = CanFrame{};
   frame.id = wanted_.id;
