@@ -88,7 +88,9 @@ TEST(Command, a_misspelt_word_is_wrong_use_and_named_with_the_nearest_known_one)
 TEST(Command, without_what_it_needs_is_wrong_use) {
   LONGS_EQUAL(2, status_of(""));
   LONGS_EQUAL(2, status_of("check"));
-  expect_message(err, {"hotfire: FILE is required", "'hotfire check --help'"});
+  expect_message(err, {"hotfire: missing: FILE;", "'hotfire check --help'"});
+  LONGS_EQUAL(2, status_of("explain"));
+  STRCMP_EQUAL("hotfire: missing: --model, --out, records; see 'hotfire explain --help'\n", err.c_str());
   LONGS_EQUAL(2, status_of("simulate --model m --input i --output o --fit-start=-3"));
 }
 
@@ -99,6 +101,22 @@ TEST(Command, help_has_an_example_and_every_command_prints_its_version) {
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));
     expect_message(out, {"0."});
+  }
+}
+
+TEST(Command, simulate_writes_a_mass_that_no_record_measured_in_the_unit_of_its_force) {
+  const std::string mass =
+      scratch.write("mass.toml", "schema = 1\nname = \"m\"\ntopology = \"direct\"\n[mass]\ninertia = 2\n").string();
+  const auto output = scratch.path("moved.csv");
+  for (const auto& [force, header] : {std::pair{"N", "position[m]"}, {"N.m", "position[rad]"}, {"V", "position[1]"}}) {
+    const std::string text = "time[s],force[" + std::string(force) + "]\n0,0\n0.002,1\n0.004,1\n";
+    const std::string input = scratch.write("force.csv", text).string();
+    LONGS_EQUAL(0, status_of("simulate --model " + mass + " --input " + input + " --output " + output.string()));
+    std::ifstream file(output);
+    std::string line;
+    std::getline(file, line);
+    STRCMP_CONTAINS(header, line.c_str());
+    LONGS_EQUAL(0, status_of("check " + output.string()));
   }
 }
 
@@ -165,7 +183,7 @@ TEST(Command, stiffness_of_a_test_is_read_again_from_its_record_with_the_model_b
   expect_message(out, {"\"load_stiffness\": 57500000.0", "\"asymptote\"", "\"amplitude_degrees\": 0.0", "\"test\"",
                        "\"expected\"", "\"peak_force\"", "\"actuator_stiffness\""});
   LONGS_EQUAL(2, status_of("stiffness --record " + kept));
-  expect_message(err, {"--model is required"});
+  expect_message(err, {"missing: --model"});
   LONGS_EQUAL(2, status_of(of_bench + " --from 9 --to 5"));
   expect_message(err, {"--from 9 --to 5", "--from below --to"});
   LONGS_EQUAL(6, status_of(of_bench + " --record " + kept + " --from 12 --to 20"));

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
@@ -42,12 +45,25 @@ int complain_of_use(const CLI::App& program, const std::string& problem) {
   return complain(problem + "; see '" + name + " --help'", ExitStatus::wrong_use);
 }
 
+/// The words that a command requires and was not given, all of them: the parser complains of the first.
+std::vector<std::string> missing_words(const CLI::App& command) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_required() && option->count() == 0) {
+      words.push_back(option->get_name(option->get_positional()));
+    }
+  }
+  return words;
+}
+
 /// What the parser has against the words of the command line.
 std::string problem_of(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& command = chosen_command(program);
   const std::vector<std::string> strangers = program.remaining(true);
   if (strangers.empty() || command.get_allow_extras()) {
-    return error.what();
+    const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    const std::vector<std::string> missing = is_missing ? missing_words(command) : std::vector<std::string>{};
+    return missing.empty() ? error.what() : fmt::format("missing: {}", fmt::join(missing, ", "));
   }
   // A misspelt word also leaves out something that is required, which is what the parser complains of.
   const std::vector<std::string> known = known_words(command);
@@ -82,6 +98,7 @@ int run(int argc, char** argv) {
   program.footer(
       "Example: hotfire check declared.toml steps.csv\nExit status: 0 good, 1 the verdict is bad, 2 wrong use, 3 hardware, "
       "4 real-time contract not met, 5 interlock, 6 bad data.");
+  add_new(program);
   add_explain(program, typed_line(argc, argv));
   add_check(program);
   add_convert(program);

@@ -72,6 +72,14 @@ std::pair<double, double> fitted_start(const DirectParameters& parameters, const
   return {start(0) * scale, start(1) * speed};
 }
 
+/// The unit in which a `direct` mass moves: that of the record, or what a force or torque in SI goes with.
+std::string unit_of_motion(const Channel* measured, const std::string& unit_of_input) {
+  if (measured != nullptr) {
+    return measured->unit;
+  }
+  return unit_of_input == "N" ? "m" : unit_of_input == "N.m" ? "rad" : "1";
+}
+
 template <class Plant>
 Record run_open_loop(const Plant& plant, typename Plant::State state, const Record& inputs, int steps) {
   const Channel& input = *inputs.find(std::string(Plant::input_channel));
@@ -82,9 +90,8 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
   outputs.channels.push_back(input);
   for (std::size_t c = 0; c < Plant::channels.size(); ++c) {
     const Channel* measured = inputs.find(std::string(Plant::channels[c]));
-    // A direct model follows the record's own unit.
     const std::string unit =
-        Plant::channel_units[c].empty() && measured != nullptr ? measured->unit : std::string(Plant::channel_units[c]);
+        Plant::channel_units[c].empty() ? unit_of_motion(measured, input.unit) : std::string(Plant::channel_units[c]);
     outputs.channels.push_back({std::string(Plant::channels[c]), unit, {}});
     outputs.channels.back().values.reserve(inputs.rows);
   }
