@@ -16,7 +16,7 @@
 namespace hotfire::firmware {
 namespace {
 
-constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr double kAnyFinite = std::numeric_limits<double>::max();
 
 /// Fills the parameters it is shown (`model::visit_keys`, `model::visit_vehicle_keys`) from the entries.
 class Filler {
@@ -47,7 +47,7 @@ class Filler {
       if (!entries_.has(x) && !entries_.has(y)) {
         return;
       }
-      table.x[i] = read_bounded(entries_, x, -kLargest, kLargest, field.x_unit);
+      table.x[i] = read_bounded(entries_, x, -kAnyFinite, kAnyFinite, field.x_unit);
       if (const Entry* entry = entries_.take(x); entry != nullptr && !model::rises(table.x, i)) {
         entries_.refuse(*entry, "must be above the value before it");
       }
@@ -80,7 +80,7 @@ PlayedFault read_fault(Entries& entries, const std::string& prefix, const Faulty
   constexpr double kForGood = std::numeric_limits<double>::infinity();
   PlayedFault fault;
   fault.kind = static_cast<PlayedKind>(read_word(entries, prefix + "kind", kPlayedKinds));
-  fault.from = read_bounded(entries, prefix + "from", 0.0, kLargest, "s");
+  fault.from = read_bounded(entries, prefix + "from", 0.0, kAnyFinite, "s");
   fault.to = read_bounded(entries, prefix + "to", fault.from, kForGood, "s");
   if (fault.kind == PlayedKind::bus_off) {
     return fault;
@@ -95,10 +95,10 @@ PlayedFault read_fault(Entries& entries, const std::string& prefix, const Faulty
   }
   switch (fault.kind) {
     case PlayedKind::biased:
-      fault.value = read_bounded(entries, prefix + "value", -kLargest, kLargest, "in the channel's unit");
+      fault.value = read_bounded(entries, prefix + "value", -kAnyFinite, kAnyFinite, "in the channel's unit");
       break;
     case PlayedKind::noisy:
-      fault.value = read_bounded(entries, prefix + "value", 0.0, kLargest, "in the channel's unit");
+      fault.value = read_bounded(entries, prefix + "value", 0.0, kAnyFinite, "in the channel's unit");
       break;
     case PlayedKind::delayed:
       fault.value = read_bounded(entries, prefix + "value", 0.0, kLongestSensorDelay, "s");

@@ -63,8 +63,6 @@ const char* name_of(Reader::End end) {
   return "damaged: what follows the last readable block was not read";
 }
 
-unsigned long long whole(std::uint64_t count) { return count; }
-
 std::string sentence(const Replay& result) {
   if (result.difference) {
     return text("cycle %llu is the first that differs: %s", whole(result.difference->cycle),

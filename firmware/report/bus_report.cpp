@@ -7,8 +7,6 @@
 namespace hotfire::firmware {
 namespace {
 
-unsigned long long whole(std::uint64_t count) { return count; }
-
 std::string load_text(const BusAccount& bus) {
   return bus.load ? text("worst-case load %.1f %%, allowed %.0f %%", 100.0 * *bus.load, 100.0 * hal::kLargestBusLoad)
                   : std::string("load not known: it has no bit rate, name one with --bit-rate");

@@ -10,8 +10,6 @@ namespace {
 
 double us(std::int64_t ns) { return static_cast<double>(ns) * 1e-3; }
 
-unsigned long long whole(std::uint64_t count) { return count; }
-
 std::string quantiles(const char* title, const Histogram& histogram) {
   return text("  %-13s min %.1f   median %.1f   99 %% %.1f   max %.1f us\n", title, us(histogram.least_ns()),
               us(histogram.quantile_ns(0.5)), us(histogram.quantile_ns(0.99)), us(histogram.greatest_ns()));

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "tests/fuzz/input_file.hpp"
-#include "tools/files/import/apart.hpp"
+#include "tools/files/exchange/apart.hpp"
 #include "tools/files/import/import.hpp"
 #include "tools/files/import/matlab_layout.hpp"
 #include "tools/files/import/matlab_reader.hpp"

@@ -10,6 +10,7 @@
 #include "hal/recording/reader.hpp"
 #include "tests/files/import/write_matlab.hpp"
 #include "tools/files/can/candump.hpp"
+#include "tools/files/exchange/mdf4.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/record/record.hpp"
 
@@ -92,6 +93,7 @@ void write_all(const fs::path& source, const fs::path& folder) {
         "unit = \"deg\"\nfactor = -1\n[csv]\ndelimiter = \";\"\nskip_lines = 1\n");
   write(folder / "toml/can_map", "5schema = 1\n[can]\nrows = \"F\"\n[channels.command]\ncolumn = \"F.s\"\n");
   write(folder / "csv/record", "# by hand\ntime[s],command[rad],piston[mm]\n0,0,0\n0.001,1e-3,0.5\n0.002,,\n0.003,2e-3,1\n");
+  write(folder / "csv/lost_rows", "time[s],command[rad]\n0.003111111,1e-3\n0.002,,\n0.0031111,2e-3\n0.003111102,,\n");
   write(folder / "csv/vehicle", "time[ms],command.pitch1[deg],string1.engine1[m],vibration.yaw1[rad/s]\n0,1,2,3\n2,1,2,3\n");
   write(folder / "modes/small",
         "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1\n1,5,0.01,1e-3,0,1e-4,0\n"
@@ -104,6 +106,8 @@ void write_all(const fs::path& source, const fs::path& folder) {
     write(folder / "recording" / ("plant" + std::to_string(sums[0])), sums + recording("direct", bench, 1));
     write(folder / "recording" / ("lab" + std::to_string(sums[0])), sums + recording("lab", lab, 5));
   }
+  fs::create_directories(folder / "mdf4");
+  write_mdf4(small_record(), folder / "mdf4/own");
   fs::create_directories(folder / "matlab");
   // Version 7.3 is HDF5, a library that its own project fuzzes (OSS-Fuzz).
   for (const auto& [kind, version] :

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "tools/files/model/model_file.hpp"
+#include "tools/files/record/axis_names.hpp"
 #include "tools/files/record/record.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/project/example_records.hpp"
@@ -47,7 +48,7 @@ double left_over_noise(const std::string& text, const Record& record) {
     modelled = simulate(model, record);
   }
   for (const Channel& channel : record.channels) {
-    const auto found = noise.find(channel.name.substr(0, channel.name.find('.')));
+    const auto found = noise.find(std::string(own_name(channel.name)));
     if (found == noise.end()) {
       continue;
     }

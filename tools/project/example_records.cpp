@@ -5,6 +5,7 @@
 #include <random>
 #include <utility>
 
+#include "tools/files/record/axis_names.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 #include "tools/trials/profiles.hpp"
@@ -75,10 +76,10 @@ void measure(Record& record, const std::map<std::string, double>& noise, const E
              std::mt19937_64& random) {
   std::erase_if(record.channels, [&](const Channel& channel) {
     const bool is_input = std::ranges::find(excitation.channels, channel.name) != excitation.channels.end();
-    return !is_input && !noise.contains(channel.name.substr(0, channel.name.find('.')));
+    return !is_input && !noise.contains(std::string(own_name(channel.name)));
   });
   for (Channel& channel : record.channels) {
-    const auto found = noise.find(channel.name.substr(0, channel.name.find('.')));
+    const auto found = noise.find(std::string(own_name(channel.name)));
     if (found == noise.end()) {
       continue;
     }

@@ -145,13 +145,9 @@ class Reader {
     }
     const std::vector<std::string> keys = declared_keys(layout_of_plant<Axis>(parameters_.axes.front()));
     std::vector<std::string> allowed = keys;
-    const auto of_axis = [](const std::string& key, const std::string& axis) {
-      const auto dot = key.find('.');
-      return key.substr(0, dot + 1) + axis + key.substr(dot);
-    };
     for (const std::string& key : keys) {
       for (const std::string& axis : axis_tables_) {
-        allowed.push_back(of_axis(key, axis));
+        allowed.push_back(key_of_axis(key, axis));
       }
     }
     const auto tolerances = read_tolerances(source_, *table, Words(allowed.begin(), allowed.end()));
@@ -159,7 +155,7 @@ class Reader {
       for (const std::string& key : keys) {
         std::vector<std::string> said{key};
         for (const std::string& name : tables_of_axis(axis, Plant::kEngines)) {
-          said.push_back(of_axis(key, name));
+          said.push_back(key_of_axis(key, name));
         }
         for (const std::string& name : said) {
           if (const auto found = tolerances.find(name); found != tolerances.end()) {

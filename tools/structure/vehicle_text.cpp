@@ -6,6 +6,7 @@
 
 #include "tools/files/model/key_groups.hpp"
 #include "tools/files/model/toml_text.hpp"
+#include "tools/files/record/axis_names.hpp"
 #include "tools/structure/vehicle_file.hpp"
 
 namespace hotfire {
@@ -118,10 +119,9 @@ class Writer {
       for (std::size_t axis = 1; axis < axes_.size(); ++axis) {
         same = same && of(axis) == of(0);
       }
-      const auto dot = key.find('.');
       for (std::size_t axis = 0; axis < (same ? 1 : axes_.size()); ++axis) {
         if (!of(axis).empty()) {
-          const std::string name = same ? key : key.substr(0, dot + 1) + axes_[axis] + key.substr(dot);
+          const std::string name = same ? key : key_of_axis(key, axes_[axis]);
           lines += fmt::format("{} = {}\n", name, of(axis));
         }
       }

@@ -217,6 +217,17 @@ TEST(Record, has_as_many_lost_rows_as_its_rate_asks_for_however_its_times_are_ro
   DOUBLES_EQUAL(1.0 / 300.0, record.period, 1e-6);
 }
 
+TEST(Record, gap_at_a_rate_that_no_record_may_have_is_not_filled) {
+  // A gap of half a millisecond at nanoseconds would be half a million rows, twice.
+  std::vector<std::vector<double>> columns{{0.0, 1e-9, 2e-9, 3e-9, 0.0005, 0.001}};
+  RowLines lines(2);
+  put_lost_rows({DropOut{0.0, 1.0}}, 0, columns, lines);
+  UNSIGNED_LONGS_EQUAL(6, columns.front().size());
+  columns = {{0.0, 0.001, 0.002, 0.003, 0.012, 0.013}};
+  put_lost_rows({DropOut{0.0, 1.0}}, 0, columns, lines);
+  UNSIGNED_LONGS_EQUAL(14, columns.front().size());
+}
+
 TEST(Record, beyond_a_drop_out_is_refused_with_the_line_that_the_file_has) {
   const std::string text = "time[s],piston[m]\n0,0\n0.002,0\n0.010,0\n0.012,0\n0.0145,0\n0.0165,0\n";
   expect_message(test::refusal([&] {

@@ -11,6 +11,7 @@
 
 #include "hal/schedule/frame_time.hpp"
 #include "model/keys.hpp"
+#include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/commands.hpp"
 #include "tools/files/can/can_schedule.hpp"
 #include "tools/files/can/candump.hpp"
@@ -73,7 +74,7 @@ Json describe_vehicle(const std::filesystem::path& path) {
 }
 
 Json describe_record(const std::filesystem::path& path) {
-  const Record record = load_record_or_log(path);
+  const Record record = load_any_record(path);
   Json channels = Json::array();
   for (const Channel& channel : record.channels) {
     channels.push_back({{"name", channel.name}, {"unit", channel.unit}});

@@ -24,9 +24,11 @@ void add_import(CLI::App& program) {
     bool guess = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_subcommand("import", "Convert a CSV file with other names, a MATLAB file or a candump log to a record");
-  command->add_option("SOURCE", options->source, "file to import (.mat, with --dbc a candump log, else text with a header)")
+  CLI::App* command = program.add_subcommand(
+      "import", "Convert a file with other names to a record: CSV, MATLAB, MDF 4, HDF5 or a candump log");
+  command
+      ->add_option("SOURCE", options->source,
+                   "file to import (.mat, .mf4, .h5, with --dbc a candump log, else text with a header)")
       ->required();
   command->add_option("--map", options->map, "map: the column of each channel (.toml)");
   command->add_option("--dbc", options->dbc, "for a candump log: the description of its frames (.dbc)");

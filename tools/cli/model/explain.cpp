@@ -19,6 +19,7 @@
 #include <thread>
 #include <variant>
 
+#include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
 #include "tools/explain/report/report_json.hpp"
@@ -174,7 +175,7 @@ std::vector<Record> loaded(const std::vector<std::string>& paths, const CandumpO
   std::vector<Record> records;
   records.reserve(paths.size());
   for (const std::string& path : paths) {
-    records.push_back(load_record_or_log(path, candump, explain::drop_outs_of(exclusions, file_name_of(path))));
+    records.push_back(load_any_record(path, candump, explain::drop_outs_of(exclusions, file_name_of(path))));
   }
   return records;
 }

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
 #include "tools/files/text/error.hpp"
@@ -48,7 +49,7 @@ std::function<Record(const Record&)> simulation_of(const SimulateOptions& option
 
 void run_simulation(const SimulateOptions& options) {
   const std::function<Record(const Record&)> run = simulation_of(options);
-  const Record inputs = load_record_or_log(options.input, options.candump);
+  const Record inputs = load_any_record(options.input, options.candump);
 
   const auto before = std::chrono::steady_clock::now();
   const std::clock_t processor_before = std::clock();

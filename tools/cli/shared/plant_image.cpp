@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/shared/plant_image.hpp"
+#include "tools/cli/shared/any_record.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ template <class Model, class Disturbances>
 std::string played_lines(const Model& model, const PlayedFiles& played, Disturbances&& disturbances) {
   std::string lines = played.faults.empty() ? "" : load_faults(played.faults, faulty_plant(model));
   if (!played.disturbances.empty()) {
-    const Record record = load_record(played.disturbances);
+    const Record record = load_any_record(played.disturbances);
     lines += disturbances_image_text(record, disturbances(record));
   }
   return lines;

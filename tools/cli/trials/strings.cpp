@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/commands.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/trials/pictures.hpp"
@@ -28,7 +29,7 @@ struct StringOptions {
 };
 
 analysis::AngleCalibration calibration_of(const StringOptions& options, std::size_t& poses) {
-  const auto settled = trials::settled_poses(load_record(options.settled), options.engine, options.hold);
+  const auto settled = trials::settled_poses(load_any_record(options.settled), options.engine, options.hold);
   poses = settled.size();
   try {
     return analysis::AngleCalibration(settled);
@@ -44,7 +45,7 @@ double millidegrees(double angle) { return 1e3 * trials::degrees(angle); }
 void run_strings(const StringOptions& options) {
   std::size_t poses = 0;
   const analysis::AngleCalibration calibration = calibration_of(options, poses);
-  const trials::StringAngles angles = trials::string_angles(load_record(options.record), calibration, options.engine);
+  const trials::StringAngles angles = trials::string_angles(load_any_record(options.record), calibration, options.engine);
   write_record(angles.record, options.output);
   if (!options.picture.empty()) {
     analysis::Chart chart = trials::time_chart("Engine by its strings, pitch", angles.record, "pitch" + options.engine);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/cli/trials/trial_options.hpp"
+#include "tools/cli/shared/any_record.hpp"
 
 #include <filesystem>
 
@@ -30,7 +31,7 @@ Record record_of_trial(const TrialOptions& options, const std::function<Record()
 }
 
 Record recorded_or_run(const TrialOptions& options, const std::function<Record()>& run) {
-  Record record = options.record.empty() ? run() : load_record(options.record);
+  Record record = options.record.empty() ? run() : load_any_record(options.record);
   if (!options.output.empty()) {
     write_record(record, options.output);
   }

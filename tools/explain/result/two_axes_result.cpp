@@ -7,16 +7,11 @@
 #include <utility>
 
 #include "tools/explain/words/conclusions.hpp"
+#include "tools/files/record/axis_names.hpp"
 
 namespace hotfire::explain {
 
 namespace {
-
-/// "engine.inertia" of the pitch axis is "engine.pitch.inertia".
-std::string key_of_axis(const std::string& key, const std::string& axis) {
-  const auto dot = key.find('.');
-  return key.substr(0, dot + 1) + axis + key.substr(dot);
-}
 
 std::string name_of_axis(const std::string& name, const std::string& axis) { return fmt::format("{}.{}", name, axis); }
 

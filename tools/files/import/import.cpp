@@ -8,6 +8,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "tools/files/import/foreign.hpp"
 #include "tools/files/import/resample.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/units.hpp"
@@ -83,6 +84,24 @@ void write_columns(const std::vector<ImportColumn>& columns, const std::vector<s
   file.commit();
 }
 
+std::vector<std::vector<double>> read_table(const std::filesystem::path& source, const ImportMap& map) {
+  if (source.extension() == ".mat") {
+    return read_matlab_columns(source, map);
+  }
+  return is_foreign(source) ? read_foreign_columns(source, map) : read_csv_columns(source, map);
+}
+
+/// What was written, read as any record is; no file is left behind if that refuses it.
+Record checked_record(const std::filesystem::path& source, const std::filesystem::path& output,
+                      const std::vector<DropOut>& drop_outs) {
+  try {
+    return load_record(output, drop_outs);
+  } catch (const FileError& error) {
+    std::filesystem::remove(output);
+    throw FileError(fmt::format("{}: does not make a record (line 2 is its first row): {}", source.string(), error.what()));
+  }
+}
+
 }  // namespace
 
 ImportSource import_source(const std::filesystem::path& source, const std::filesystem::path& dbc) {
@@ -116,8 +135,7 @@ Record import_record(const std::filesystem::path& source, const ImportMap& map, 
     write_columns(log.columns, log.values, 0.0, 0.0, output);
   } else {
     ImportMap grid = map;
-    std::vector<std::vector<double>> values =
-        source.extension() == ".mat" ? read_matlab_columns(source, map) : read_csv_columns(source, map);
+    std::vector<std::vector<double>> values = read_table(source, map);
     scale(map.columns, values);
     double start = 0.0;
     if (map.resampling_period > 0.0) {
@@ -131,12 +149,13 @@ Record import_record(const std::filesystem::path& source, const ImportMap& map, 
     }
     write_columns(grid.columns, values, start, grid.period, output);
   }
-  try {
-    return load_record(output, drop_outs);
-  } catch (const FileError& error) {
-    std::filesystem::remove(output);
-    throw FileError(fmt::format("{}: does not make a record (line 2 is its first row): {}", source.string(), error.what()));
-  }
+  return checked_record(source, output, drop_outs);
+}
+
+Record record_of_columns(const std::filesystem::path& source, const ImportMap& map,
+                         const std::vector<std::vector<double>>& values, const std::filesystem::path& output) {
+  write_columns(map.columns, values, 0.0, map.period, output);
+  return checked_record(source, output, {});
 }
 
 }  // namespace hotfire

@@ -72,12 +72,17 @@ struct ImportedColumns {
 /// `rows`, a message silent for over two and a half of its cycle times; for a signal that never occurs, fewer than two rows.
 ImportedColumns read_candump_columns(const std::filesystem::path& path, const Dbc& dbc, const ImportMap& map);
 
-/// Reads `source` (with a DBC file a candump log, else .mat, else CSV) through the map and writes a record, which is then
-/// read as `load_record` reads any other: nothing is repaired. Throws FileError, and leaves no file behind, where that
+/// Reads `source` (with a DBC file a candump log, else .mat, .mf4, .h5 or CSV) through the map and writes a record, which is
+/// then read as `load_record` reads any other: nothing is repaired. Throws FileError, and leaves no file behind, where that
 /// refuses it. Within `drop_outs` [s] cells of a CSV file may be empty, values NaN and rows missing: they stay so in the
 /// record. `notes` takes in what was done to the values beside units, one sentence each.
 Record import_record(const std::filesystem::path& source, const ImportMap& map, const std::filesystem::path& output,
                      const std::filesystem::path& dbc = {}, const std::vector<DropOut>& drop_outs = {},
                      std::vector<std::string>* notes = nullptr);
+
+/// The record of columns that have been read through a map, the time first unless it has a period: written to `output` and
+/// read from it, as `import_record` does.
+Record record_of_columns(const std::filesystem::path& source, const ImportMap& map,
+                         const std::vector<std::vector<double>>& values, const std::filesystem::path& output);
 
 }  // namespace hotfire

@@ -9,6 +9,7 @@
 #include "tools/files/can/candump_frame.hpp"
 #include "tools/files/import/import.hpp"
 #include "tools/files/import/resample.hpp"
+#include "tools/files/record/axis_names.hpp"
 #include "tools/files/record/time_grid.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -62,7 +63,7 @@ class SignalFinder {
       Source& source = sources.emplace_back(Source{column});
       find(source);
       // A load that a frame sets holds until the next.
-      source.is_held = is_held_input(column.channel) || column.channel.substr(0, column.channel.find('.')) == "force";
+      source.is_held = is_held_input(column.channel) || own_name(column.channel) == "force";
       source.column.unit = unit_of(source);
     }
     return sources;

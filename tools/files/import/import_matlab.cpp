@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <string_view>
 
-#include "tools/files/import/apart.hpp"
+#include "tools/files/exchange/apart.hpp"
 #include "tools/files/import/import.hpp"
 #include "tools/files/import/matlab_layout.hpp"
 #include "tools/files/import/matlab_reader.hpp"
@@ -31,22 +32,39 @@ std::vector<std::vector<double>> columns_of(std::string_view text) {
   return columns;
 }
 
-}  // namespace
-
 // What matio does with a damaged file is its own affair: it has crashed on damaged structs.
-std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path& path, const ImportMap& map) {
+std::string read_apart(const std::filesystem::path& path, std::size_t most_bytes, const std::function<std::string()>& read) {
   if (!std::filesystem::is_regular_file(path)) {
     throw FileError(fmt::format("{}: is no file; allowed: a MATLAB file", path.string()));
   }
   require_matlab_layout(path);
-  const std::size_t most_bytes = map.columns.size() * sizeof(double) * (kMostRows + 1);
-  std::vector<std::vector<double>> values;
   try {
-    values = columns_of(run_apart([&] { return matlab_columns_text(path, map); }, matlab_limits(most_bytes)));
+    return run_apart(read, matlab_limits(most_bytes));
   } catch (const ApartError& error) {
     throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {}; it is damaged: save it again with -v7",
                                 path.string(), error.what()));
   }
+}
+
+}  // namespace
+
+std::vector<MatlabVariable> read_matlab_variables(const std::filesystem::path& path) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+  const std::string text = read_apart(path, kMostBytes, [&] { return matlab_variables_text(path); });
+  std::vector<MatlabVariable> variables;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    const std::size_t tab = line.find('\t');
+    variables.push_back({std::string(line.substr(0, tab)), std::string(line.substr(std::min(tab, line.size() - 1) + 1))});
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+  }
+  return variables;
+}
+
+std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path& path, const ImportMap& map) {
+  const std::size_t most_bytes = map.columns.size() * sizeof(double) * (kMostRows + 1);
+  const std::vector<std::vector<double>> values =
+      columns_of(read_apart(path, most_bytes, [&] { return matlab_columns_text(path, map); }));
   if (values.size() != map.columns.size()) {
     throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {} columns came of {}", path.string(), values.size(),
                                 map.columns.size()));

@@ -68,7 +68,45 @@ class MatlabReader {
     return values_of(*inner, place, column);
   }
 
+  /// Every variable of numbers with its field of the struct `units`.
+  std::vector<MatlabVariable> variables() const {
+    std::vector<MatlabVariable> found;
+    std::size_t count = 0;
+    char* const* names = Mat_GetDir(file_.get(), &count);
+    const Variable units(Mat_VarRead(file_.get(), kUnits));
+    for (std::size_t i = 0; names != nullptr && i < count; ++i) {
+      const std::string name = names[i];
+      if (name == kUnits) {
+        continue;
+      }
+      const Variable variable(Mat_VarReadInfo(file_.get(), name.c_str()));
+      if (variable && variable->class_type >= MAT_C_DOUBLE && variable->class_type <= MAT_C_UINT64) {
+        found.push_back({name, unit_of(units.get(), name)});
+      }
+    }
+    return found;
+  }
+
  private:
+  static constexpr const char* kUnits = "units";
+
+  static std::string unit_of(matvar_t* units, const std::string& name) {
+    const matvar_t* field = units != nullptr && units->class_type == MAT_C_STRUCT
+                                ? Mat_VarGetStructFieldByName(units, name.c_str(), 0)
+                                : nullptr;
+    if (field == nullptr || field->class_type != MAT_C_CHAR || field->data == nullptr || field->rank != 2) {
+      return {};
+    }
+    // Characters of one byte or of two, of which units use those of one alone.
+    std::string unit;
+    const auto* bytes = static_cast<const char*>(field->data);
+    const auto step = static_cast<std::size_t>(std::max(field->data_size, 1));
+    for (std::size_t i = 0; i + step <= field->nbytes; i += step) {
+      unit += bytes[i];
+    }
+    return unit;
+  }
+
   [[noreturn]] void refuse(const ImportColumn& column, const std::string& problem) const {
     throw FileError(fmt::format("{}: {} for {}: {}", path_.string(), column.column, column.channel, problem));
   }
@@ -176,6 +214,14 @@ std::string matlab_columns_text(const std::filesystem::path& path, const ImportM
     const std::uint64_t rows = values.size();
     text.append(reinterpret_cast<const char*>(&rows), sizeof rows);
     text.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
+  }
+  return text;
+}
+
+std::string matlab_variables_text(const std::filesystem::path& path) {
+  std::string text;
+  for (const MatlabVariable& variable : MatlabReader(path).variables()) {
+    text += variable.name + '\t' + variable.unit + '\n';
   }
   return text;
 }

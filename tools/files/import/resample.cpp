@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "tools/files/record/axis_names.hpp"
 #include "tools/files/record/record.hpp"
 #include "tools/files/record/time_grid.hpp"
 
@@ -159,7 +160,7 @@ void require_good(const Series& times, const std::vector<Series>& columns) {
 }  // namespace
 
 bool is_held_input(std::string_view channel) {
-  const std::string_view own = channel.substr(0, channel.find('.'));
+  const std::string_view own = own_name(channel);
   return own == "command" || own == "current";
 }
 

@@ -22,4 +22,9 @@ std::vector<std::string> axis_names(int engines) {
   return names;
 }
 
+std::string key_of_axis(const std::string& key, const std::string& axis) {
+  const auto dot = key.find('.');
+  return key.substr(0, dot + 1) + axis + key.substr(dot);
+}
+
 }  // namespace hotfire

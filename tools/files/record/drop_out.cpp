@@ -95,6 +95,10 @@ void put_lost_rows(const std::vector<DropOut>& drop_outs, std::size_t time_colum
     return;
   }
   const double period = period_between_gaps(times);
+  // The grid refuses such a rate; rows that fill its gaps would take all the memory there is before.
+  if (!(period >= kFastestPeriod * (1.0 - kRateRounding))) {
+    return;
+  }
   const std::vector<DropOut> stretches = merged(drop_outs);
   std::vector<std::vector<double>> whole(columns.size());
   for (std::size_t row = 0; row < times.size(); ++row) {

@@ -36,6 +36,9 @@ struct Record {
   std::string place_of(std::size_t row) const;
 };
 
+/// The time of every row [s].
+std::vector<double> times_of(const Record& record);
+
 /// Reads and checks a CSV record (contract.md), or a recording of one actuator (recording.hpp). Throws FileError with file,
 /// line, column, value and what is allowed: empty file, unknown channel or unit, ragged row, NaN or text, gap in time,
 /// repeated or backward time, sampling outside 50 Hz - 20 kHz, more than 10^7 rows, a binary file (refused after its first

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "tools/files/record/axis_names.hpp"
 #include "tools/files/text/suggestion.hpp"
 
 namespace hotfire {
@@ -103,7 +104,7 @@ void require_place(const CsvLines& lines, std::size_t column, std::string_view n
 
 KnownChannel known_channel(const CsvLines& lines, std::size_t column, std::string_view name) {
   const std::size_t point = name.find('.');
-  const std::string_view own = name.substr(0, point);
+  const std::string_view own = own_name(name);
   const auto* found =
       std::find_if(kKnownChannels.begin(), kKnownChannels.end(), [own](const auto& c) { return c.name == own; });
   if (found != kKnownChannels.end() && point != std::string_view::npos) {

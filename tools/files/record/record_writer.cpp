@@ -19,6 +19,14 @@ void append_number(std::string& text, double value) {
 
 }  // namespace
 
+std::vector<double> times_of(const Record& record) {
+  std::vector<double> times(record.rows);
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    times[row] = record.start + static_cast<double>(row) * record.period;
+  }
+  return times;
+}
+
 void write_record(const Record& record, const std::filesystem::path& path) {
   WholeFile file(path);
   std::string text = "time[s]";

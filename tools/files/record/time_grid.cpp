@@ -13,9 +13,7 @@ namespace hotfire {
 
 namespace {
 
-constexpr double kSlowest = 0.02;   // 50 Hz
-constexpr double kFastest = 5e-5;   // 20 kHz
-constexpr double kRounding = 1e-6;  // a rate written as 20 kHz is 20 kHz
+constexpr double kSlowest = 0.02;  // 50 Hz
 
 struct Grid {
   const std::vector<double>& times;
@@ -127,7 +125,7 @@ TimeGrid uniform_grid(const std::vector<double>& times, const PrintedDigits& dig
   if (const std::size_t row = first_uneven_row(grid, period); row != 0) {
     refuse_uneven(grid, row, period);
   }
-  if (period > kSlowest * (1.0 + kRounding) || period < kFastest * (1.0 - kRounding)) {
+  if (period > kSlowest * (1.0 + kRateRounding) || period < kFastestPeriod * (1.0 - kRateRounding)) {
     throw FileError(fmt::format("{}:{}: column time: sampled at {:.6g} Hz (period {:.6g} s); allowed: 50 Hz to 20 kHz",
                                 path.string(), lines.of(0), 1.0 / period, period));
   }
@@ -148,7 +146,7 @@ TimeGrid stamped_grid(const std::vector<double>& times, const std::filesystem::p
     }
   }
   const double period = std::round(mean / kMicrosecond) * kMicrosecond;
-  if (!(period >= kFastest && period <= kSlowest)) {
+  if (!(period >= kFastestPeriod && period <= kSlowest)) {
     throw FileError(fmt::format("{}: readings every {:.6g} s; allowed: 50 Hz to 20 kHz", path.string(), mean));
   }
   return {start, period};

@@ -10,6 +10,10 @@
 
 namespace hotfire {
 
+/// The fastest sampling that a record may have [s], 20 kHz, and what a printed rate may be off, relative.
+inline constexpr double kFastestPeriod = 5e-5;
+inline constexpr double kRateRounding = 1e-6;
+
 /// Watches how a time column is printed, to separate rounding from uneven sampling. A printer keeps either the digits after
 /// the point (%.4f) or all digits (%.6g); the largest count seen of each bounds the rounding of any time.
 class PrintedDigits {

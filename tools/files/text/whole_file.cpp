@@ -77,4 +77,13 @@ void write_whole_file(const std::filesystem::path& path, std::string_view text) 
   file.commit();
 }
 
+void write_whole_file_by(const std::filesystem::path& path, const std::function<bool(const std::filesystem::path&)>& write) {
+  WholeFile file(path);
+  if (!write(file.temporary())) {
+    throw FileError(
+        fmt::format("{}: cannot be written: the library of its format failed; is the disk full?", path.string()));
+  }
+  file.commit();
+}
+
 }  // namespace hotfire

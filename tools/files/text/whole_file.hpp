@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -24,6 +25,9 @@ class WholeFile {
   /// The same, and empties the text, once it is a block long: for a file that grows row by row.
   void write_block(std::string& text);
 
+  /// Where it is written until then, for a library that writes by path.
+  const std::filesystem::path& temporary() const { return temporary_; }
+
   /// Flushes to the disk and renames. Throws FileError.
   void commit();
 
@@ -37,5 +41,8 @@ class WholeFile {
 
 /// Writes a whole text at once. Throws FileError.
 void write_whole_file(const std::filesystem::path& path, std::string_view text);
+
+/// The same of a library that writes to a path: `write` gets the temporary's, and returns whether it could write all of it.
+void write_whole_file_by(const std::filesystem::path& path, const std::function<bool(const std::filesystem::path&)>& write);
 
 }  // namespace hotfire

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/files/import/apart.hpp"
+#include "tools/files/exchange/apart.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

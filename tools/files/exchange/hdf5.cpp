@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/files/exchange/hdf5.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "tools/files/exchange/apart.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/files/text/whole_file.hpp"
+
+namespace hotfire {
+
+namespace {
+
+constexpr const char* kUnitAttribute = "unit";
+constexpr const char* kTimeDataset = "time";
+/// As of a MATLAB file: the library holds a column of as many rows as a record may have twice.
+constexpr ApartLimits kHdf5Limits{4096, 60, 600, std::size_t{4} << 30U};
+
+/// A handle of the library with the function that closes it.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) {
+      close_(id_);
+    }
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  hid_t id() const { return id_; }
+  bool good() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+void put_text(std::string& bytes, std::string_view text) {
+  const std::uint64_t size = text.size();
+  bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
+  bytes += text;
+}
+
+std::string_view take_text(std::string_view& bytes) {
+  std::uint64_t size = 0;
+  if (bytes.size() >= sizeof size) {
+    std::memcpy(&size, bytes.data(), sizeof size);
+    bytes.remove_prefix(sizeof size);
+  }
+  const std::string_view text = bytes.substr(0, size);
+  bytes.remove_prefix(text.size());
+  return text;
+}
+
+std::string unit_of(hid_t dataset) {
+  if (H5Aexists(dataset, kUnitAttribute) <= 0) {
+    return {};
+  }
+  const Handle attribute(H5Aopen(dataset, kUnitAttribute, H5P_DEFAULT), H5Aclose);
+  const Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  if (H5Tget_class(type.id()) != H5T_STRING) {
+    return {};
+  }
+  if (H5Tis_variable_str(type.id()) > 0) {
+    char* text = nullptr;
+    std::string unit;
+    if (H5Aread(attribute.id(), type.id(), &text) >= 0 && text != nullptr) {
+      unit = text;
+      H5free_memory(text);
+    }
+    return unit;
+  }
+  constexpr std::size_t kMostLetters = 100;
+  const std::size_t size = H5Tget_size(type.id());
+  std::string text(std::min(size, kMostLetters), '\0');
+  if (size > kMostLetters || H5Aread(attribute.id(), type.id(), text.data()) < 0) {
+    return {};
+  }
+  return text.substr(0, text.find('\0'));
+}
+
+/// In the process of its own: names, units and values of every dataset, one after the other.
+std::string channels_here(const std::filesystem::path& path) {
+  be_quiet();
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.good()) {
+    throw FileError(fmt::format("{}: is no HDF5 file that can be read", path.string()));
+  }
+  H5G_info_t info{};
+  H5Gget_info(file.id(), &info);
+  std::string bytes;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    const ssize_t length = H5Lget_name_by_idx(file.id(), ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT);
+    std::string name(static_cast<std::size_t>(std::max<ssize_t>(length, 0)) + 1, '\0');
+    H5Lget_name_by_idx(file.id(), ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size(), H5P_DEFAULT);
+    name.pop_back();
+    const Handle dataset(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!dataset.good()) {
+      continue;  // a group, which holds other things than a record
+    }
+    const auto refuse = [&](const std::string& problem) {
+      throw FileError(fmt::format("{}: dataset \"{}\": {}", path.string(), name, problem));
+    };
+    const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+    const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+    const H5T_class_t kind = H5Tget_class(type.id());
+    const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
+    if (H5Sget_simple_extent_ndims(space.id()) != 1 || (kind != H5T_FLOAT && kind != H5T_INTEGER)) {
+      refuse("is no vector of numbers; allowed in the root: vectors of integers or floats, one for each channel");
+    }
+    if (rows < 0 || static_cast<std::size_t>(rows) > kMostRows) {
+      refuse(fmt::format("{} rows; allowed: up to {}", rows, kMostRows));
+    }
+    std::vector<double> values(static_cast<std::size_t>(rows));
+    if (!values.empty() && H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+      refuse("its values cannot be read; the file is damaged");
+    }
+    put_text(bytes, name);
+    put_text(bytes, unit_of(dataset.id()));
+    put_text(bytes, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
+  }
+  return bytes;
+}
+
+/// Writes one dataset with its unit; false if the library could not.
+bool put_dataset(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values) {
+  const hsize_t rows = values.size();
+  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+  const Handle dataset(H5Dcreate2(file, name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                       H5Dclose);
+  if (!dataset.good() || H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    return false;
+  }
+  const Handle text(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(text.id(), unit.size() + 1);
+  const Handle one(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute(H5Acreate2(dataset.id(), kUnitAttribute, text.id(), one.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  return attribute.good() && H5Awrite(attribute.id(), text.id(), unit.c_str()) >= 0;
+}
+
+}  // namespace
+
+std::vector<ForeignGroup> read_hdf5(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) {
+    throw FileError(fmt::format("{}: is no file; allowed: an HDF5 file", path.string()));
+  }
+  std::string bytes;
+  try {
+    bytes = run_apart([&] { return channels_here(path); }, kHdf5Limits);
+  } catch (const ApartError& error) {
+    throw FileError(fmt::format("{}: cannot be read as an HDF5 file: {}; it is damaged", path.string(), error.what()));
+  }
+  std::vector<ForeignGroup> groups(1);
+  for (std::string_view rest = bytes; !rest.empty();) {
+    ForeignChannel& channel = groups.front().channels.emplace_back();
+    channel.name = take_text(rest);
+    channel.unit = take_text(rest);
+    channel.is_time = channel.name == kTimeDataset;
+    const std::string_view values = take_text(rest);
+    channel.values.resize(values.size() / sizeof(double));
+    if (!channel.values.empty()) {
+      std::memcpy(channel.values.data(), values.data(), channel.values.size() * sizeof(double));
+    }
+  }
+  return groups;
+}
+
+void write_hdf5(const Record& record, const std::filesystem::path& path) {
+  be_quiet();
+  write_whole_file_by(path, [&](const std::filesystem::path& temporary) {
+    const Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    bool good = file.good() && put_dataset(file.id(), kTimeDataset, "s", times_of(record));
+    for (const Channel& channel : record.channels) {
+      good = good && put_dataset(file.id(), channel.name, channel.unit, channel.values);
+    }
+    return good && H5Fflush(file.id(), H5F_SCOPE_LOCAL) >= 0;
+  });
+}
+
+}  // namespace hotfire
