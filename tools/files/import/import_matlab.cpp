@@ -63,7 +63,7 @@ std::vector<MatlabVariable> read_matlab_variables(const std::filesystem::path& p
 
 std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path& path, const ImportMap& map) {
   const std::size_t most_bytes = map.columns.size() * sizeof(double) * (kMostRows + 1);
-  const std::vector<std::vector<double>> values =
+  std::vector<std::vector<double>> values =
       columns_of(read_apart(path, most_bytes, [&] { return matlab_columns_text(path, map); }));
   if (values.size() != map.columns.size()) {
     throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {} columns came of {}", path.string(), values.size(),
