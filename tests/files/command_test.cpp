@@ -283,7 +283,7 @@ TEST(Command, candump_log_is_written_read_back_and_simulated) {
   expect_message(out, {"model.csv: 3 rows"});
   LONGS_EQUAL(6, status_of("simulate --model " + model() + " --input " + log + " --output " + output));
   expect_message(err, {"no column command", "--command-per-current"});
-  LONGS_EQUAL(2, status_of("convert " + csv + " r.mat"));
+  LONGS_EQUAL(2, status_of("convert " + csv + " r.xls"));
 }
 
 TEST(Command, import_reads_a_candump_log_with_its_dbc_file_and_says_without_one_what_is_needed) {
