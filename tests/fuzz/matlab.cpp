@@ -71,7 +71,7 @@ class Batch {
   void read() {
     for (*next_ = 0; *next_ < inputs_.size(); ++*next_) {
       try {
-        run_apart([this] { return read_rest_here(); }, matlab_limits(0));
+        run_apart([this] { return read_rest_here(); }, limits_of_a_reader(0));
       } catch (const ApartError&) {
         const Input& input = inputs_.at(*next_);
         const std::string& path = file_.holding(input.content);

@@ -3,16 +3,17 @@
 
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/private_folder.hpp"
 #include "tools/study/cases/case.hpp"
 #include "tools/study/cases/orders.hpp"
 #include "tools/study/tally/candidate_fit.hpp"
@@ -39,30 +40,20 @@ struct Options {
 /// Where cases are written: the user's folder, or one of our own that goes with us.
 class Workplace {
  public:
-  explicit Workplace(const std::string& wanted) : kept_(!wanted.empty()) {
-    if (kept_) {
-      folder_ = wanted;
-    } else {
-      std::string pattern = (std::filesystem::temp_directory_path() / "hotfire-study-XXXXXX").string();
-      if (mkdtemp(pattern.data()) == nullptr) {
-        throw UsageError(pattern + ": cannot be made; give a folder with --out");
+  explicit Workplace(const std::string& wanted) : wanted_(wanted) {
+    if (wanted.empty()) {
+      try {
+        own_.emplace();
+      } catch (const FileError& error) {
+        throw UsageError(std::string(error.what()) + "; give a folder with --out");
       }
-      folder_ = pattern;
     }
   }
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
-  ~Workplace() {
-    if (!kept_) {
-      std::error_code ignored;
-      std::filesystem::remove_all(folder_, ignored);
-    }
-  }
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return own_ ? own_->path() : wanted_; }
 
  private:
-  bool kept_;
-  std::filesystem::path folder_;
+  std::filesystem::path wanted_;
+  std::optional<PrivateFolder> own_;
 };
 
 /// Judges case after case, a line each as it goes.

@@ -206,6 +206,18 @@ TEST(Foreign, MdfIntegersOfAnyBitsAndByteOrderWithALinearConversion) {
       DOUBLES_EQUAL(10.0 + 0.5 * value, channels_of(bytes).back().values.front(), 0.0);
     }
   }
+  put<std::uint8_t>(bytes, data + 3, 0);
+  put<std::uint32_t>(bytes, data + 8, 64);
+  put(bytes, data + 2, mdf4::DataType::unsigned_little);
+  constexpr std::uint64_t kLargestExact = std::uint64_t{1} << 53U;
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    put(bytes, values + 4 * row * sizeof(double), kLargestExact);
+  }
+  DOUBLES_EQUAL(10.0 + 0.5 * 9007199254740992.0, channels_of(bytes).back().values.front(), 0.0);
+  put(bytes, values, kLargestExact + 1);
+  expect_message(refusal_of(bytes), {"engine", "beyond 2^53"});
+  put<std::uint32_t>(bytes, data + 8, 12);
+  put<std::uint8_t>(bytes, data + 3, 3);
   put(bytes, data + 2, mdf4::DataType::float_little);
   expect_message(refusal_of(bytes), {"engine", "data type 4 of 12 bits"});
   put<std::uint8_t>(bytes, data + 3, 0);

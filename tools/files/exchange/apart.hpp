@@ -16,6 +16,11 @@ struct ApartLimits {
   std::size_t result_bytes = 0;
 };
 
+/// What the process may use in which a library reads somebody else's file: 4 GiB, since a column of as many rows as a record
+/// may have is 80 MB and the library holds it twice; 60 s of processor, within 600 s on a machine that has a tenth of a
+/// processor for it.
+constexpr ApartLimits limits_of_a_reader(std::size_t result_bytes) { return {4096, 60, 600, result_bytes}; }
+
 /// Why work in a process of its own gave no result: a crash with its signal, or the limit it went beyond.
 struct ApartError : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -20,8 +20,7 @@ namespace {
 
 constexpr const char* kUnitAttribute = "unit";
 constexpr const char* kTimeDataset = "time";
-/// As of a MATLAB file: the library holds a column of as many rows as a record may have twice.
-constexpr ApartLimits kHdf5Limits{4096, 60, 600, std::size_t{4} << 30U};
+constexpr std::size_t kMostChannelBytes = std::size_t{4} << 30U;
 
 /// A handle of the library with the function that closes it.
 class Handle {
@@ -155,7 +154,7 @@ std::vector<ForeignGroup> read_hdf5(const std::filesystem::path& path) {
   }
   std::string bytes;
   try {
-    bytes = run_apart([&] { return channels_here(path); }, kHdf5Limits);
+    bytes = run_apart([&] { return channels_here(path); }, limits_of_a_reader(kMostChannelBytes));
   } catch (const ApartError& error) {
     throw FileError(fmt::format("{}: cannot be read as an HDF5 file: {}; it is damaged", path.string(), error.what()));
   }

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <matio.h>
-
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <string>
 
+#include "tools/files/exchange/matlab_handles.hpp"
 #include "tools/files/exchange/matlab_writer.hpp"
 #include "tools/files/text/whole_file.hpp"
 
 namespace hotfire {
 
 namespace {
-
-struct CloseMat {
-  void operator()(mat_t* file) const noexcept { Mat_Close(file); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const noexcept { Mat_VarFree(variable); }
-};
-using MatFile = std::unique_ptr<mat_t, CloseMat>;
-using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
 matvar_t* text_variable(std::string text) {
   std::array<std::size_t, 2> size{1, text.size()};
@@ -29,7 +18,7 @@ matvar_t* text_variable(std::string text) {
 
 bool put_column(mat_t* file, const std::string& name, std::vector<double> values) {
   std::array<std::size_t, 2> size{values.size(), 1};
-  const Variable variable(
+  const MatVariable variable(
       Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size.data(), values.data(), MAT_F_DONT_COPY_DATA));
   return variable && Mat_VarWrite(file, variable.get(), MAT_COMPRESSION_ZLIB) == 0;
 }
@@ -44,7 +33,7 @@ bool put_units(mat_t* file, const Record& record) {
   std::transform(names.begin(), names.end(), std::back_inserter(fields),
                  [](const std::string& name) { return name.c_str(); });
   std::array<std::size_t, 2> one{1, 1};
-  const Variable units(Mat_VarCreateStruct("units", 2, one.data(), fields.data(), static_cast<unsigned>(fields.size())));
+  const MatVariable units(Mat_VarCreateStruct("units", 2, one.data(), fields.data(), static_cast<unsigned>(fields.size())));
   if (!units) {
     return false;
   }

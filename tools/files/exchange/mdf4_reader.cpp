@@ -9,6 +9,7 @@
 #include <fstream>
 #include <set>
 
+#include "tools/files/exchange/exact_integer.hpp"
 #include "tools/files/exchange/mdf4.hpp"
 #include "tools/files/exchange/mdf4_blocks.hpp"
 #include "tools/files/text/error.hpp"
@@ -331,12 +332,11 @@ class Mdf4Reader {
           value |= ~((std::uint64_t{1} << bits) - 1);
         }
       }
-      const double number = is_signed ? static_cast<double>(static_cast<std::int64_t>(value)) : static_cast<double>(value);
-      constexpr double kLargestExact = 9007199254740992.0;  // 2^53
-      if (number > kLargestExact || number < -kLargestExact) {
+      const auto as_signed = static_cast<std::int64_t>(value);
+      if (is_signed ? !is_exact(as_signed) : !is_exact(value)) {
         reader.refuse(fmt::format("channel \"{}\": an integer beyond 2^53, which no double holds", name));
       }
-      return number;
+      return is_signed ? static_cast<double>(as_signed) : static_cast<double>(value);
     }
   };
 

@@ -3,18 +3,17 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <system_error>
 #include <utility>
 
 #include "tools/files/exchange/hdf5.hpp"
 #include "tools/files/exchange/matlab_writer.hpp"
 #include "tools/files/exchange/mdf4.hpp"
+#include "tools/files/import/columns.hpp"
 #include "tools/files/import/matlab_reader.hpp"
 #include "tools/files/record/axis_names.hpp"
 #include "tools/files/record/record_channels.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/private_folder.hpp"
 #include "tools/files/text/suggestion.hpp"
 
 namespace hotfire {
@@ -125,35 +124,10 @@ std::vector<std::vector<double>> columns_of(const std::filesystem::path& path, c
     }
     first = found.group;
     values.push_back(found.channel->values);
-    if (values.back().size() != values.front().size()) {
-      throw FileError(fmt::format("{}: {} has {} rows, {} has {}; a record has as many of each", path.string(),
-                                  column.column, values.back().size(), map.columns.front().column, values.front().size()));
-    }
   }
+  require_equal_rows(path, map, values);
   return values;
 }
-
-/// A folder that nobody else can write to, gone at the end.
-class PrivateFolder {
- public:
-  PrivateFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "hotfire-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw FileError(fmt::format("{}: cannot be made: {}", name, std::generic_category().message(errno)));
-    }
-    path_ = name;
-  }
-  ~PrivateFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace
 
@@ -165,7 +139,7 @@ bool is_foreign(const std::filesystem::path& path) {
 }
 
 std::vector<std::vector<double>> read_foreign_columns(const std::filesystem::path& path, const ImportMap& map) {
-  return columns_of(path, groups_of(path), map);
+  return is_matlab(path) ? read_matlab_columns(path, map) : columns_of(path, groups_of(path), map);
 }
 
 Record load_foreign(const std::filesystem::path& path) {

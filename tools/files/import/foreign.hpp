@@ -25,8 +25,9 @@ Record load_foreign(const std::filesystem::path& path);
 /// Writes a record in the format of the file name's extension.
 void write_foreign(const Record& record, const std::filesystem::path& path);
 
-/// The columns of a map from an MDF or HDF5 file: a channel by its name, or `GROUP/CHANNEL` where several groups have one of
-/// that name. Throws FileError: no such channel (with the nearest), several, channels of groups that were sampled apart.
+/// The columns of a map from a file in such a format. Of MDF and HDF5 a channel by its name, or `GROUP/CHANNEL` where
+/// several groups have one of that name. Throws FileError: no such channel (with the nearest), several, channels of groups
+/// that were sampled apart.
 std::vector<std::vector<double>> read_foreign_columns(const std::filesystem::path& path, const ImportMap& map);
 
 }  // namespace hotfire

@@ -85,9 +85,6 @@ void write_columns(const std::vector<ImportColumn>& columns, const std::vector<s
 }
 
 std::vector<std::vector<double>> read_table(const std::filesystem::path& source, const ImportMap& map) {
-  if (source.extension() == ".mat") {
-    return read_matlab_columns(source, map);
-  }
   return is_foreign(source) ? read_foreign_columns(source, map) : read_csv_columns(source, map);
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "tools/files/exchange/apart.hpp"
+#include "tools/files/import/columns.hpp"
 #include "tools/files/import/import.hpp"
 #include "tools/files/import/matlab_layout.hpp"
 #include "tools/files/import/matlab_reader.hpp"
@@ -39,7 +40,7 @@ std::string read_apart(const std::filesystem::path& path, std::size_t most_bytes
   }
   require_matlab_layout(path);
   try {
-    return run_apart(read, matlab_limits(most_bytes));
+    return run_apart(read, limits_of_a_reader(most_bytes));
   } catch (const ApartError& error) {
     throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {}; it is damaged: save it again with -v7",
                                 path.string(), error.what()));
@@ -69,13 +70,7 @@ std::vector<std::vector<double>> read_matlab_columns(const std::filesystem::path
     throw FileError(fmt::format("{}: cannot be read as a MATLAB file: {} columns came of {}", path.string(), values.size(),
                                 map.columns.size()));
   }
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i].size() != values.front().size()) {
-      throw FileError(fmt::format("{}: {} has {} rows, {} has {}; a record has as many of each", path.string(),
-                                  map.columns[i].column, values[i].size(), map.columns.front().column,
-                                  values.front().size()));
-    }
-  }
+  require_equal_rows(path, map, values);
   return values;
 }
 

@@ -2,30 +2,20 @@
 #include "tools/files/import/matlab_reader.hpp"
 
 #include <fmt/format.h>
-#include <matio.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <span>
 #include <type_traits>
 
+#include "tools/files/exchange/exact_integer.hpp"
+#include "tools/files/exchange/matlab_handles.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
 
 namespace {
-
-struct CloseMat {
-  void operator()(mat_t* file) const noexcept { Mat_Close(file); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const noexcept { Mat_VarFree(variable); }
-};
-using MatFile = std::unique_ptr<mat_t, CloseMat>;
-using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
 /// "data.beta:3": variable "data", field "beta", third column; 0 is a vector.
 struct Place {
@@ -54,7 +44,7 @@ class MatlabReader {
 
   std::vector<double> read(const ImportColumn& column) const {
     const Place place = place_of(column);
-    const Variable variable(Mat_VarRead(file_.get(), place.variable.c_str()));
+    const MatVariable variable(Mat_VarRead(file_.get(), place.variable.c_str()));
     matvar_t* inner = variable.get();
     if (inner == nullptr) {
       refuse(column, fmt::format("no variable \"{}\"; there are: {}", place.variable, names_in(file_.get())));
@@ -73,13 +63,13 @@ class MatlabReader {
     std::vector<MatlabVariable> found;
     std::size_t count = 0;
     char* const* names = Mat_GetDir(file_.get(), &count);
-    const Variable units(Mat_VarRead(file_.get(), kUnits));
+    const MatVariable units(Mat_VarRead(file_.get(), kUnits));
     for (std::size_t i = 0; names != nullptr && i < count; ++i) {
       const std::string name = names[i];
       if (name == kUnits) {
         continue;
       }
-      const Variable variable(Mat_VarReadInfo(file_.get(), name.c_str()));
+      const MatVariable variable(Mat_VarReadInfo(file_.get(), name.c_str()));
       if (variable && variable->class_type >= MAT_C_DOUBLE && variable->class_type <= MAT_C_UINT64) {
         found.push_back({name, unit_of(units.get(), name)});
       }
@@ -185,17 +175,13 @@ class MatlabReader {
     }
   }
 
-  /// A double has every integer up to 2^53 alone.
   template <class T>
   void require_exact(std::span<const T> values, const ImportColumn& column) const {
-    if constexpr (std::is_integral_v<T> && sizeof(T) == sizeof(std::int64_t)) {
-      constexpr T kLargestExact = T{1} << std::numeric_limits<double>::digits;
-      const auto found = std::find_if(values.begin(), values.end(), [](T value) {
-        return value > kLargestExact || (std::is_signed_v<T> && value < T{0} - kLargestExact);
-      });
+    if constexpr (std::is_integral_v<T>) {
+      const auto found = std::ranges::find_if_not(values, is_exact<T>);
       if (found != values.end()) {
         refuse(column, fmt::format("row {}: {} does not fit a double; allowed: integers of at most 2^53 = {}",
-                                   found - values.begin() + 1, *found, kLargestExact));
+                                   found - values.begin() + 1, *found, kLargestExactInteger));
       }
     }
   }

@@ -34,8 +34,9 @@ void write_record(const Record& record, const std::filesystem::path& path) {
     text += fmt::format(",{}[{}]", channel.name, channel.unit);
   }
   text += '\n';
+  const std::vector<double> times = times_of(record);
   for (std::size_t row = 0; row < record.rows; ++row) {
-    append_number(text, record.start + static_cast<double>(row) * record.period);
+    append_number(text, times[row]);
     for (const Channel& channel : record.channels) {
       text += ',';
       append_number(text, channel.values[row]);
