@@ -4,17 +4,14 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <variant>
@@ -22,6 +19,7 @@
 #include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/progress.hpp"
 #include "tools/explain/report/report_json.hpp"
 #include "tools/files/rig/profile_file.hpp"
 #include "tools/files/text/error.hpp"
@@ -53,29 +51,6 @@ constexpr const char* kNextRecord = "next_experiment.csv";
 constexpr const char* kNextProfile = "next_experiment.toml";
 
 volatile std::sig_atomic_t interrupted = 0;
-
-/// One line on standard error that is written over, if that is a terminal.
-class Progress {
- public:
-  void say(const std::string& what) {
-    if (isatty(STDERR_FILENO) == 0) {
-      return;
-    }
-    const std::lock_guard guard(mutex_);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-    std::cerr << fmt::format("\r\x1b[K[{:5.1f} s] {}", seconds, what) << std::flush;
-  }
-  ~Progress() {
-    if (isatty(STDERR_FILENO) != 0) {
-      std::cerr << "\r\x1b[K" << std::flush;
-    }
-  }
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
-
- private:
-  std::mutex mutex_;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-};
 
 /// A line for each channel: its rms error under the three models.
 std::string error_rows(const std::vector<explain::ChannelErrors>& channels) {
@@ -226,7 +201,7 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   google::SetCommandLineOption("minloglevel", "3");
 
   std::signal(SIGINT, [](int) { interrupted = 1; });
-  Progress progress;
+  Progress progress(arguments.seconds);
   options.threads = arguments.threads;
   options.most_effects = arguments.most_effects;
   options.keep_drift = arguments.keep_drift;

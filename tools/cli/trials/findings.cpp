@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/progress.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 #include "tools/findings/document.hpp"
@@ -76,12 +77,22 @@ void print(const std::vector<findings::Row>& rows) {
   }
 }
 
+double share(std::size_t done, std::size_t all) { return static_cast<double>(done) / static_cast<double>(all); }
+
 /// Takes out of every finding what it is about, and says which figures notice. Returns false if a finding still holds.
 bool run_mutants(const FindingsOptions& options, const findings::Bench& bench) {
   bool all_fail = true;
   auto all = nlohmann::ordered_json::array();
-  for (const findings::Finding* finding : chosen(options.only)) {
+  const auto wanted = chosen(options.only);
+  std::size_t count = 0;
+  for (const findings::Finding* finding : wanted) {
+    count += finding->mutants.all().size();
+  }
+  std::size_t done = 0;
+  Progress progress;
+  for (const findings::Finding* finding : wanted) {
     for (const findings::Physics physics : finding->mutants.all()) {
+      progress.say(fmt::format("{} without {}", finding->id, findings::physics_name(physics)), share(done++, count));
       const findings::Outcome outcome = finding->find(findings::without(bench, physics));
       std::vector<std::string> outside;
       for (const findings::Figure& figure : outcome.figures) {
@@ -121,7 +132,10 @@ void run_findings(const FindingsOptions& options) {
   if (!options.pictures.empty()) {
     std::filesystem::create_directories(options.pictures);
   }
-  for (const findings::Finding* finding : chosen(options.only)) {
+  const auto wanted = chosen(options.only);
+  Progress progress;
+  for (const findings::Finding* finding : wanted) {
+    progress.say(fmt::format("{}: {}", finding->id, finding->title), share(rows.size(), wanted.size()));
     rows.push_back({finding, finding->find(bench)});
     all_found = all_found && rows.back().outcome.inside();
     if (!options.pictures.empty()) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cli/shared/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <utility>
+
+namespace hotfire {
+
+namespace {
+
+/// Time between two lines of a log, and before the first [s]: a command that takes less adds nothing to its log.
+constexpr double kLogPeriod = 10.0;
+/// Characters of the bar.
+constexpr int kBarWidth = 20;
+/// Share of the work from which it tells how long the rest takes.
+constexpr double kLeastShare = 0.02;
+
+std::string bar(double done) {
+  const int filled = static_cast<int>(std::lround(std::clamp(done, 0.0, 1.0) * kBarWidth));
+  return std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(kBarWidth - filled), '.');
+}
+
+std::string in_words(double seconds) {
+  const auto whole = std::lround(std::max(0.0, seconds));
+  return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {} s", whole / 60, whole % 60);
+}
+
+}  // namespace
+
+std::function<double()> stopwatch() {
+  return [began = std::chrono::steady_clock::now()] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  };
+}
+
+Progress::Progress(std::optional<double> limit) : Progress(std::cerr, isatty(STDERR_FILENO) != 0, limit, stopwatch()) {}
+
+Progress::Progress(std::ostream& to, bool is_terminal, std::optional<double> limit, std::function<double()> clock)
+    : to_(to), is_terminal_(is_terminal), limit_(limit), clock_(std::move(clock)), next_(kLogPeriod) {}
+
+Progress::~Progress() {
+  if (is_terminal_) {
+    to_ << "\r\x1b[K" << std::flush;
+  }
+}
+
+std::string Progress::line(double seconds, const std::string& what, std::optional<double> done) const {
+  if (done) {
+    const std::string left =
+        *done < kLeastShare ? "" : fmt::format(", about {} left", in_words(seconds * (1.0 - *done) / *done));
+    return fmt::format("[{}] {:.0f} %{}: {}", bar(*done), 100.0 * *done, left, what);
+  }
+  if (limit_) {
+    return fmt::format("[{}] {}, at most {} left: {}", bar(seconds / *limit_), in_words(seconds),
+                       in_words(*limit_ - seconds), what);
+  }
+  return fmt::format("[{:5.1f} s] {}", seconds, what);
+}
+
+void Progress::say(const std::string& what, std::optional<double> done) {
+  const std::lock_guard guard(mutex_);
+  const double seconds = clock_();
+  if (is_terminal_) {
+    to_ << "\r\x1b[K" << line(seconds, what, done) << std::flush;
+  } else if (seconds >= next_) {
+    next_ = seconds + kLogPeriod;
+    to_ << line(seconds, what, done) << std::endl;
+  }
+}
+
+}  // namespace hotfire
