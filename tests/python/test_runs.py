@@ -112,6 +112,12 @@ def test_a_gradient_is_the_limit_of_differences():
             assert np.std(error) < 1e-5 * np.std(difference), (key, channel)
 
 
+def test_a_gradient_of_a_mass_has_the_position_of_the_record_in_its_unit():
+    model = hotfire.Model({"topology": "direct", "mass": {"inertia": 2.0, "damping": 3.0, "stiffness": 100.0}})
+    slopes = hotfire.gradients(model, inputs_of("direct"), ["mass.stiffness"])
+    assert slopes.units["position"] == ("position/(force/position)",)
+
+
 def test_gradients_are_by_all_that_acts_by_default(model, record):
     assert set(hotfire.gradients(model, record).keys) == set(model.parameters)
     with pytest.raises(hotfire.UsageError, match="no parameter that acts"):

@@ -60,8 +60,7 @@ typedef enum hotfire_status {
   HOTFIRE_OK = 0,
   HOTFIRE_WRONG_USE = 2, /* a call in the wrong order, or an argument that no model can take */
   HOTFIRE_BAD_DATA = 6,  /* a file, a value or a state that this model refuses */
-  HOTFIRE_RAN_AWAY = 7,  /* a reading is not finite or beyond 1e12: the parameters are unstable for these inputs */
-  HOTFIRE_NO_MEMORY = 8
+  HOTFIRE_RAN_AWAY = 7   /* a reading is not finite or beyond 1e12: the parameters are unstable for these inputs */
 } hotfire_status;
 
 typedef enum hotfire_kind { HOTFIRE_INPUT = 0, HOTFIRE_OUTPUT = 1, HOTFIRE_PARAMETER = 2 } hotfire_kind;

@@ -107,7 +107,14 @@ def gradients(
     record = _inputs(model, inputs, period)
     wanted = tuple(_core.acting_keys(model._core) if keys is None else keys)
     slopes = _core.gradients(model._core, record._core, list(wanted), _threads(threads))
-    units = {"piston": "m", "engine": "rad", "load_pressure": "Pa", **{f"string{number}": "m" for number in range(1, 5)}}
+    units = {
+        "piston": "m",
+        "engine": "rad",
+        "load_pressure": "Pa",
+        **{f"string{number}": "m" for number in range(1, 5)},
+        # Of a mass the record decides the unit, as for the parameters.
+        "position": "position",
+    }
     of_keys = {key: parameter.unit for key, parameter in model.parameters.items()}
     quotients = {
         channel: tuple(f"{units.get(channel.partition('.')[0], '1')}/({of_keys[key] or '1'})" for key in wanted) for channel in slopes
