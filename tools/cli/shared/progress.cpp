@@ -18,7 +18,7 @@ namespace {
 constexpr double kLogPeriod = 10.0;
 /// Characters of the bar.
 constexpr int kBarWidth = 20;
-/// Share of the work from which it tells how long the rest takes.
+/// Share of the work from which the time left is reported.
 constexpr double kLeastShare = 0.02;
 
 std::string bar(double done) {
