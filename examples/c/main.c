@@ -12,10 +12,11 @@ int main(int argc, char** argv) {
     fputs("usage: hotfire_example model.toml\n", stderr);
     return 2;
   }
-  hotfire_model* model = hotfire_open(argv[1], NULL, message, sizeof message);
-  if (model == NULL) {
+  hotfire_model* model = NULL;
+  const hotfire_status opened = hotfire_open(argv[1], NULL, &model, message, sizeof message);
+  if (opened != HOTFIRE_OK) {
     fprintf(stderr, "%s\n", message);
-    return 6;
+    return (int)opened;
   }
   size_t command = 0;
   size_t engine = 0;

@@ -22,9 +22,12 @@ struct Close {
 };
 using Model = std::unique_ptr<hotfire_model, Close>;
 
-std::string problem_of_text(const std::string& text, const hotfire_options* options = nullptr) {
+/// The sentence about a text that is refused with this status.
+std::string problem_of_text(const std::string& text, const hotfire_options* options = nullptr,
+                            hotfire_status expected = HOTFIRE_BAD_DATA) {
   std::array<char, 512> message{};
-  const Model model(hotfire_open_text(text.c_str(), "own.toml", options, message.data(), message.size()));
+  hotfire_model* model = nullptr;
+  LONGS_EQUAL(expected, hotfire_open_text(text.c_str(), "own.toml", options, &model, message.data(), message.size()));
   CHECK(model == nullptr);
   return message.data();
 }
@@ -33,11 +36,11 @@ Model open(const Case& own) {
   hotfire_options options;
   hotfire_default_options(&options);
   options.period = own.period;
+  hotfire_model* model = nullptr;
   std::array<char, 512> message{};
-  Model model(hotfire_open_text(own.text.c_str(), "own.toml", &options, message.data(), message.size()));
+  LONGS_EQUAL(HOTFIRE_OK, hotfire_open_text(own.text.c_str(), "own.toml", &options, &model, message.data(), message.size()));
   STRCMP_EQUAL("", message.data());
-  CHECK(model != nullptr);
-  return model;
+  return Model(model);
 }
 
 std::vector<std::size_t> places_of(hotfire_model* model, hotfire_kind kind, const std::vector<std::string>& names) {
@@ -337,10 +340,22 @@ TEST(CLibrary, RefusesAPeriodThatNoModelTakes) {
   hotfire_default_options(&options);
   options.period = 2.0;
   STRCMP_EQUAL("options.period = 2: outside its bounds; allowed: 1e-06 to 1 s",
-               problem_of_text(cases(20)[0].text, &options).c_str());
+               problem_of_text(cases(20)[0].text, &options, HOTFIRE_WRONG_USE).c_str());
   options.period = 1e-3;
   options.size = 4;
-  STRCMP_CONTAINS("options.size = 4", problem_of_text(cases(20)[0].text, &options).c_str());
+  STRCMP_CONTAINS("options.size = 4", problem_of_text(cases(20)[0].text, &options, HOTFIRE_WRONG_USE).c_str());
+}
+
+TEST(CLibrary, RefusesToOpenWithoutATextOrAPlaceForTheModel) {
+  std::array<char, 512> message{};
+  hotfire_model* model = nullptr;
+  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_open(nullptr, nullptr, &model, message.data(), message.size()));
+  STRCMP_EQUAL("a path, a text, a name or the place for the model is NULL", message.data());
+  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_open_text("", nullptr, nullptr, &model, nullptr, 0));
+  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_open_plant("", "plant.txt", nullptr, nullptr, 0));
+  LONGS_EQUAL(HOTFIRE_BAD_DATA, hotfire_open_plant("", "plant.txt", &model, nullptr, 0));
+  LONGS_EQUAL(HOTFIRE_BAD_DATA, hotfire_open("/no/such/file.toml", nullptr, &model, message.data(), message.size()));
+  STRCMP_CONTAINS("/no/such/file.toml", message.data());
 }
 
 TEST(CLibrary, InstancesInThreadsDoNotDisturbEachOther) {
@@ -351,7 +366,9 @@ TEST(CLibrary, InstancesInThreadsDoNotDisturbEachOther) {
     hotfire_options options;
     hotfire_default_options(&options);
     options.period = own.period;
-    const Model model(hotfire_open_text(own.text.c_str(), "own.toml", &options, nullptr, 0));
+    hotfire_model* plain = nullptr;
+    hotfire_open_text(own.text.c_str(), "own.toml", &options, &plain, nullptr, 0);
+    const Model model(plain);
     Drive drive(own, model.get());
     drive.set(0);
     hotfire_start(model.get(), 0.0);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/files/scratch.hpp"
@@ -84,6 +86,44 @@ TEST(Fmu, TakesNoMemoryInAHundredThousandStepsOfEveryTopology) {
       }
       LONGS_EQUAL(0, guard.allocations());
       LONGS_EQUAL(0, worst);
+    }
+  }
+}
+
+TEST(Fmu, InstancesInThreadsGiveTheBitsOfOneAlone) {
+  for (const Case& own : cases(150)) {
+    for (const int version : kVersions) {
+      const Fmu fmu(scratch, own, version);
+      const std::vector<unsigned> inputs = fmu.references(own.inputs);
+      const std::vector<unsigned> outputs = fmu.references(own.outputs());
+      // No two instances have the same inputs.
+      const auto drive = [&](const Run& run, int instance) {
+        double last = 0.0;
+        bool uneventful = true;
+        run.enter();
+        run.call("ExitInitializationMode");
+        for (int i = 0; i < 400; ++i) {
+          run.set(inputs, std::vector<double>(inputs.size(), 0.01 * std::sin(0.02 * i * (instance + 1))));
+          run.advance(i * own.period, own.period, last, uneventful);
+        }
+      };
+      std::vector<std::unique_ptr<Run>> together;
+      std::vector<std::thread> threads;
+      for (int instance = 0; instance < 6; ++instance) {
+        together.push_back(std::make_unique<Run>(fmu, version));
+      }
+      for (int instance = 0; instance < 6; ++instance) {
+        threads.emplace_back([&, instance] { drive(*together[static_cast<std::size_t>(instance)], instance); });
+      }
+      for (std::thread& thread : threads) {
+        thread.join();
+      }
+      for (int instance = 0; instance < 6; ++instance) {
+        const Run alone(fmu, version);
+        drive(alone, instance);
+        check_same_bits(alone.got(outputs), together[static_cast<std::size_t>(instance)]->got(outputs));
+      }
+      CHECK(together[0]->got(outputs) != together[1]->got(outputs));
     }
   }
 }

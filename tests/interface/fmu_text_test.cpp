@@ -63,7 +63,7 @@ TEST(FmuText, ItsSourcesCompileAsTheBuildDescriptionSaysAndGiveTheSameBits) {
   const Case own = case_of("simplex", 100);
   Fmu fmu(scratch, own, 3);
   fmu.build(
-      "cd sources && c++ -std=c++20 -O1 -ffp-contract=off -DFMI3_OVERRIDE_FUNCTION_PREFIX -fPIC -shared -I. fmu.cpp -o "
+      "cd sources && c++ -std=c++20 -O0 -ffp-contract=off -DFMI3_OVERRIDE_FUNCTION_PREFIX -fPIC -shared -I. fmu.cpp -o "
       "../own.so",
       "own.so");
   check_run(fmu, own, 3);
@@ -72,7 +72,7 @@ TEST(FmuText, ItsSourcesCompileAsTheBuildDescriptionSaysAndGiveTheSameBits) {
 TEST(FmuText, ItsSourcesAreAProjectOfCMakeAndGiveTheSameBits) {
   const Case own = case_of("direct", 100);
   Fmu fmu(scratch, own, 2);
-  fmu.build("cmake -S sources -B build -DCMAKE_CXX_FLAGS=-O1 >build.log && cmake --build build >>build.log",
+  fmu.build("cmake -S sources -B build -DCMAKE_CXX_FLAGS=-O0 >build.log && cmake --build build >>build.log",
             "build/direct2.so");
   check_run(fmu, own, 2);
 }
@@ -80,9 +80,10 @@ TEST(FmuText, ItsSourcesAreAProjectOfCMakeAndGiveTheSameBits) {
 TEST(FmuText, ItsSourcesHaveThePrefixOfTheModelForStaticLinking) {
   const Case own = case_of("direct", 20);
   const std::string folder = Fmu::unpacked(scratch.path(""), own, 2).string();
+  // What the preprocessor leaves shows the name of each function, and takes a tenth of the time of a compiler.
   LONGS_EQUAL(0, std::system(("cd " + folder +
-                              "/sources && c++ -std=c++20 -O0 -c -I. fmu.cpp -o ../fmu.o && "
-                              "nm ../fmu.o | grep -q ' T direct2_fmi2DoStep' && ! nm ../fmu.o | grep -q ' T fmi2'")
+                              "/sources && c++ -std=c++20 -E -P -I. fmu.cpp -o ../fmu.ii && "
+                              "grep -qw direct2_fmi2DoStep ../fmu.ii && ! grep -qw 'fmi2[A-Z][A-Za-z]* *(' ../fmu.ii")
                                  .c_str()));
 }
 

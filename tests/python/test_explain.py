@@ -6,6 +6,7 @@ import os
 import signal
 import threading
 
+import numpy as np
 import pytest
 from conftest import command_line
 
@@ -45,6 +46,24 @@ def test_the_report_is_that_of_the_command(case, found, tmp_path):
     assert len(said) > 3 and all(isinstance(line, str) for line in said)
     explanation.save(tmp_path / "python")
     assert without_times(json.loads((tmp_path / "python/report.json").read_text())) == without_times(of_command)
+
+
+def test_the_report_of_a_mass_is_that_of_the_command(tmp_path):
+    mass = {"inertia": 2.0, "damping": 3.0, "stiffness": 100.0}
+    seconds = np.arange(6000) * 5e-3
+    force = ("N", 8.0 * np.sin(1.3 * seconds) + 6.0 * np.sin(2.9 * seconds + 1.0) + 5.0 * np.sin(7.1 * seconds + 2.0))
+    true = hotfire.Model({"topology": "direct", "mass": mass, "effects": {"cubic_stiffness": {"stiffness": 900.0}}})
+    driven = hotfire.Record({"force": force[::-1], "position": (0.0 * seconds, "m")}, period=5e-3)
+    position = hotfire.simulate(true, driven)["position"].values + np.random.default_rng(5).normal(0.0, 2e-4, seconds.size)
+    hotfire.Record({"force": force[::-1], "position": (position, "m")}, period=5e-3).save(tmp_path / "mass.csv")
+    hotfire.Model({"topology": "direct", "mass": mass}).save(tmp_path / "declared.toml")
+    explanation = hotfire.explain(hotfire.Model(tmp_path / "declared.toml"), hotfire.Record(tmp_path / "mass.csv"))
+    assert [effect.name for effect in explanation.effects] == ["cubic_stiffness"]
+    status, _, words = command_line(
+        "explain", "--model", tmp_path / "declared.toml", "--out", tmp_path / "found", tmp_path / "mass.csv"
+    )
+    assert status == 0, words
+    assert without_times(explanation.report) == without_times(json.loads((tmp_path / "found/report.json").read_text()))
 
 
 def test_results_are_objects_with_units(found):

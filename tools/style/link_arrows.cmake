@@ -7,7 +7,7 @@ set(link_model "^model:")
 set(link_hal "^hal:")
 set(link_firmware "^(firmware|model|hal):")
 # tools/interface
-set(link_interface "^(interface|model):")
+set(link_interface "^(interface|model):|^firmware:hotfire_image$")
 set(link_tools "^(tools|interface|model):|^hal:hotfire_hal(_sim|_recording|_live|_schedule)?$")
 
 function(targets_below folder result)

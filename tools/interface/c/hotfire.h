@@ -6,8 +6,9 @@
  * meaning. The same input gives the same bits as `hotfire simulate`.
  *
  *     char message[512];
- *     hotfire_model* model = hotfire_open("axis.toml", NULL, message, sizeof message);
- *     if (model == NULL) { fputs(message, stderr); return 1; }
+ *     hotfire_model* model = NULL;
+ *     const hotfire_status status = hotfire_open("axis.toml", NULL, &model, message, sizeof message);
+ *     if (status != HOTFIRE_OK) { fputs(message, stderr); return status; }
  *     size_t command = 0, engine = 0;
  *     hotfire_find(model, HOTFIRE_INPUT, "command", &command);
  *     hotfire_find(model, HOTFIRE_OUTPUT, "engine", &engine);
@@ -32,7 +33,8 @@
  * threads. hotfire_open and hotfire_open_text wait for each other, because the library of units allows one thread only.
  *
  * Errors. A function that can fail returns a status. hotfire_message has the sentence: what is wrong, the value, and what
- * is allowed. After an error the model is as it was before the call, except after HOTFIRE_RAN_AWAY.
+ * is allowed; the functions that open a model write it to a buffer of the caller. After an error the model is as it was
+ * before the call, except after HOTFIRE_RAN_AWAY.
  *
  * Licence: Apache-2.0.
  */
@@ -60,7 +62,8 @@ typedef enum hotfire_status {
   HOTFIRE_OK = 0,
   HOTFIRE_WRONG_USE = 2, /* a call in the wrong order, or an argument that no model can take */
   HOTFIRE_BAD_DATA = 6,  /* a file, a value or a state that this model refuses */
-  HOTFIRE_RAN_AWAY = 7   /* a reading is not finite or beyond 1e12: the parameters are unstable for these inputs */
+  HOTFIRE_RAN_AWAY = 7,  /* a reading is not finite or beyond 1e12: the parameters are unstable for these inputs */
+  HOTFIRE_NO_MEMORY = 8  /* there is not enough memory to open the model */
 } hotfire_status;
 
 typedef enum hotfire_kind { HOTFIRE_INPUT = 0, HOTFIRE_OUTPUT = 1, HOTFIRE_PARAMETER = 2 } hotfire_kind;
@@ -95,17 +98,20 @@ HOTFIRE_API const char* hotfire_version(void);
 
 HOTFIRE_API void hotfire_default_options(hotfire_options* options);
 
-/* Makes a model from a model file. `options` may be NULL. Returns NULL with a sentence in `message` (cut to `size`
- * characters; NULL with 0 for none) that names file, line, key, value and remedy. */
-HOTFIRE_API hotfire_model* hotfire_open(const char* path, const hotfire_options* options, char* message, size_t size);
+/* Makes `*model` from a model file. `options` may be NULL. On an error `*model` is NULL and `message` (cut to `size`
+ * characters; NULL with 0 for none) has a sentence that names file, line, key, value and remedy. Returns HOTFIRE_WRONG_USE
+ * for a missing argument or a refused option, HOTFIRE_BAD_DATA for a refused file, or HOTFIRE_NO_MEMORY. */
+HOTFIRE_API hotfire_status hotfire_open(const char* path, const hotfire_options* options, hotfire_model** model,
+                                        char* message, size_t size);
 
 /* The same from the text of a model file. `name` represents the file in messages; a mode table is read from beside it. */
-HOTFIRE_API hotfire_model* hotfire_open_text(const char* text, const char* name, const hotfire_options* options, char* message,
-                                       size_t size);
+HOTFIRE_API hotfire_status hotfire_open_text(const char* text, const char* name, const hotfire_options* options,
+                                             hotfire_model** model, char* message, size_t size);
 
-/* The same from a plant text, which `hotfire export` puts into an FMU as resources/plant.txt: a model file with all numbers in
- * SI, which needs neither TOML nor units to read. Options are in it. */
-HOTFIRE_API hotfire_model* hotfire_open_plant(const char* text, const char* name, char* message, size_t size);
+/* The same from a plant text, which `hotfire export` puts into an FMU as resources/plant.txt: a model file with all numbers
+ * in SI, which needs neither TOML nor units to read. Options are in it. */
+HOTFIRE_API hotfire_status hotfire_open_plant(const char* text, const char* name, hotfire_model** model, char* message,
+                                              size_t size);
 
 /* Gives the memory back. NULL is allowed. */
 HOTFIRE_API void hotfire_close(hotfire_model* model);
@@ -120,7 +126,8 @@ HOTFIRE_API const char* hotfire_topology(const hotfire_model* model);
 HOTFIRE_API size_t hotfire_count(const hotfire_model* model, hotfire_kind kind);
 
 /* Describes one number of a table. */
-HOTFIRE_API hotfire_status hotfire_describe(hotfire_model* model, hotfire_kind kind, size_t index, hotfire_variable* variable);
+HOTFIRE_API hotfire_status hotfire_describe(hotfire_model* model, hotfire_kind kind, size_t index,
+                                            hotfire_variable* variable);
 
 /* The index of a name in a table. */
 HOTFIRE_API hotfire_status hotfire_find(hotfire_model* model, hotfire_kind kind, const char* name, size_t* index);

@@ -40,18 +40,32 @@ inline hotfire_status step(hotfire_model& model) noexcept {
 /// Copies a text into a caller's buffer, cut to its size.
 void copy_message(std::string_view text, char* message, std::size_t size) noexcept;
 
-/// Runs `make()`, which gives a plant or throws, and wraps the result as a handle; NULL with the sentence in `message`.
+/// Runs `make()`, which gives a plant or throws, and wraps the result as a handle; a status with the sentence in `message`.
 template <class Make>
-hotfire_model* open_with(Make&& make, char* message, std::size_t size) noexcept {
+hotfire_status open_with(Make&& make, hotfire_model** model, char* message, std::size_t size) noexcept {
   try {
     copy_message("", message, size);
-    return new hotfire_model(make());
+    *model = new hotfire_model(make());
+    return HOTFIRE_OK;
   } catch (const std::bad_alloc&) {
-    copy_message("no memory for the model", message, size);
+    copy_message("there is not enough memory for the model", message, size);
+    return HOTFIRE_NO_MEMORY;
   } catch (const std::exception& error) {
     copy_message(error.what(), message, size);
+    return HOTFIRE_BAD_DATA;
   }
-  return nullptr;
+}
+
+/// Refuses an opening without one of its texts or without a place for the model, which is NULL otherwise.
+inline hotfire_status check_opening(bool has_texts, hotfire_model** model, char* message, std::size_t size) noexcept {
+  if (model != nullptr) {
+    *model = nullptr;
+  }
+  if (model == nullptr || !has_texts) {
+    copy_message("a path, a text, a name or the place for the model is NULL", message, size);
+    return HOTFIRE_WRONG_USE;
+  }
+  return HOTFIRE_OK;
 }
 
 }  // namespace hotfire::interface

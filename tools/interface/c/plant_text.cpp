@@ -84,7 +84,9 @@ extern "C" {
 
 const char* hotfire_version(void) { return HOTFIRE_VERSION; }
 
-hotfire_model* hotfire_open_plant(const char* text, const char* name, char* message, size_t size) {
-  return hotfire::interface::open_with([&] { return hotfire::interface::plant_of_text(text, name); }, message, size);
+hotfire_status hotfire_open_plant(const char* text, const char* name, hotfire_model** model, char* message, size_t size) {
+  using namespace hotfire::interface;
+  const hotfire_status status = check_opening(text != nullptr && name != nullptr, model, message, size);
+  return status != HOTFIRE_OK ? status : open_with([&] { return plant_of_text(text, name); }, model, message, size);
 }
 }

@@ -40,8 +40,9 @@ std::unique_ptr<Slave> Slave::open(const std::string& text, const char* token, L
     return nullptr;
   }
   std::array<char, 512> problem{};
-  hotfire_model* model = hotfire_open_plant(text.c_str() + end + 1, "resources/plant.txt", problem.data(), problem.size());
-  if (model == nullptr) {
+  hotfire_model* model = nullptr;
+  if (hotfire_open_plant(text.c_str() + end + 1, "resources/plant.txt", &model, problem.data(), problem.size()) !=
+      HOTFIRE_OK) {
     message = problem.data();
     return nullptr;
   }
