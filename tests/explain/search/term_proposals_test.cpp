@@ -88,6 +88,27 @@ TEST(TermProposals, AMemoryIsFoundWithItsTime) {
   DOUBLES_EQUAL(0.08, term_of<TorqueTerm>(best.fitted).time, 0.15 * 0.08);
 }
 
+// The pressure of the oil and the command of the valve vary fast. What a smoother makes of their product is mostly noise.
+TEST(TermProposals, AMemoryOfAProductIsFoundWhereTheSmoothedSignalHidesIt) {
+  const auto proposals = proposed_for(with_term<FlowTerm>([](auto& term) {
+                                        term.option = static_cast<int>(Memory::washout);
+                                        term.argument = static_cast<int>(Argument::load_pressure);
+                                        term.factor = factor(Argument::valve_command);
+                                        term.gain = 5e-11;
+                                        term.time = 0.455;
+                                      }),
+                                      about_declared());
+  const auto right = std::ranges::find_if(proposals, [](const auto& proposal) {
+    const auto& term = term_of<FlowTerm>(proposal.fitted);
+    const auto kind = static_cast<Memory>(term.option);
+    return proposal.candidate.name == FlowTerm::name && (kind == Memory::lag || kind == Memory::washout) &&
+           std::pair(term.argument, term.factor) ==
+               std::pair(static_cast<int>(Argument::load_pressure), factor(Argument::valve_command));
+  });
+  CHECK(right != proposals.end());
+  DOUBLES_EQUAL(0.455, term_of<FlowTerm>(right->fitted).time, 0.3 * 0.455);
+}
+
 TEST(TermProposals, NothingIsProposedWhereNothingIsMissing) { CHECK(proposed_for(declared(), about_declared()).empty()); }
 
 TEST(TermProposals, ASiteThatHasATermGetsNoSecondOne) {

@@ -18,13 +18,16 @@ namespace {
 using model::Argument;
 
 constexpr std::size_t kArguments = model::kArgumentNames.size();
-/// Forms whose curves are laid, and whose parameters are refined.
-constexpr std::size_t kLaid = 4;
+/// Gains, and as many curves, whose parameters are refined.
+constexpr std::size_t kRefined = 3;
 /// Forms that the screening leaves for the regression.
 constexpr std::size_t kScreenedStill = 6;
 constexpr std::size_t kScreenedMoving = 24;
 /// Memories of one argument among them.
 constexpr int kMemoriesOfOne = 4;
+/// Forms whose response explains most, and memories of one argument among them.
+constexpr std::size_t kScreenedByResponse = 12;
+constexpr int kResponsesOfOne = 2;
 /// A memory explains clearly more than its argument where it leaves less than this share of what that leaves.
 constexpr double kClearlyLess = 0.9;
 /// Forms over which curves are laid, of those with a memory and of those without.
@@ -46,9 +49,11 @@ void keep_best(std::vector<ScoredForm>& all, std::size_t most) {
 
 bool is_of_same(const Form& a, const Form& b) { return a.argument == b.argument && a.factor == b.factor; }
 
-bool is_alike(const Form& a, const Form& b) { return is_of_same(a, b) && a.memory.kind == b.memory.kind; }
+bool is_alike(const Form& a, const Form& b) {
+  return is_of_same(a, b) && a.memory.kind == b.memory.kind && a.has_curve() == b.has_curve();
+}
 
-/// Of forms alike but for their parameter and shape the best, `most` at most.
+/// Of forms alike but for their parameters the best, `most` at most.
 std::vector<ScoredForm> best_of_each(std::vector<ScoredForm> all, std::size_t most) {
   keep_best(all, all.size());
   std::vector<ScoredForm> best;
@@ -73,6 +78,22 @@ std::vector<ScoredForm> scored(const FormRegression& regression, std::vector<For
   return all;
 }
 
+/// Moves the parameter of a form's memory to where its response explains most.
+ScoredForm refined_form(const FormRegression& regression, ScoredForm best, unsigned threads) {
+  double factor = 1.25;
+  for (int i = 0; i < kFormRefinements; ++i) {
+    bool moved = false;
+    for (ScoredForm& other : scored(regression, neighbours(best.form, factor), threads)) {
+      if (other.score.criterion < best.score.criterion) {
+        best = std::move(other);
+        moved = true;
+      }
+    }
+    factor = moved ? factor : std::sqrt(factor);
+  }
+  return best;
+}
+
 /// Moves the parameter of a form's memory to where a function of its output explains most of the signal: a curve that bends
 /// several times over the output shows only close to the right parameter, and a comb is never that dense.
 void tune(const SignalCorrelation& correlation, ScoredForm& scored) {
@@ -91,22 +112,22 @@ void tune(const SignalCorrelation& correlation, ScoredForm& scored) {
   }
 }
 
+/// How much of the smoothed signal a function of each form's output leaves.
+std::vector<ScoredForm> scored_by_signal(const SignalCorrelation& correlation, const std::vector<Form>& forms,
+                                         unsigned threads) {
+  std::vector<ScoredForm> all(forms.size());
+  parallel_for(forms.size(), threads, [&](std::size_t i) {
+    all[i] = {forms[i], {}};
+    all[i].score.criterion = 1.0 - correlation.explained_share(forms[i]);
+  });
+  return all;
+}
+
 /// Of the forms those that a function of whose output explains most of the smoothed signal: the best without memory, and the
 /// best memories of those that explain clearly more than their argument itself. A short memory is nearly its argument: all
 /// of them would crowd out whatever else there is.
-std::vector<Form> screened(const FormRegression& regression, const std::vector<Form>& plain,
-                           const std::vector<Form>& remembering, unsigned threads) {
-  const SignalCorrelation correlation(regression);
-  const auto scored_by_ratio = [&](const std::vector<Form>& forms) {
-    std::vector<ScoredForm> all(forms.size());
-    parallel_for(forms.size(), threads, [&](std::size_t i) {
-      all[i] = {forms[i], {}};
-      all[i].score.criterion = 1.0 - correlation.explained_share(forms[i]);
-    });
-    return all;
-  };
-  std::vector<ScoredForm> still = scored_by_ratio(plain);
-  std::vector<ScoredForm> moving = scored_by_ratio(remembering);
+std::vector<Form> screened_by_signal(const SignalCorrelation& correlation, std::vector<ScoredForm> still,
+                                     std::vector<ScoredForm> moving, unsigned threads) {
   std::erase_if(moving, [&](const ScoredForm& scored) {
     const auto own =
         std::ranges::find_if(still, [&](const ScoredForm& other) { return is_of_same(scored.form, other.form); });
@@ -128,17 +149,40 @@ std::vector<Form> screened(const FormRegression& regression, const std::vector<F
   return best;
 }
 
-ScoredForm refined_form(const FormRegression& regression, ScoredForm best, unsigned threads) {
-  double factor = 1.25;
-  for (int i = 0; i < kFormRefinements; ++i) {
-    bool moved = false;
-    for (ScoredForm& other : scored(regression, neighbours(best.form, factor), threads)) {
-      if (other.score.criterion < best.score.criterion) {
-        best = std::move(other);
-        moved = true;
-      }
+/// Of the memories those whose response explains most of what is left. The smoothed signal is mostly noise where the plant
+/// hides what acts on it, and ranks a gain over the right memory of the right argument behind hundreds of others; the
+/// readings do not. A comb's parameter is that of the smoothed signal.
+std::vector<Form> screened_by_response(const FormRegression& regression, const std::vector<ScoredForm>& moving,
+                                       unsigned threads) {
+  std::vector<Form> forms;
+  for (ScoredForm& scored : best_of_each(moving, moving.size())) {
+    forms.push_back(std::move(scored.form));
+  }
+  std::vector<ScoredForm> all = scored(regression, std::move(forms), threads);
+  keep_best(all, all.size());
+  std::vector<Form> best;
+  for (ScoredForm& scored : all) {
+    const auto of_same = std::ranges::count_if(best, [&](const Form& form) { return is_of_same(scored.form, form); });
+    if (best.size() == kScreenedByResponse) {
+      break;
     }
-    factor = moved ? factor : std::sqrt(factor);
+    if (of_same < kResponsesOfOne) {
+      best.push_back(refined_form(regression, std::move(scored), threads).form);
+    }
+  }
+  return best;
+}
+
+/// The forms that go on: by the signal, then by the response those that are not among them.
+std::vector<Form> screened(const FormRegression& regression, const std::vector<Form>& plain,
+                           const std::vector<Form>& remembering, unsigned threads) {
+  const SignalCorrelation correlation(regression);
+  const std::vector<ScoredForm> moving = scored_by_signal(correlation, remembering, threads);
+  std::vector<Form> best = screened_by_signal(correlation, scored_by_signal(correlation, plain, threads), moving, threads);
+  for (Form& form : screened_by_response(regression, moving, threads)) {
+    if (std::ranges::none_of(best, [&](const Form& other) { return is_alike(form, other); })) {
+      best.push_back(std::move(form));
+    }
   }
   return best;
 }
@@ -184,7 +228,11 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
     }
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
-  std::vector<ScoredForm> best = best_of_each(std::move(laid), kLaid);
+  // Curves do not replace gains: the regression is linear, where a large effect is not, and follows with a curve what is
+  // none.
+  const auto curves = std::ranges::stable_partition(laid, [](const ScoredForm& s) { return !s.form.has_curve(); });
+  std::vector<ScoredForm> best = best_of_each({laid.begin(), curves.begin()}, kRefined);
+  std::ranges::move(best_of_each({curves.begin(), curves.end()}, kRefined), std::back_inserter(best));
   for (ScoredForm& form : best) {
     form = refined_form(regression, std::move(form), threads);
   }
