@@ -22,8 +22,6 @@ struct Policy {
   double little_explained = 0.5;
   /// Share of an error of which held-out data say that it is less.
   double held_out_less = 0.9;
-  /// Share of the error below which a term of the grammar ends the search for further terms at its place.
-  double term_found = 0.3;
   /// Error beyond the noise, over the noise, that settles a round.
   double nothing_left = 0.2;
   /// ... that is immaterial.
@@ -72,7 +70,6 @@ inline constexpr std::array kPolicyConstants{
     PolicyConstant{"little_explained", "1", &Policy::little_explained, "a quarter of the mean square is unexplained"},
     PolicyConstant{"held_out_less", "1", &Policy::held_out_less,
                    "rms of noise and a residual of 1 falls by this factor if the residual falls to clearly_less"},
-    PolicyConstant{"term_found", "1", &Policy::term_found, "a tenth of the mean square is unexplained"},
     PolicyConstant{"nothing_left", "noise", &Policy::nothing_left,
                    "the noise itself is known to one or two percent, which is as much"},
     PolicyConstant{"immaterial", "noise", &Policy::immaterial,

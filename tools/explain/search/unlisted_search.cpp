@@ -164,7 +164,8 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
     const std::size_t wanted = terms_to_fit(proposals);
     fit_finalists(data, refiner, beside, around.u, std::move(proposals), wanted, kCheck, round, watch, result);
   }
-  if (!result.leaves_less_than(policy().term_found)) {
+  // A law that somebody has named is one more hypothesis as long as the grammar leaves more than noise.
+  if (!result.reaches_noise(data)) {
     const Screening<Family> screening(evaluator, around, scales, threads);
     std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
     std::erase_if(candidates, [&](const Candidate& candidate) {
