@@ -230,9 +230,10 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
   // Curves do not replace gains: the regression is linear, where a large effect is not, and follows with a curve what is
   // none.
-  const auto curves = std::ranges::stable_partition(laid, [](const ScoredForm& s) { return !s.form.has_curve(); });
-  std::vector<ScoredForm> best = best_of_each({laid.begin(), curves.begin()}, kRefined);
-  std::ranges::move(best_of_each({curves.begin(), curves.end()}, kRefined), std::back_inserter(best));
+  const auto curves =
+      std::stable_partition(laid.begin(), laid.end(), [](const ScoredForm& s) { return !s.form.has_curve(); });
+  std::vector<ScoredForm> best = best_of_each({laid.begin(), curves}, kRefined);
+  std::ranges::move(best_of_each({curves, laid.end()}, kRefined), std::back_inserter(best));
   for (ScoredForm& form : best) {
     form = refined_form(regression, std::move(form), threads);
   }
