@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "firmware/replay/replay.hpp"
@@ -13,8 +15,13 @@ int main(int count, char** values) {
     std::fputs(parsed.message.c_str(), parsed.status == 0 ? stdout : stderr);
     return parsed.status;
   }
-  if (parsed.options->mode == hotfire::firmware::Mode::replay) {
-    return hotfire::firmware::run_replay(parsed.options->recording, parsed.options->json);
-  }
-  return hotfire::firmware::run_session(*parsed.options);
+  return std::visit(
+      []<class Own>(const Own& options) {
+        if constexpr (std::is_same_v<Own, hotfire::firmware::ReplayOptions>) {
+          return hotfire::firmware::run_replay(options.recording, options.json);
+        } else {
+          return hotfire::firmware::run(options);
+        }
+      },
+      *parsed.options);
 }

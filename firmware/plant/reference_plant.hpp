@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tuple>
-
+#include "model/keys.hpp"
 #include "model/simplex.hpp"
 
 namespace hotfire::firmware {
@@ -12,20 +11,15 @@ namespace hotfire::firmware {
 inline model::Simplex<double>::Parameters reference_plant_with_every_effect() {
   model::Simplex<double>::Parameters parameters;
   parameters.effects.active.fill(true);
-  std::apply(
-      [](auto&... effect) {
-        const auto set_typical = [](auto& values) {
-          for (const auto& field : values.fields()) {
-            values.*field.member = field.typical;
-          }
-          // A term of the grammar costs what it costs at any size, and its unit is that of its site and argument.
-          if constexpr (requires { values.direct; }) {
-            values.gain = values.direct = 0.0;
-          }
-        };
-        (set_typical(effect), ...);
-      },
-      parameters.effects.values);
+  model::visit_effects(parameters, []<class E>(std::size_t, auto& values) {
+    for (const auto& field : values.fields()) {
+      values.*field.member = field.typical;
+    }
+    // A term of the grammar costs what it costs at any size, and its unit is that of its site and argument.
+    if constexpr (requires { values.direct; }) {
+      values.gain = values.direct = 0.0;
+    }
+  });
   return parameters;
 }
 

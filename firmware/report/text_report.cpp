@@ -91,8 +91,9 @@ std::string recording(const Session& session) {
     return {};
   }
   const RecorderAccount& account = *session.recording;
-  return text("  recording     %s: %llu of %llu cycles, %llu dropped%s%s\n", session.options.recording.c_str(),
-              whole(account.stored), whole(account.offered), whole(account.dropped()),
+  return text("  recording     %s: %llu of %llu cycles, %llu dropped%s%s\n",
+              session.recorded_as != nullptr ? session.recorded_as->recording.c_str() : "", whole(account.stored),
+              whole(account.offered), whole(account.dropped()),
               account.failure.empty() ? "" : "; ended early: ", account.failure.c_str());
 }
 
@@ -121,12 +122,12 @@ std::string text_report(const Session& session) {
   const Verdict verdict = judge(session);
   const double period_us = us(session.options.loop.period_ns);
   const std::size_t actuators = session.options.actuators;
-  std::string report =
-      text("%s%s%s on bus %s, period %.0f us, %d %s a cycle, after an overrun: %s\n",
-           actuators == 1 || session.is_vehicle ? "" : text("%zu times ", actuators).c_str(), session.topology.data(),
-           session.is_vehicle ? text(" of %zu actuators", actuators).c_str() : "", session.options.bus.c_str(), period_us,
-           session.steps_per_cycle, session.steps_per_cycle == 1 ? "step" : "steps",
-           kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
+  std::string report = text("%s%s%s on bus %s, period %.0f us, %d %s a cycle, after an overrun: %s\n",
+                            actuators == 1 || session.is_vehicle ? "" : text("%zu times ", actuators).c_str(),
+                            session.topology.data(), session.is_vehicle ? text(" of %zu actuators", actuators).c_str() : "",
+                            session.bus ? session.bus->interface.c_str() : "sim", period_us, session.steps_per_cycle,
+                            session.steps_per_cycle == 1 ? "step" : "steps",
+                            kOverrunPolicies[static_cast<std::size_t>(session.options.loop.policy)].data());
   report += scheduling(session);
   report += text("  cycles        %llu at %.4f Hz, %s; before them %llu of warm-up, %llu of these overran\n",
                  whole(account.cycles()), account.rate(), kEndings[static_cast<std::size_t>(result.ending)].data(),
@@ -145,7 +146,7 @@ std::string text_report(const Session& session) {
   if (session.allocations) {
     report += text("  allocations   %llu\n", whole(*session.allocations));
   }
-  if (session.options.pace != PaceKind::clock) {
+  if (session.synchronised) {
     report += text("  syncs         %llu missed\n", whole(result.missed_syncs));
   }
   report += recording(session) + last_reading(session) + text("  state hash    %016llx\n", whole(result.hash.value()));

@@ -16,8 +16,11 @@ void complain(const hal::Failure& failure) {
   std::fprintf(stderr, "hotfire-rt: %s\n  remedy: %s\n", failure.what.c_str(), failure.remedy.c_str());
 }
 
-CanSession::CanSession(const Options& options, const can::NodeIds& ids)
-    : options_(options), socket_({options.bus, ids.subscriptions, ids.senders, can::is_fd(options.frame_layout())}) {}
+CanSession::CanSession(const CanOptions& options, const RunOptions& run, const can::NodeIds& ids, can::MoreReadings more)
+    : options_(options),
+      run_(run),
+      more_(more),
+      socket_({options.bus, ids.subscriptions, ids.senders, can::is_fd(options.frame_layout(run.actuators))}) {}
 
 int CanSession::open() {
   if (const auto refused = refuse_key()) {
@@ -39,7 +42,7 @@ std::optional<hal::Failure> CanSession::refuse_key() {
   if (options_.key.empty()) {
     return std::nullopt;
   }
-  if (!can::is_fd(options_.frame_layout())) {
+  if (!can::is_fd(layout())) {
     return hal::Failure{"--key: the frames of the classic layouts have no space for a code", "--layout fd, or fd-split"};
   }
   const ReadKey read = read_key(options_.key);
@@ -57,8 +60,7 @@ std::optional<hal::Failure> CanSession::refuse_load() {
     return std::nullopt;
   }
   rates.data = rates.data > 0.0 ? rates.data : rates.nominal;
-  load_ = can::bus_load(options_.frame_layout(), options_.actuators, options_.loop.period_ns, rates.nominal, rates.data,
-                        {options_.strings, options_.load_pressure});
+  load_ = can::bus_load(layout(), run_.actuators, run_.loop.period_ns, rates.nominal, rates.data, more_);
   if (*load_ <= hal::kLargestBusLoad) {
     return std::nullopt;
   }
@@ -101,7 +103,7 @@ bool CanSession::leave() {
 BusAccount CanSession::account() const {
   BusAccount account;
   account.interface = options_.bus;
-  account.layout = options_.frame_layout();
+  account.layout = layout();
   account.load = load_;
   account.authenticated = authentication_.has_value();
   account.state = socket_.state();

@@ -15,7 +15,8 @@ namespace hotfire::firmware {
 /// A program's CAN interface.
 class CanSession {
  public:
-  CanSession(const Options& options, const can::NodeIds& ids);
+  /// `more`: what a plant sends besides its readings, which is a part of the bus's load.
+  CanSession(const CanOptions& options, const RunOptions& run, const can::NodeIds& ids, can::MoreReadings more = {});
 
   /// Opens it. Refuses an interface that is not there, no CAN, not FD or down, no permission, and a schedule that takes too
   /// much of it. Prints the refusal with its remedy to standard error and returns the exit status; kGood if there is none.
@@ -42,7 +43,11 @@ class CanSession {
   std::optional<hal::Failure> refuse_load();
   std::optional<hal::Failure> refuse_key();
 
-  const Options& options_;
+  can::Layout layout() const { return options_.frame_layout(run_.actuators); }
+
+  const CanOptions& options_;
+  const RunOptions& run_;
+  can::MoreReadings more_;
   hal::SocketCan socket_;
   std::optional<double> load_;
   std::optional<can::Authentication> authentication_;

@@ -12,7 +12,7 @@ namespace hotfire::firmware {
 namespace {
 
 /// For the loop, the readings are what it takes in and the commands what it measures.
-RecordedPlant shown(const Options& options) {
+RecordedPlant shown(const ControllerOptions& options) {
   RecordedPlant plant;
   plant.topology = ReferenceController::topology;
   plant.input = {"piston", "m"};
@@ -23,11 +23,11 @@ RecordedPlant shown(const Options& options) {
 
 }  // namespace
 
-int run_controller(const Options& options) {
+int run(const ControllerOptions& options) {
   using Clock = hal::PosixClock;
   using Bus = can::ControllerBus<hal::SocketCan, Clock>;
-  const can::Layout layout = options.frame_layout();
-  CanSession can_session(options, can::controller_ids(layout, options.actuators));
+  const can::Layout layout = options.frame_layout(options.actuators);
+  CanSession can_session(options, options, can::controller_ids(layout, options.actuators));
   if (const int status = can_session.open(); status != kGood) {
     return status;
   }
@@ -49,7 +49,7 @@ int run_controller(const Options& options) {
   for (std::size_t i = 0; i < can::reading_messages(layout, options.actuators); ++i) {
     counters.message(std::string(can::reading_message(layout, i).name), bus.readings(i));
   }
-  const auto run = [&]<class Pace>(Pace pace) {
+  const auto run_at = [&]<class Pace>(Pace pace) {
     CycleOutputs outputs;
     const auto loop = std::make_unique<Loop<ReferenceController, Bus, Clock, Pace, CycleOutputs>>(
         controller, bus, clock, options.loop, pace, &outputs);
@@ -62,12 +62,13 @@ int run_controller(const Options& options) {
                     ReferenceController::channel_units};
     session.input = "readings";
     session.output = "commands";
+    session.max_lost = options.max_lost;
     RunEnd end = end_with(nullptr, live, complete);
     end.make_safe = [&] { can_session.leave(); };
     return run_loop(*loop, session, end);
   };
   if (!options.lockstep) {
-    return run(OwnPace<Clock>(clock, options.loop.period_ns));
+    return run_at(OwnPace<Clock>(clock, options.loop.period_ns));
   }
   const can::Message& answer = can::reading_message(layout, can::reading_messages(layout, options.actuators) - 1);
   hal::SocketCanListener answers(options.bus, {can::id_of(answer), answer.fd});
@@ -75,7 +76,7 @@ int run_controller(const Options& options) {
     complain(*refused);
     return kHardware;
   }
-  return run(LockstepPace<Clock, hal::SocketCanListener>(clock, answers, options.loop.period_ns));
+  return run_at(LockstepPace<Clock, hal::SocketCanListener>(clock, answers, options.loop.period_ns));
 }
 
 }  // namespace hotfire::firmware

@@ -42,7 +42,7 @@ LabAccount account_of(const Lab& lab, bool left_the_bus) {
 }
 
 /// A lab on a real bus moves real actuators: it is run with the profile that a person has looked at, or not at all.
-std::optional<hal::Failure> refuse_unconfirmed(const Options& options, const std::string& image) {
+std::optional<hal::Failure> refuse_unconfirmed(const LabOptions& options, const std::string& image) {
   const std::string digest = text("%016llx", static_cast<unsigned long long>(hal::model_hash(image)));
   if (options.rehearsal || options.confirm == digest) {
     return std::nullopt;
@@ -51,7 +51,7 @@ std::optional<hal::Failure> refuse_unconfirmed(const Options& options, const std
                       "read the profile, and confirm the digest that 'hotfire check' prints of it"};
 }
 
-std::optional<hal::Failure> refuse_rehearsal(const Options& options) {
+std::optional<hal::Failure> refuse_rehearsal(const LabOptions& options) {
   if (!options.rehearsal || hal::is_virtual_can(options.bus)) {
     return std::nullopt;
   }
@@ -79,7 +79,7 @@ LiveCounters counters_of(CanSession& can_session, const Rig& rig) {
 
 }  // namespace
 
-int run_lab(const Options& given) {
+int run(const LabOptions& given) {
   const double period = static_cast<double>(given.loop.period_ns) * 1e-9;
   const ReadText file = read_image_text(given.image);
   LabImage image = file.error.empty() ? parse_lab_image(file.text, given.image, period) : LabImage{{}, {}, file.error, {}};
@@ -91,14 +91,14 @@ int run_lab(const Options& given) {
     complain(*refused);
     return kWrongUse;
   }
-  Options options = given;
+  LabOptions options = given;
   options.actuators = image.settings->actuators;
-  options.load_pressure = image.settings->limits.has_load_pressure();
+  const bool has_load_pressure = image.settings->limits.has_load_pressure();
   options.require_realtime = given.require_realtime || !given.rehearsal;
   // The lab counts them itself, so that its interlock stops what is driven.
   const std::uint64_t cycles = std::exchange(options.loop.cycles, 0);
   options.loop.number_skipped = true;
-  const can::Layout layout = options.frame_layout();
+  const can::Layout layout = options.frame_layout(options.actuators);
   Lab lab(std::move(*image.settings), period);
   if (options.actuators > can::most_actuators(layout)) {
     complain({text("--layout %s has no room for the %zu actuators of the profile",
@@ -106,7 +106,8 @@ int run_lab(const Options& given) {
               "--layout fd, or fd-split"});
     return kWrongUse;
   }
-  CanSession can_session(options, can::controller_ids(layout, options.actuators, options.load_pressure));
+  CanSession can_session(options, options, can::controller_ids(layout, options.actuators, has_load_pressure),
+                         {false, has_load_pressure});
   if (const int status = can_session.open(); status != kGood) {
     return status;
   }
@@ -157,6 +158,8 @@ int run_lab(const Options& given) {
   Session session{options, loop->result(), kLabTopology, kChannels, kUnits};
   session.input = "readings";
   session.output = "commands";
+  session.recorded_as = &options;
+  session.max_lost = options.max_lost;
   bool left_the_bus = false;
   RunEnd end = end_with(recording.get(), live, [&](Session& result) {
     result.lab = account_of(lab, left_the_bus);

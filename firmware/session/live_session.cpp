@@ -17,7 +17,8 @@ std::function<std::uint64_t()> reading(const std::uint64_t& count) {
 /// The numbers of endings begin with 1: 0 is a program that runs.
 std::uint64_t number_of(Ending ending) noexcept { return static_cast<std::uint64_t>(ending) + 1; }
 
-hal::LiveDescription describe(const Options& options, const RecordedPlant& plant, const std::vector<LiveCounter>& counters) {
+hal::LiveDescription describe(const RunOptions& options, const RecordedPlant& plant,
+                              const std::vector<LiveCounter>& counters) {
   hal::LiveDescription description;
   description.header = recording_header(options, plant);
   description.header.model.clear();

@@ -49,7 +49,7 @@ class LiveCounters {
 /// The live view of a run, in memory that other programs read, if the options name a file for it.
 class LiveSession {
  public:
-  explicit LiveSession(const Options& options) : options_(options), file_(options.live_view) {}
+  explicit LiveSession(const RunOptions& options) : options_(options), file_(options.live_view) {}
 
   /// Makes the file, with these counters and those of the loop and the recorder, and has the outputs show their cycles. To
   /// be called before the real-time set-up of the calling thread. All that is referred to outlives the loop.
@@ -59,7 +59,7 @@ class LiveSession {
   void close(Ending ending) noexcept;
 
  private:
-  const Options& options_;
+  const RunOptions& options_;
   hal::LiveFile file_;
   std::optional<LiveView> view_;
 };

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <type_traits>
 
 #include "firmware/text/text.hpp"
 
@@ -47,143 +48,162 @@ std::string read_name(const std::string& value, const Names& names, Enumeration&
   return {};
 }
 
-std::string read_period(const std::string& value, Options& options) {
+std::string read_period(const std::string& value, RunOptions& options) {
   std::int64_t period_us = 0;
   std::string allowed = read_integer(value, kShortestPeriodNs / 1000, kLongestPeriodNs / 1000, period_us);
   options.loop.period_ns = period_us * 1000;
   return allowed;
 }
 
-std::string read_bus(const std::string& value, Options& options) {
+std::string read_bus(const std::string& value, CanOptions& options) {
   options.bus = value;
   return value.empty() ? "sim, or the name of a CAN interface" : "";
 }
 
-std::string read_layout(const std::string& value, Options& options) {
+std::string read_layout(const std::string& value, CanOptions& options) {
   return read_name(value, can::kLayouts, options.layout.emplace());
 }
 
-std::string read_cpu(const std::string& value, Options& options) {
+std::string read_cpu(const std::string& value, RunOptions& options) {
   return read_integer(value, 0, 1023, options.cpu.emplace());
 }
 
-std::string read_max_latency(const std::string& value, Options& options) {
+std::string read_max_latency(const std::string& value, RunOptions& options) {
   return read_number(value, 0.0, 1e9, options.max_latency_us.emplace());
 }
 
-std::string read_max_step(const std::string& value, Options& options) {
+std::string read_max_step(const std::string& value, RunOptions& options) {
   return read_number(value, 0.0, 1e9, options.max_step_us.emplace());
 }
 
 constexpr std::uint64_t kManyCycles = 1'000'000'000'000;
 
+/// An option that `Read(value, options)` reads: of each mode whose options are those that it takes, or are made from them.
+template <auto Read>
+constexpr OptionLine line(std::string_view name, std::string_view value, std::string_view meaning) {
+  const auto read = [](const std::string& given, Options& options) {
+    return std::visit(
+        [&given]<class Own>(Own& own) {
+          if constexpr (std::is_invocable_v<decltype(Read), const std::string&, Own&>) {
+            return Read(given, own);
+          } else {
+            return std::string("another mode");
+          }
+        },
+        options);
+  };
+  const auto taken = []<class... Own>(const std::variant<Own...>*) {
+    return std::array{std::is_invocable_v<decltype(Read), const std::string&, Own&>...};
+  };
+  return {name, value, meaning, read, taken(static_cast<const Options*>(nullptr))};
+}
+
 constexpr OptionLine kLines[] = {
-    {"--image", "FILE",
-     "plant image; `hotfire plant --model M.toml` makes it from a model file. Without it\n"
-     "`timing` runs the reference axis with every effect active",
-     [](const std::string& value, Options& o) { return o.image = value, std::string(); }},
-    {"--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface such as can0; default sim", read_bus},
-    {"--gpio", "CHIP", "lab: the chip with its lines, by path, name or label",
-     [](const std::string& value, Options& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }},
-    {"--confirm", "DIGEST", "lab: the profile's digest, as `hotfire check` prints it to the person who has read the profile",
-     [](const std::string& value, Options& o) { return o.confirm = value, std::string(); }},
-    {"--rehearsal", "",
-     "lab: on a virtual CAN interface, also without real time, recording and --confirm, which a lab\n"
-     "has to have on a real one",
-     [](const std::string&, Options& o) { return o.rehearsal = true, std::string(); }},
-    {"--layout", "L",
-     "frames on a CAN bus: classic (two actuators at most), fd, classic-split or fd-split (both readings of a\n"
-     "piston by frames of their own); default classic if there is room in it",
-     read_layout},
-    {"--command-per-current", "X", "command that a servovalve current on a CAN bus represents [rad/A]; default 10",
-     [](const std::string& value, Options& o) { return read_number(value, 1e-6, 1e6, o.command_per_current); }},
-    {"--command-age-ms", "X", "greatest age of a command on a CAN bus; an older one gives no current; default 100",
-     [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }},
-    {"--heartbeat-age-ms", "X",
-     "plant: greatest age of a HEARTBEAT, after the first one; with an older one no command gives a current; default 50",
-     [](const std::string& value, Options& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }},
-    {"--key", "FILE",
-     "commands and readings are authenticated with the key in this file, 32 hexadecimal digits; FD layouts only",
-     [](const std::string& value, Options& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }},
-    {"--freshness-ms", "X", "how far the clocks of two nodes that share a key may be apart; default 1000",
-     [](const std::string& value, Options& o) { return read_number(value, 1.0, 60'000.0, o.freshness_ms); }},
-    {"--bit-rate", "N", "bit rate of the CAN bus, for the check of its load; default: that of the interface",
-     [](const std::string& value, Options& o) { return read_number(value, 1e4, 1e6, o.bit_rate); }},
-    {"--data-bit-rate", "N", "bit rate of the data of FD frames; default: that of the interface",
-     [](const std::string& value, Options& o) { return read_number(value, 1e4, 8e6, o.data_bit_rate); }},
-    {"--max-lost", "N", "verdict: no more frames than this lost, repeated, refused or out of order on a CAN bus",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_lost.emplace());
-     }},
-    {"--period-us", "N", "period, 250 to 10000; default 1000. Longer than 500 is split into equal steps", read_period},
-    {"--cycles", "N", "end after N cycles, 0: when interrupted; default 0 for plant, 10000 for timing",
-     [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.cycles); }},
-    {"--warm-up", "N", "cycles before those, counted separately; default 100",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.warm_up_cycles);
-     }},
-    {"--policy", "P", "after an overrun: catch-up (default), skip or stop",
-     [](const std::string& value, Options& o) { return read_name(value, kOverrunPolicies, o.loop.policy); }},
-    {"--priority", "P", "SCHED_FIFO priority, 1 to 99; 0: an ordinary process; default 80",
-     [](const std::string& value, Options& o) { return read_integer(value, 0, 99, o.priority); }},
-    {"--cpu", "C", "run on this CPU only", read_cpu},
-    {"--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running",
-     [](const std::string&, Options& o) { return o.require_realtime = true, std::string(); }},
-    {"--max-latency-us", "X", "verdict: no wake-up later than this", read_max_latency},
-    {"--max-step-us", "X", "verdict: no step of the model longer than this", read_max_step},
-    {"--max-overruns", "N", "verdict: no more overruns than this; default 0 for timing, no limit for plant",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
-     }},
-    {"--actuators", "N",
-     "number of plants of a model of one axis, 1 to 8, each with its own command; default 1. A vehicle (taos,\n"
-     "masv) has as many as it has axes, and needs no --actuators",
-     [](const std::string& value, Options& o) {
-       o.actuators_given = true;
-       return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
-     }},
-    {"--strings", "",
-     "plant on a CAN bus: string potentiometers too, four for each engine. Its pitch and yaw are actuators\n"
-     "1 and 2, 3 and 4 and so on",
-     [](const std::string&, Options& o) { return o.strings = true, std::string(); }},
-    {"--load-pressure", "",
-     "plant on a CAN bus: the pressure difference across every piston too, for a lab whose profile limits it",
-     [](const std::string&, Options& o) { return o.load_pressure = true, std::string(); }},
-    {"--sync", "S", "what gives the cycles: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)",
-     [](const std::string& value, Options& o) { return read_name(value, kPaceKinds, o.pace); }},
-    {"--max-missed-syncs", "N", "end after more than N in a row; default 10",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
-     }},
-    {"--sync-patience-ms", "X", "longest wait for a late SYNC; then its cycle runs without it; default half a period",
-     [](const std::string& value, Options& o) { return read_number(value, 0.0, 1e6, o.sync_patience_ms.emplace()); }},
-    {"--lockstep", "", "controller: each cycle begins after the plant has answered the one before",
-     [](const std::string&, Options& o) { return o.lockstep = true, std::string(); }},
-    {"--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`",
-     [](const std::string& value, Options& o) { return o.recording = value, std::string(); }},
-    {"--overwrite", "", "replace an older file that --record names, which is refused otherwise",
-     [](const std::string&, Options& o) { return o.overwrite = true, std::string(); }},
-    {"--record-buffer-s", "X", "stall of the disk that the buffer covers; after it cycles are dropped; default 8",
-     [](const std::string& value, Options& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }},
-    {"--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384",
-     [](const std::string& value, Options& o) {
-       return read_integer(value, std::uint64_t{1}, std::uint64_t{1} << 24, o.record_max_mib);
-     }},
-    {"--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0",
-     [](const std::string& value, Options& o) { return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped); }},
-    {"--watch", "FILE",
-     "show the run: a file in memory, below /dev/shm or /run, which `hotfire watch FILE` shows in a browser",
-     [](const std::string& value, Options& o) { return o.live_view = value, std::string(value.empty() ? "a file" : ""); }},
-    {"--command", "SHAPE", "command of bus sim or of the controller: steps (default), sine or rest",
-     [](const std::string& value, Options& o) {
-       return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);
-     }},
-    {"--amplitude", "X", "amplitude of the command, in the plant's unit (rad, or the record's force); default 0.01",
-     [](const std::string& value, Options& o) { return read_number(value, -1e9, 1e9, o.source.amplitude); }},
-    {"--frequency", "HZ", "frequency of the command; default 0.5",
-     [](const std::string& value, Options& o) { return read_number(value, 0.0, 1000.0, o.source.frequency); }},
-    {"--json", "", "print the result as JSON, in the form of cyclictest's",
-     [](const std::string&, Options& o) { return o.json = true, std::string(); }}};
+    line<[](const std::string& value, ImageOptions& o) { return o.image = value, std::string(); }>(
+        "--image", "FILE",
+        "plant image; `hotfire plant --model M.toml` makes it from a model file. Without it\n"
+        "`timing` runs the reference axis with every effect active"),
+    line<read_bus>("--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface such as can0; default sim"),
+    line<[](const std::string& value, LabOptions& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }>(
+        "--gpio", "CHIP", "lab: the chip with its lines, by path, name or label"),
+    line<[](const std::string& value, LabOptions& o) { return o.confirm = value, std::string(); }>(
+        "--confirm", "DIGEST",
+        "lab: the profile's digest, as `hotfire check` prints it to the person who has read the profile"),
+    line<[](const std::string&, LabOptions& o) { return o.rehearsal = true, std::string(); }>(
+        "--rehearsal", "",
+        "lab: on a virtual CAN interface, also without real time, recording and --confirm, which a lab\n"
+        "has to have on a real one"),
+    line<read_layout>(
+        "--layout", "L",
+        "frames on a CAN bus: classic (two actuators at most), fd, classic-split or fd-split (both readings of a\n"
+        "piston by frames of their own); default classic if there is room in it"),
+    line<[](const std::string& value, CurrentOptions& o) { return read_number(value, 1e-6, 1e6, o.command_per_current); }>(
+        "--command-per-current", "X", "command that a servovalve current on a CAN bus represents [rad/A]; default 10"),
+    line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }>(
+        "--command-age-ms", "X", "greatest age of a command on a CAN bus; an older one gives no current; default 100"),
+    line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }>(
+        "--heartbeat-age-ms", "X",
+        "plant: greatest age of a HEARTBEAT, after the first one; with an older one no command gives a current; default 50"),
+    line<[](const std::string& value, CanOptions& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }>(
+        "--key", "FILE",
+        "commands and readings are authenticated with the key in this file, 32 hexadecimal digits; FD layouts only"),
+    line<[](const std::string& value, CanOptions& o) { return read_number(value, 1.0, 60'000.0, o.freshness_ms); }>(
+        "--freshness-ms", "X", "how far the clocks of two nodes that share a key may be apart; default 1000"),
+    line<[](const std::string& value, CanOptions& o) { return read_number(value, 1e4, 1e6, o.bit_rate); }>(
+        "--bit-rate", "N", "bit rate of the CAN bus, for the check of its load; default: that of the interface"),
+    line<[](const std::string& value, CanOptions& o) { return read_number(value, 1e4, 8e6, o.data_bit_rate); }>(
+        "--data-bit-rate", "N", "bit rate of the data of FD frames; default: that of the interface"),
+    line<[](const std::string& value, CanOptions& o) {
+      return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_lost.emplace());
+    }>("--max-lost", "N", "verdict: no more frames than this lost, repeated, refused or out of order on a CAN bus"),
+    line<read_period>("--period-us", "N", "period, 250 to 10000; default 1000. Longer than 500 is split into equal steps"),
+    line<[](const std::string& value, RunOptions& o) {
+      return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.cycles);
+    }>("--cycles", "N", "end after N cycles, 0: when interrupted; default 0 for plant, 10000 for timing"),
+    line<[](const std::string& value, RunOptions& o) {
+      return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.warm_up_cycles);
+    }>("--warm-up", "N", "cycles before those, counted separately; default 100"),
+    line<[](const std::string& value, RunOptions& o) { return read_name(value, kOverrunPolicies, o.loop.policy); }>(
+        "--policy", "P", "after an overrun: catch-up (default), skip or stop"),
+    line<[](const std::string& value, RunOptions& o) { return read_integer(value, 0, 99, o.priority); }>(
+        "--priority", "P", "SCHED_FIFO priority, 1 to 99; 0: an ordinary process; default 80"),
+    line<read_cpu>("--cpu", "C", "run on this CPU only"),
+    line<[](const std::string&, RunOptions& o) { return o.require_realtime = true, std::string(); }>(
+        "--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running"),
+    line<read_max_latency>("--max-latency-us", "X", "verdict: no wake-up later than this"),
+    line<read_max_step>("--max-step-us", "X", "verdict: no step of the model longer than this"),
+    line<[](const std::string& value, RunOptions& o) {
+      return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
+    }>("--max-overruns", "N", "verdict: no more overruns than this; default 0 for timing, no limit for plant"),
+    line<[](const std::string& value, CommandedRunOptions& o) {
+      o.actuators_given = true;
+      return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
+    }>("--actuators", "N",
+       "number of plants of a model of one axis, 1 to 8, each with its own command; default 1. A vehicle (taos,\n"
+       "masv) has as many as it has axes, and needs no --actuators"),
+    line<[](const std::string&, PlantOptions& o) { return o.strings = true, std::string(); }>(
+        "--strings", "",
+        "plant on a CAN bus: string potentiometers too, four for each engine. Its pitch and yaw are actuators\n"
+        "1 and 2, 3 and 4 and so on"),
+    line<[](const std::string&, PlantOptions& o) { return o.load_pressure = true, std::string(); }>(
+        "--load-pressure", "",
+        "plant on a CAN bus: the pressure difference across every piston too, for a lab whose profile limits it"),
+    line<[](const std::string& value, PlantRunOptions& o) { return read_name(value, kPaceKinds, o.pace); }>(
+        "--sync", "S", "what gives the cycles: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)"),
+    line<[](const std::string& value, PlantRunOptions& o) {
+      return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
+    }>("--max-missed-syncs", "N", "end after more than N in a row; default 10"),
+    line<[](const std::string& value, PlantRunOptions& o) {
+      return read_number(value, 0.0, 1e6, o.sync_patience_ms.emplace());
+    }>("--sync-patience-ms", "X", "longest wait for a late SYNC; then its cycle runs without it; default half a period"),
+    line<[](const std::string&, ControllerOptions& o) { return o.lockstep = true, std::string(); }>(
+        "--lockstep", "", "controller: each cycle begins after the plant has answered the one before"),
+    line<[](const std::string& value, ImageOptions& o) { return o.recording = value, std::string(); }>(
+        "--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`"),
+    line<[](const std::string&, ImageOptions& o) { return o.overwrite = true, std::string(); }>(
+        "--overwrite", "", "replace an older file that --record names, which is refused otherwise"),
+    line<[](const std::string& value, ImageOptions& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }>(
+        "--record-buffer-s", "X", "stall of the disk that the buffer covers; after it cycles are dropped; default 8"),
+    line<[](const std::string& value, ImageOptions& o) {
+      return read_integer(value, std::uint64_t{1}, std::uint64_t{1} << 24, o.record_max_mib);
+    }>("--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384"),
+    line<[](const std::string& value, ImageOptions& o) {
+      return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped);
+    }>("--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0"),
+    line<[](const std::string& value, RunOptions& o) {
+      return o.live_view = value, std::string(value.empty() ? "a file" : "");
+    }>("--watch", "FILE",
+       "show the run: a file in memory, below /dev/shm or /run, which `hotfire watch FILE` shows in a browser"),
+    line<[](const std::string& value, CommandedRunOptions& o) {
+      return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);
+    }>("--command", "SHAPE", "command of bus sim or of the controller: steps (default), sine or rest"),
+    line<[](const std::string& value, CommandedRunOptions& o) { return read_number(value, -1e9, 1e9, o.source.amplitude); }>(
+        "--amplitude", "X", "amplitude of the command, in the plant's unit (rad, or the record's force); default 0.01"),
+    line<[](const std::string& value, CommandedRunOptions& o) {
+      return read_number(value, 0.0, 1000.0, o.source.frequency);
+    }>("--frequency", "HZ", "frequency of the command; default 0.5"),
+    line<[](const std::string&, RunOptions& o) { return o.json = true, std::string(); }>(
+        "--json", "", "print the result as JSON, in the form of cyclictest's")};
 
 }  // namespace
 

@@ -9,13 +9,14 @@
 
 namespace hotfire::firmware {
 
-/// One option of hotfire-rt: what the help says, and how it is read.
+/// One option of hotfire-rt: what the help says, which modes take it, and how it is read.
 struct OptionLine {
   std::string_view name;
   std::string_view value;    ///< empty: a flag
   std::string_view meaning;  ///< a second line after a line feed
-  /// Reads a value into the options; returns what is allowed if it is not.
+  /// Reads a value into the options of a mode that takes it; returns what is allowed if it is not.
   std::string (*read)(const std::string& value, Options& options);
+  std::array<bool, std::variant_size_v<Options>> taken;  ///< by mode, in the order of `Options`
 };
 
 /// Every option, in the order of the help.

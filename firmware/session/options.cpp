@@ -2,6 +2,8 @@
 #include "firmware/session/options.hpp"
 
 #include <algorithm>
+#include <initializer_list>
+#include <type_traits>
 
 #include "firmware/service/status.hpp"
 #include "firmware/session/option_table.hpp"
@@ -47,6 +49,27 @@ ParsedOptions wrong_use(const std::string& message) {
   return {std::nullopt, kWrongUse, "hotfire-rt: " + message + "; see hotfire-rt --help\n"};
 }
 
+std::string_view mode_of(const Options& options) {
+  return std::visit([]<class Own>(const Own&) { return Own::mode; }, options);
+}
+
+/// "plant, timing": the modes that take an option.
+std::string modes_of(const OptionLine& line) {
+  std::string result;
+  const auto add = [&]<class... Own>(const std::variant<Own...>*) {
+    std::size_t index = 0;
+    ((line.taken[index++] ? result.append(result.empty() ? "" : ", ").append(Own::mode) : result), ...);
+  };
+  add(static_cast<const Options*>(nullptr));
+  return result;
+}
+
+/// The first text that says something.
+std::string first_of(std::initializer_list<std::string> texts) {
+  const auto found = std::find_if(texts.begin(), texts.end(), [](const std::string& text) { return !text.empty(); });
+  return found == texts.end() ? std::string() : *found;
+}
+
 /// Applies the argument at `i`, and moves `i` onto its value if that is an argument of its own.
 std::string apply(const std::vector<std::string>& arguments, std::size_t& i, Options& options) {
   const std::size_t equals = std::min(arguments[i].find('='), arguments[i].size());
@@ -55,6 +78,9 @@ std::string apply(const std::vector<std::string>& arguments, std::size_t& i, Opt
   const auto line = std::find_if(lines.begin(), lines.end(), [&](const OptionLine& one) { return one.name == name; });
   if (line == lines.end()) {
     return "unknown argument " + arguments[i];
+  }
+  if (!line->taken[options.index()]) {
+    return name + " is no option of " + std::string(mode_of(options)) + ", but of " + modes_of(*line);
   }
   const bool has_own_value = equals < arguments[i].size();
   if (line->value.empty()) {
@@ -77,9 +103,7 @@ std::string joined(const std::vector<std::string>& arguments) {
 }
 
 ParsedOptions parse_replay(const std::vector<std::string>& arguments) {
-  Options options;
-  options.mode = Mode::replay;
-  options.command_line = joined(arguments);
+  ReplayOptions options;
   for (std::size_t i = 2; i < arguments.size(); ++i) {
     if (arguments[i] == "--json") {
       options.json = true;
@@ -95,82 +119,116 @@ ParsedOptions parse_replay(const std::vector<std::string>& arguments) {
   return {options, 0, {}};
 }
 
-bool read_mode(const std::string& word, Options& options) {
-  if (word == "timing") {
-    options.mode = Mode::timing;
+/// The options of a mode before any argument, but of replay, which has none to read.
+std::optional<Options> defaults_of(const std::string& mode) {
+  if (mode == PlantOptions::mode) {
+    return PlantOptions{};
+  }
+  if (mode == ControllerOptions::mode) {
+    return ControllerOptions{};
+  }
+  if (mode == TimingOptions::mode) {
+    TimingOptions options;
     options.loop.cycles = 10'000;
     options.max_overruns = 0;
-  } else if (word == "controller") {
-    options.mode = Mode::controller;
-  } else if (word == "lab") {
-    options.mode = Mode::lab;
+    return options;
+  }
+  if (mode == LabOptions::mode) {
+    LabOptions options;
     // Commands that were not sent in time are not sent at all.
     options.loop.policy = OverrunPolicy::skip;
+    return options;
   }
-  return word == "plant" || options.mode != Mode::plant;
+  return std::nullopt;
 }
 
-/// What options of a lab say together that cannot be.
-std::string conflict_in_lab(const Options& options) {
-  if (options.mode == Mode::lab && (options.image.empty() || !options.on_can() || options.gpio.empty())) {
-    return "lab needs a profile, a bus and lines: hotfire lab --profile P.toml --bus can0 --gpio CHIP";
-  }
-  if (options.mode == Mode::lab && (options.pace != PaceKind::clock || options.loop.policy != OverrunPolicy::skip)) {
-    return "lab keeps its own time and leaves out what is overdue: leave --sync and --policy out";
-  }
-  if (options.mode == Mode::lab && !options.rehearsal &&
-      (options.recording.empty() || options.confirm.empty() || options.priority == 0)) {
-    return "lab moves real actuators: it needs --record FILE, --confirm DIGEST, which 'hotfire check' prints, and real time "
-           "(no --priority 0); on a virtual bus --rehearsal does without";
-  }
-  if (options.mode != Mode::lab && (options.rehearsal || !options.confirm.empty())) {
-    return "--confirm and --rehearsal are of a lab";
+// What options that are each allowed say together that cannot be; empty if they can.
+
+std::string conflict_of_run(const RunOptions& options) {
+  return options.require_realtime && options.priority == 0 ? "--require-realtime and --priority 0 exclude each other" : "";
+}
+
+std::string conflict_of_image(const ImageOptions& options) {
+  return !options.recording.empty() && options.image.empty()
+             ? "--record needs a model, which becomes part of the recording: --model FILE, or --image FILE"
+             : "";
+}
+
+std::string conflict_of_bus(const CanOptions& options, std::size_t actuators) {
+  const can::Layout layout = options.frame_layout(actuators);
+  if (options.on_can() && actuators > can::most_actuators(layout)) {
+    return "--layout " + std::string(can::kLayouts[static_cast<std::size_t>(layout)]) + " has room for " +
+           std::to_string(can::most_actuators(layout)) + " actuators: leave it out, or take fd-split for classic-split";
   }
   return {};
 }
 
-/// What options that are each allowed say together that cannot be.
-std::string conflict_in(const Options& options) {
-  const can::Layout layout = options.frame_layout();
-  if (options.mode == Mode::plant && options.image.empty()) {
+/// `layout`: none if the number of actuators, which decides it, is not known yet.
+std::string conflict_of_key(const CanOptions& options, std::optional<can::Layout> layout) {
+  if (!options.key.empty() && (!options.on_can() || (layout && !can::is_fd(*layout)))) {
+    return "--key needs frames with space for a code: --bus can0 --layout fd, or fd-split";
+  }
+  return {};
+}
+
+std::string conflict_of_mode(const PlantOptions& options) {
+  if (options.image.empty()) {
     return "plant needs --image FILE, or start it as: hotfire plant --model M.toml";
   }
-  if (options.mode == Mode::timing && options.on_can()) {
-    return "timing needs no bus: leave --bus out";
-  }
-  if (std::string conflict = conflict_in_lab(options); !conflict.empty()) {
-    return conflict;
-  }
-  if (options.mode == Mode::controller && !options.on_can()) {
-    return "controller needs a bus with a plant on it: --bus can0";
-  }
-  if (options.mode == Mode::controller && options.pace == PaceKind::can) {
-    return "the controller sends SYNC itself: leave --sync out";
-  }
-  if (options.strings && (options.mode != Mode::plant || !options.on_can())) {
+  if (options.strings && !options.on_can()) {
     return "--strings is of a plant on a CAN bus: plant --bus can0";
   }
-  if (options.load_pressure && (options.mode != Mode::plant || !options.on_can())) {
-    return "--load-pressure is of a plant on a CAN bus: plant --bus can0; a lab takes load pressures if its profile has "
-           "limits.load_pressure";
+  if (options.load_pressure && !options.on_can()) {
+    return "--load-pressure is of a plant on a CAN bus: plant --bus can0";
   }
   if (options.pace == PaceKind::can && !options.on_can()) {
     return "--sync can needs the CAN bus that SYNC is on: --bus can0";
   }
-  if (options.on_can() && options.actuators > can::most_actuators(layout)) {
-    return "--layout " + std::string(can::kLayouts[static_cast<std::size_t>(layout)]) + " has room for " +
-           std::to_string(can::most_actuators(layout)) + " actuators: leave it out, or take fd-split for classic-split";
+  return first_of({conflict_of_bus(options, options.actuators), conflict_of_key(options, options.frame_layout()),
+                   conflict_of_image(options)});
+}
+
+std::string conflict_of_mode(const TimingOptions& options) {
+  if (options.pace == PaceKind::can) {
+    return "timing has no bus that SYNC could be on: --sync sim, or leave it out";
   }
-  if (!options.key.empty() && !(options.on_can() && (options.mode == Mode::lab || can::is_fd(layout)))) {
-    return "--key needs frames with space for a code: --bus can0 --layout fd, or fd-split";
+  return conflict_of_image(options);
+}
+
+std::string conflict_of_mode(const ControllerOptions& options) {
+  if (!options.on_can()) {
+    return "controller needs a bus with a plant on it: --bus can0";
   }
-  if (!options.recording.empty() && options.image.empty()) {
-    return "--record needs a model, which becomes part of the recording: --model FILE, or --image FILE";
+  return first_of(
+      {conflict_of_bus(options, options.actuators), conflict_of_key(options, options.frame_layout(options.actuators))});
+}
+
+std::string conflict_of_mode(const LabOptions& options) {
+  if (options.image.empty() || !options.on_can() || options.gpio.empty()) {
+    return "lab needs a profile, a bus and lines: hotfire lab --profile P.toml --bus can0 --gpio CHIP";
   }
-  if (options.require_realtime && options.priority == 0) {
-    return "--require-realtime and --priority 0 exclude each other";
+  if (options.loop.policy != OverrunPolicy::skip) {
+    return "lab leaves out what is overdue: leave --policy out";
   }
-  return {};
+  if (!options.rehearsal && (options.recording.empty() || options.confirm.empty() || options.priority == 0)) {
+    return "lab moves real actuators: it needs --record FILE, --confirm DIGEST, which 'hotfire check' prints, and real time "
+           "(no --priority 0); on a virtual bus --rehearsal does without";
+  }
+  return conflict_of_key(options, std::nullopt);
+}
+
+std::string conflict_of_mode(const ReplayOptions&) { return {}; }
+
+std::string conflict_in(const Options& options) {
+  return std::visit(
+      []<class Own>(const Own& own) {
+        if constexpr (std::is_base_of_v<RunOptions, Own>) {
+          return first_of({conflict_of_mode(own), conflict_of_run(own)});
+        } else {
+          return conflict_of_mode(own);
+        }
+      },
+      options);
 }
 
 }  // namespace
@@ -188,21 +246,27 @@ ParsedOptions parse_options(const std::vector<std::string>& arguments) {
   if (arguments.size() > 1 && arguments[1] == "replay") {
     return parse_replay(arguments);
   }
-  Options options;
-  if (arguments.size() < 2 || !read_mode(arguments[1], options)) {
+  std::optional<Options> options = arguments.size() < 2 ? std::nullopt : defaults_of(arguments[1]);
+  if (!options) {
     return wrong_use("the first argument is plant, timing, controller, lab or replay");
   }
   for (std::size_t i = 2; i < arguments.size(); ++i) {
-    const std::string error = apply(arguments, i, options);
+    const std::string error = apply(arguments, i, *options);
     if (!error.empty()) {
       return wrong_use(error);
     }
   }
-  const std::string conflict = conflict_in(options);
+  const std::string conflict = conflict_in(*options);
   if (!conflict.empty()) {
     return wrong_use(conflict);
   }
-  options.command_line = joined(arguments);
+  std::visit(
+      [&]<class Own>(Own& own) {
+        if constexpr (std::is_base_of_v<RunOptions, Own>) {
+          own.command_line = joined(arguments);
+        }
+      },
+      *options);
   return {options, 0, {}};
 }
 

@@ -28,7 +28,7 @@ struct WireAccount {
 using CanPlantBus = can::PlantBus<hal::SocketCan, Clock>;
 
 /// [s]
-double period_of(const Options& options) { return static_cast<double>(options.loop.period_ns) * 1e-9; }
+double period_of(const RunOptions& options) { return static_cast<double>(options.loop.period_ns) * 1e-9; }
 
 /// Which value of an actuator its load pressure is; none if the plant has none.
 template <class Plant>
@@ -42,7 +42,7 @@ constexpr std::optional<std::size_t> load_pressure_of() {
 template <class Plant>
 class PlantSession {
  public:
-  PlantSession(const Options& options, const PlantImage& image, std::unique_ptr<Plant> plant)
+  PlantSession(const PlantOptions& options, const PlantImage& image, std::unique_ptr<Plant> plant)
       : options_(options), image_(image), period_(period_of(options)), plant_(std::move(plant)) {}
 
   int run_without_wire() {
@@ -51,8 +51,8 @@ class PlantSession {
   }
 
   int run_on_can() {
-    CanSession session(
-        options_, can::plant_ids(options_.frame_layout(), options_.actuators, {options_.strings, options_.load_pressure}));
+    const can::MoreReadings more{options_.strings, options_.load_pressure};
+    CanSession session(options_, options_, can::plant_ids(options_.frame_layout(), options_.actuators, more), more);
     if (const int status = session.open(); status != kGood) {
       return status;
     }
@@ -131,6 +131,9 @@ class PlantSession {
     }
     Session session{options_,        loop->result(),       Plant::topology,
                     Plant::channels, Plant::channel_units, plant_->steps_per_cycle()};
+    session.recorded_as = &options_;
+    session.max_lost = options_.max_lost;
+    session.synchronised = options_.pace != PaceKind::clock;
     session.is_vehicle = actuators_of(*image_.parameters) != 0;
     return run_loop(*loop, session, end_with(recording.get(), live, account.complete));
   }
@@ -140,7 +143,7 @@ class PlantSession {
                                      : options_.loop.period_ns / 2;
   }
 
-  const Options& options_;
+  const PlantOptions& options_;
   const PlantImage& image_;
   double period_;
   Clock clock_;
@@ -148,7 +151,7 @@ class PlantSession {
 };
 
 /// The image that the options name, or the reference plant.
-PlantImage image_of(const Options& options) {
+PlantImage image_of(const PlantOptions& options) {
   if (!options.image.empty()) {
     return read_plant_image(options.image);
   }
@@ -158,7 +161,7 @@ PlantImage image_of(const Options& options) {
 }
 
 /// What of the options the plant of the image cannot be.
-std::optional<hal::Failure> refuse_options(const Options& options, const PlantImage& image) {
+std::optional<hal::Failure> refuse_options(const PlantOptions& options, const PlantImage& image) {
   const std::size_t own = actuators_of(*image.parameters);
   if (own != 0 && options.actuators_given && options.actuators != own) {
     return hal::Failure{text("--actuators %zu: the model is a vehicle of %zu actuators", options.actuators, own),
@@ -184,7 +187,7 @@ std::optional<hal::Failure> refuse_options(const Options& options, const PlantIm
 
 }  // namespace
 
-int run_plant(const Options& asked) {
+int run(const PlantOptions& asked) {
   const PlantImage image = image_of(asked);
   if (!image.parameters) {
     std::fprintf(stderr, "hotfire-rt: %s\n", image.error.c_str());
@@ -194,7 +197,7 @@ int run_plant(const Options& asked) {
     complain(*refused);
     return kWrongUse;
   }
-  Options options = asked;
+  PlantOptions options = asked;
   if (const std::size_t own = actuators_of(*image.parameters); own != 0) {
     options.actuators = own;
   }
@@ -203,6 +206,12 @@ int run_plant(const Options& asked) {
     PlantSession<Plant> session(options, image, std::move(plant));
     return options.on_can() ? session.run_on_can() : session.run_without_wire();
   });
+}
+
+int run(const TimingOptions& options) {
+  PlantOptions plant;
+  static_cast<PlantRunOptions&>(plant) = options;
+  return run(plant);
 }
 
 }  // namespace hotfire::firmware

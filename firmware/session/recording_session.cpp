@@ -17,13 +17,13 @@ std::string now_utc() {
   return text;
 }
 
-std::size_t ring_slots(const Options& options) {
-  return static_cast<std::size_t>(std::ceil(options.record_buffer_s * 1e9 / static_cast<double>(options.loop.period_ns)));
+std::size_t ring_slots(double seconds, std::int64_t period_ns) {
+  return static_cast<std::size_t>(std::ceil(seconds * 1e9 / static_cast<double>(period_ns)));
 }
 
 }  // namespace
 
-hal::RecordingHeader recording_header(const Options& options, const RecordedPlant& plant) {
+hal::RecordingHeader recording_header(const RunOptions& options, const RecordedPlant& plant) {
   const hal::SystemInfo system = hal::system_info();
   hal::RecordingHeader header;
   header.version = HOTFIRE_VERSION;
@@ -42,10 +42,10 @@ hal::RecordingHeader recording_header(const Options& options, const RecordedPlan
   return header;
 }
 
-RecordingSession::RecordingSession(const Options& options, const RecordedPlant& plant)
+RecordingSession::RecordingSession(const RunOptions& run, const ImageOptions& options, const RecordedPlant& plant)
     : file_(options.recording, options.record_max_mib << 20, options.overwrite),
-      header_(hal::header_text(recording_header(options, plant))),
-      recorder_(file_, options.actuators, plant.start.size(), ring_slots(options)) {}
+      header_(hal::header_text(recording_header(run, plant))),
+      recorder_(file_, run.actuators, plant.start.size(), ring_slots(options.record_buffer_s, run.loop.period_ns)) {}
 
 std::optional<hal::Failure> RecordingSession::start() {
   std::optional<hal::Failure> failure = file_.create(header_);

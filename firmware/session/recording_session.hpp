@@ -38,12 +38,15 @@ struct RecordedPlant {
 };
 
 /// Where a run comes from and what its numbers mean.
-hal::RecordingHeader recording_header(const Options& options, const RecordedPlant& plant);
+hal::RecordingHeader recording_header(const RunOptions& options, const RecordedPlant& plant);
 
 /// A file, and the recorder that writes it.
 class RecordingSession {
  public:
-  RecordingSession(const Options& options, const RecordedPlant& plant);
+  RecordingSession(const RunOptions& run, const ImageOptions& options, const RecordedPlant& plant);
+  /// Of the options of a mode that records.
+  template <class Recorded>
+  RecordingSession(const Recorded& options, const RecordedPlant& plant) : RecordingSession(options, options, plant) {}
 
   /// Makes the file and starts the thread. To be called before the real-time set-up of the calling thread.
   std::optional<hal::Failure> start();

@@ -70,7 +70,7 @@ bool granted(const std::optional<hal::Failure>& failure, std::vector<hal::Failur
   return !failure;
 }
 
-bool set_up_real_time(const Options& options, hal::WakefulCpus& cpus, std::vector<hal::Failure>& failures) {
+bool set_up_real_time(const RunOptions& options, hal::WakefulCpus& cpus, std::vector<hal::Failure>& failures) {
   const bool locked = granted(hal::lock_memory(kStackBytes), failures);
   const bool placed = !options.cpu || granted(hal::run_on_cpu(*options.cpu), failures);
   if (options.priority == 0) {
@@ -80,7 +80,7 @@ bool set_up_real_time(const Options& options, hal::WakefulCpus& cpus, std::vecto
   return granted(hal::schedule_first(options.priority), failures) && locked && placed;
 }
 
-void announce(const Options& options) {
+void announce(const RunOptions& options) {
   if (isatty(STDERR_FILENO) == 0) {
     return;
   }

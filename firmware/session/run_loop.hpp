@@ -26,10 +26,10 @@ void stop_instead_of_suspending();
 bool granted(const std::optional<hal::Failure>& failure, std::vector<hal::Failure>& failures);
 
 /// Locks memory, binds and schedules this thread. True if all of it was granted and asked for.
-bool set_up_real_time(const Options& options, hal::WakefulCpus& cpus, std::vector<hal::Failure>& failures);
+bool set_up_real_time(const RunOptions& options, hal::WakefulCpus& cpus, std::vector<hal::Failure>& failures);
 
 /// Says what is going on to a person who looks on.
-void announce(const Options& options);
+void announce(const RunOptions& options);
 
 /// What the thread has used, with the allocations that a linked guard counts.
 struct Usage {
@@ -62,7 +62,7 @@ void end_run(Session& session, const RunEnd& end, Watchdog& watchdog);
 /// signal has asked for it.
 template <class Loop>
 int run_loop(Loop& loop, Session& session, const RunEnd& end, const std::atomic<bool>& ended = stop_asked) {
-  const Options& options = session.options;
+  const RunOptions& options = session.options;
   Watchdog watchdog(hal::ServiceManager::from_environment(), loop.heartbeat());
   granted(watchdog.start(), session.failures);
   hal::WakefulCpus cpus;

@@ -6,7 +6,7 @@
 namespace hotfire::firmware {
 
 Verdict judge(const Session& session) {
-  const Options& options = session.options;
+  const RunOptions& options = session.options;
   const LoopResult& result = session.result;
   if (result.ending != Ending::completed && result.ending != Ending::asked) {
     return {false, std::string(kEndings[static_cast<std::size_t>(result.ending)]),
@@ -48,16 +48,16 @@ Verdict judge(const Session& session) {
     const double longest = static_cast<double>(result.account.step_time().greatest_ns()) * 1e-3;
     add(longest <= *options.max_step_us, text("longest step %.1f us, allowed %g us", longest, *options.max_step_us));
   }
-  if (options.max_lost && session.bus) {
-    add(session.bus->lost() <= *options.max_lost,
+  if (session.max_lost && session.bus) {
+    add(session.bus->lost() <= *session.max_lost,
         text("%llu frames lost or out of order, allowed %llu", static_cast<unsigned long long>(session.bus->lost()),
-             static_cast<unsigned long long>(*options.max_lost)));
+             static_cast<unsigned long long>(*session.max_lost)));
   }
   if (session.recording != nullptr) {
     const std::uint64_t dropped = session.recording->dropped();
-    add(dropped <= options.max_dropped,
-        text("%llu cycles missing in the recording, allowed %llu", static_cast<unsigned long long>(dropped),
-             static_cast<unsigned long long>(options.max_dropped)));
+    const std::uint64_t allowed = session.recorded_as != nullptr ? session.recorded_as->max_dropped : 0;
+    add(dropped <= allowed, text("%llu cycles missing in the recording, allowed %llu",
+                                 static_cast<unsigned long long>(dropped), static_cast<unsigned long long>(allowed)));
   }
   if (session.recording != nullptr && session.recording->is_error) {
     add(false, "the recording failed: " + session.recording->failure);
@@ -67,13 +67,6 @@ Verdict judge(const Session& session) {
     verdict.reason = "no limit asked for";
   }
   return verdict;
-}
-
-int run_session(const Options& options) {
-  if (options.mode == Mode::lab) {
-    return run_lab(options);
-  }
-  return options.mode == Mode::controller ? run_controller(options) : run_plant(options);
 }
 
 }  // namespace hotfire::firmware

@@ -30,7 +30,7 @@ struct LabAccount {
 
 /// All that is known when a loop has ended.
 struct Session {
-  const Options& options;
+  const RunOptions& options;
   const LoopResult& result;
   std::string_view topology;
   std::span<const std::string_view> channels;
@@ -41,7 +41,10 @@ struct Session {
   hal::ResourceUsage usage{};                  ///< of the loop after warm-up
   std::optional<std::uint64_t> allocations{};  ///< of the loop after warm-up, if a guard is linked
   const RecorderAccount* recording = nullptr;  ///< null: nothing was recorded
+  const ImageOptions* recorded_as = nullptr;   ///< of the recording; null in a mode that records nothing
   std::optional<BusAccount> bus{};             ///< none: there is no wire
+  std::optional<std::uint64_t> max_lost{};     ///< frames that may be lost; none: no limit
+  bool synchronised = false;                   ///< syncs give the cycles, not the machine's clock
   std::optional<LabAccount> lab{};
   std::string_view input = "commands";  ///< what the loop takes in every cycle, and what it sends
   std::string_view output = "readings";
@@ -64,10 +67,10 @@ std::string text_report(const Session& session);
 std::string json_report(const Session& session);
 
 /// Each sets up, runs its loop, prints the report to standard output and what the machine refused to standard error, and
-/// returns the exit status: the plant, a controller of one on a CAN bus, a lab, or what the options say.
-int run_plant(const Options& options);
-int run_controller(const Options& options);
-int run_lab(const Options& options);
-int run_session(const Options& options);
+/// returns the exit status.
+int run(const PlantOptions& options);
+int run(const TimingOptions& options);
+int run(const ControllerOptions& options);
+int run(const LabOptions& options);
 
 }  // namespace hotfire::firmware

@@ -26,7 +26,7 @@ std::uint64_t flags_of(std::int64_t time_ns, int fault) {
 }
 
 int show(const char* path, double seconds, int fault) {
-  Options options;
+  RunOptions options;
   options.live_view = path;
   options.actuators = kActuators;
   RecordedPlant plant;

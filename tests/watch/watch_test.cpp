@@ -52,7 +52,7 @@ class Program {
   bool is_shown() const { return is_shown_; }
 
  private:
-  firmware::Options options_;
+  firmware::RunOptions options_;
   std::unique_ptr<LoopResult> result_ = std::make_unique<LoopResult>(1'000'000);
   CycleOutputs outputs_;
   std::optional<LiveSession> live_;

@@ -94,7 +94,7 @@ TEST(Allocation, CyclesThatAreShownInALiveViewAllocateNothing) {
   Plant<Direct> plant({}, 1e-3);
   hal::sim::SimulatedPlantBus bus({}, 1e-3);
   hal::sim::ManualClock clock;
-  Options options;
+  RunOptions options;
   options.live_view = "/dev/shm/hotfire-allocation-" + std::to_string(getpid());
   CycleOutputs outputs;
   const auto loop =

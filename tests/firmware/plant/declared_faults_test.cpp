@@ -198,7 +198,7 @@ TEST(PlayedFaults, ReplayPlaysTheFaultsOfTheRecording) {
   const PlantImage parsed = parse_plant_image(image, "image");
   STRCMP_EQUAL("", parsed.error.c_str());
   UNSIGNED_LONGS_EQUAL(2, parsed.faults.size());
-  const Options options = test::recorded_options(scratch.path("run.hfr").string(), 300);
+  const auto options = test::recorded_options(scratch.path("run.hfr").string(), 300);
   test::record_run<model::Direct<double>>(options, test::bench_parameters(), image, parsed.faults);
   hal::RecordingReader reader(options.recording);
   const Replay result = replay(reader);

@@ -42,7 +42,7 @@ inline std::uint64_t record_lab(const std::string& path, std::uint64_t gap = ~st
   LabImage image = parse_lab_image(kRecordedLabImage + limits, "image", kPeriod);
   const bool has_load_pressure = image.settings->limits.has_load_pressure();
   LabOnWire bench(std::move(*image.settings), can::Layout::classic, image.lines);
-  Options options;
+  LabOptions options;
   options.recording = path;
   options.overwrite = true;  // a test may record again
   RecordedPlant plant;

@@ -44,8 +44,8 @@ class MemorySink final : public hal::RecordingSink {
 inline const std::string kBenchImage = "schema 1\ntopology direct\nmass.inertia 96\nmass.damping 200\nmass.stiffness 1e4\n";
 
 /// Options of a plant recorded to a file.
-inline firmware::Options recorded_options(const std::string& path, std::uint64_t cycles, std::size_t actuators = 1) {
-  firmware::Options options;
+inline firmware::PlantOptions recorded_options(const std::string& path, std::uint64_t cycles, std::size_t actuators = 1) {
+  firmware::PlantOptions options;
   options.recording = path;
   options.actuators = actuators;
   options.loop.cycles = cycles;
@@ -58,7 +58,7 @@ inline firmware::Options recorded_options(const std::string& path, std::uint64_t
 
 /// Runs a plant on a manual clock and records it to a file, as the program does.
 template <class Model>
-firmware::RecorderAccount record_run(const firmware::Options& options, const typename Model::Parameters& parameters,
+firmware::RecorderAccount record_run(const firmware::PlantOptions& options, const typename Model::Parameters& parameters,
                                      const std::string& image, const std::vector<firmware::PlayedFault>& faults = {}) {
   const double period = static_cast<double>(options.loop.period_ns) * 1e-9;
   using Plant = firmware::Plant<Model>;
@@ -87,7 +87,7 @@ inline model::Direct<double>::Parameters bench_parameters() {
   return parameters;
 }
 
-inline firmware::RecorderAccount record_bench(const firmware::Options& options) {
+inline firmware::RecorderAccount record_bench(const firmware::PlantOptions& options) {
   return record_run<model::Direct<double>>(options, bench_parameters(), kBenchImage);
 }
 

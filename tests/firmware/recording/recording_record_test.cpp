@@ -21,7 +21,6 @@
 
 namespace hotfire {
 
-using firmware::Options;
 using test::refusal;
 
 namespace {
@@ -47,7 +46,7 @@ TEST_GROUP(RecordingAsRecord) {
 
   /// Records the reference axis; each actuator gets the same command.
   void record_axis(std::size_t actuators = 1) const {
-    Options options = test::recorded_options(path, kCycles - 10, actuators);
+    auto options = test::recorded_options(path, kCycles - 10, actuators);
     options.source.amplitude = 0.01;
     options.source.shape = hal::sim::CommandSource::Shape::sine;
     test::record_run<model::Simplex<double>>(options, SimplexParameters{}, plant_image_text(axis()));

@@ -92,7 +92,7 @@ TEST(Replay, NothingBehindADroppedCycleIsClaimed) {
 }
 
 TEST(Replay, LastBitOfOneParameterOfTheModelIsFoundByTheFirstCycleThatMoves) {
-  const Options options = test::recorded_options(path, 490);
+  const auto options = test::recorded_options(path, 490);
   std::string image = kBenchImage;
   image.replace(image.find("mass.inertia 96"), 15, "mass.inertia 96.00000000000002");
   test::record_run<model::Direct<double>>(options, test::bench_parameters(), image);

@@ -13,7 +13,7 @@ using test::run_scripted;
 using test::ScriptedWorld;
 TEST_GROUP(Report) {
   ScriptedWorld world;
-  Options options;
+  PlantOptions options;
   std::unique_ptr<LoopResult> result;
 
   Session session() {
@@ -79,6 +79,7 @@ TEST(Report, CycleMissingInTheRecordingIsBadUnlessAllowed) {
   const auto with_recording = [&] {
     Session with = session();
     with.recording = &account;
+    with.recorded_as = &options;
     return with;
   };
   CHECK(!judge(with_recording()).good);

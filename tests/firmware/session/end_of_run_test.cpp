@@ -12,7 +12,7 @@ namespace hotfire::firmware {
 TEST_GROUP(EndOfRun) {
   const std::atomic<std::uint64_t> heartbeat{0};
   Watchdog watchdog{hal::ServiceManager(), heartbeat};
-  Options options;
+  RunOptions options;
   LoopResult result{1'000'000};
   Session session{options, result, "lab", {}, {}};
 };

@@ -12,40 +12,47 @@
 
 namespace hotfire::firmware {
 
-TEST_GROUP(Options){
-    static Options accepted(std::vector<std::string> arguments){arguments.insert(arguments.begin(), "hotfire-rt");
-const ParsedOptions parsed = parse_options(arguments);
-STRCMP_EQUAL("", parsed.message.c_str());
-CHECK(parsed.options.has_value());
-return *parsed.options;
-}  // namespace hotfire::firmware
+namespace {
 
-static void refused(std::vector<std::string> arguments, const char* message) {
+/// The options of one mode that these arguments give.
+template <class Own>
+Own accepted(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"hotfire-rt", std::string(Own::mode)});
+  const ParsedOptions parsed = parse_options(arguments);
+  STRCMP_EQUAL("", parsed.message.c_str());
+  CHECK(parsed.options.has_value());
+  CHECK(std::holds_alternative<Own>(*parsed.options));
+  return std::get<Own>(*parsed.options);
+}
+
+void refused(std::vector<std::string> arguments, const char* message) {
   arguments.insert(arguments.begin(), "hotfire-rt");
   const ParsedOptions parsed = parse_options(arguments);
   CHECK(!parsed.options);
   LONGS_EQUAL(2, parsed.status);
   STRCMP_CONTAINS(message, parsed.message.c_str());
 }
-}
-;
+
+}  // namespace
+
+TEST_GROUP(Options){};
 
 TEST(Options, TimingRunsTenThousandCyclesAndAllowsNoOverrunByDefault) {
-  const Options options = accepted({"timing"});
+  const auto options = accepted<TimingOptions>({});
   UNSIGNED_LONGS_EQUAL(10'000, options.loop.cycles);
   CHECK(options.max_overruns == std::uint64_t{0});
   CHECK(!options.max_latency_us);
 }
 
 TEST(Options, PlantRunsUntilAskedToStopAndHasNoLimitByDefault) {
-  const Options options = accepted({"plant", "--image", "p.image"});
+  const auto options = accepted<PlantOptions>({"--image", "p.image"});
   UNSIGNED_LONGS_EQUAL(0, options.loop.cycles);
   CHECK(!options.max_overruns);
 }
 
 TEST(Options, ValuesAreTakenFromTheNextArgumentOrAfterAnEqualsSign) {
-  const Options options = accepted({"timing", "--period-us", "250", "--policy=skip", "--cpu", "1", "--max-latency-us=12.5",
-                                    "--command", "sine", "--amplitude", "-0.02", "--json"});
+  const auto options = accepted<TimingOptions>({"--period-us", "250", "--policy=skip", "--cpu", "1", "--max-latency-us=12.5",
+                                                "--command", "sine", "--amplitude", "-0.02", "--json"});
   LONGS_EQUAL(250'000, options.loop.period_ns);
   CHECK(options.loop.policy == OverrunPolicy::skip);
   LONGS_EQUAL(1, *options.cpu);
@@ -61,15 +68,16 @@ TEST(Options, PeriodOutsideItsRangeIsRefusedWithTheRange) {
 }
 
 TEST(Options, LayoutOfACanBusIsTheSmallestThatHasRoomUnlessSaid) {
-  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--actuators", "2"}).frame_layout() == can::Layout::classic);
-  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--actuators", "3"}).frame_layout() == can::Layout::fd);
-  CHECK(accepted({"controller", "--bus", "can0", "--layout", "fd"}).frame_layout() == can::Layout::fd);
+  CHECK(accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--actuators", "2"}).frame_layout() ==
+        can::Layout::classic);
+  CHECK(accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--actuators", "3"}).frame_layout() == can::Layout::fd);
+  CHECK(accepted<ControllerOptions>({"--bus", "can0", "--layout", "fd"}).frame_layout(1) == can::Layout::fd);
   refused({"plant", "--image", "p", "--bus", "can0", "--actuators", "3", "--layout", "classic"}, "room for 2 actuators");
-  CHECK(accepted({"controller", "--bus", "can0", "--layout", "fd-split"}).frame_layout() == can::Layout::fd_split);
+  CHECK(accepted<ControllerOptions>({"--bus", "can0", "--layout", "fd-split"}).frame_layout(1) == can::Layout::fd_split);
 }
 
 TEST(Options, KeyNeedsFramesThatHaveRoomForACode) {
-  STRCMP_EQUAL("k", accepted({"controller", "--bus", "can0", "--layout", "fd", "--key", "k"}).key.c_str());
+  STRCMP_EQUAL("k", accepted<ControllerOptions>({"--bus", "can0", "--layout", "fd", "--key", "k"}).key.c_str());
   refused({"controller", "--bus", "can0", "--key", "k"}, "--layout fd, or fd-split");
   refused({"plant", "--image", "p", "--key", "k"}, "--bus can0");
 }
@@ -103,17 +111,12 @@ TEST(Options, KeyIsAFileOfItsDigitsThatNobodyElseMayUse) {
 
 TEST(Options, WhatABusCannotDoIsRefused) {
   refused({"controller"}, "--bus can0");
-  refused({"controller", "--bus", "can0", "--sync", "can"}, "sends SYNC itself");
-  refused({"timing", "--bus", "can0"}, "timing needs no bus");
+  refused({"timing", "--sync", "can"}, "no bus that SYNC could be on");
   refused({"plant", "--image", "p", "--sync", "can"}, "--sync can needs the CAN bus");
   refused({"plant", "--image", "p", "--strings"}, "--strings is of a plant on a CAN bus");
-  refused({"controller", "--bus", "can0", "--strings"}, "--strings is of a plant on a CAN bus");
   refused({"plant", "--image", "p", "--load-pressure"}, "--load-pressure is of a plant on a CAN bus");
-  refused({"controller", "--bus", "can0", "--load-pressure"}, "--load-pressure is of a plant on a CAN bus");
-  refused({"lab", "--image", "p", "--bus", "can0", "--gpio", "rig", "--rehearsal", "--load-pressure"},
-          "a lab takes load pressures if its profile has limits.load_pressure");
-  CHECK(accepted({"plant", "--image", "p", "--bus", "can0", "--load-pressure"}).load_pressure);
-  CHECK(!accepted({"plant", "--image", "p", "--bus", "can0"}).load_pressure);
+  CHECK(accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--load-pressure"}).load_pressure);
+  CHECK(!accepted<PlantOptions>({"--image", "p", "--bus", "can0"}).load_pressure);
   refused({"plant", "--image", "p", "--bus", ""}, "the name of a CAN interface");
 }
 
@@ -131,28 +134,45 @@ TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
   refused({"timing", "--priority", "0", "--require-realtime"}, "exclude each other");
 }
 
+TEST(Options, AnOptionOfAnotherModeIsRefusedWithTheModesThatTakeIt) {
+  refused({"timing", "--bus", "can0"}, "--bus is no option of timing, but of plant, controller, lab");
+  refused({"controller", "--bus", "can0", "--sync", "can"}, "--sync is no option of controller, but of plant, timing");
+  refused({"controller", "--bus", "can0", "--record", "r"},
+          "--record is no option of controller, but of plant, timing, lab");
+  refused({"controller", "--strings"}, "--strings is no option of controller, but of plant");
+  refused({"lab", "--load-pressure"}, "--load-pressure is no option of lab, but of plant");
+  refused({"lab", "--actuators", "2"}, "--actuators is no option of lab, but of plant, timing, controller");
+  refused({"plant", "--rehearsal"}, "--rehearsal is no option of plant, but of lab");
+  refused({"timing", "--confirm", "1"}, "--confirm is no option of timing, but of lab");
+  refused({"plant", "--lockstep"}, "--lockstep is no option of plant, but of controller");
+}
+
 TEST(Options, LabThatMovesRealActuatorsNeedsARecordingADigestAndRealTime) {
-  const std::vector<std::string> lab{"lab", "--image", "p", "--bus", "can0", "--gpio", "rig"};
+  const std::vector<std::string> lab{"--image", "p", "--bus", "can0", "--gpio", "rig"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), lab.begin(), lab.end());
     return more;
   };
-  const Options options = accepted(with({"--record", "run.hfr", "--confirm", "0123456789abcdef"}));
+  const auto options = accepted<LabOptions>(with({"--record", "run.hfr", "--confirm", "0123456789abcdef"}));
   STRCMP_EQUAL("0123456789abcdef", options.confirm.c_str());
   CHECK(!options.rehearsal);
-  refused(with({}), "it needs --record FILE, --confirm DIGEST");
-  refused(with({"--record", "run.hfr"}), "--confirm DIGEST");
-  refused(with({"--confirm", "0123456789abcdef"}), "--record FILE");
-  refused(with({"--record", "run.hfr", "--confirm", "0123456789abcdef", "--priority", "0"}), "real time");
-  CHECK(accepted(with({"--rehearsal", "--priority", "0"})).rehearsal);
-  refused({"plant", "--image", "p", "--rehearsal"}, "of a lab");
-  refused({"timing", "--confirm", "1"}, "of a lab");
+  const auto refused_lab = [&](std::vector<std::string> more, const char* message) {
+    std::vector<std::string> arguments = with(std::move(more));
+    arguments.insert(arguments.begin(), "lab");
+    refused(arguments, message);
+  };
+  refused_lab({}, "it needs --record FILE, --confirm DIGEST");
+  refused_lab({"--record", "run.hfr"}, "--confirm DIGEST");
+  refused_lab({"--confirm", "0123456789abcdef"}, "--record FILE");
+  refused_lab({"--record", "run.hfr", "--confirm", "0123456789abcdef", "--priority", "0"}, "real time");
+  CHECK(accepted<LabOptions>(with({"--rehearsal", "--priority", "0"})).rehearsal);
+  refused_lab({"--rehearsal", "--policy", "catch-up"}, "leave --policy out");
 }
 
 TEST(Options, RecordingAndItsLimitsAreRead) {
-  const Options options =
-      accepted({"plant", "--image", "p", "--record", "run.hfr", "--record-buffer-s", "2.5", "--record-max-mib=64",
-                "--overwrite", "--max-dropped", "7", "--actuators", "8", "--sync", "sim", "--max-missed-syncs", "0"});
+  const auto options = accepted<PlantOptions>({"--image", "p", "--record", "run.hfr", "--record-buffer-s", "2.5",
+                                               "--record-max-mib=64", "--overwrite", "--max-dropped", "7", "--actuators",
+                                               "8", "--sync", "sim", "--max-missed-syncs", "0"});
   STRCMP_EQUAL("run.hfr", options.recording.c_str());
   DOUBLES_EQUAL(2.5, options.record_buffer_s, 0.0);
   UNSIGNED_LONGS_EQUAL(64, options.record_max_mib);
@@ -160,7 +180,7 @@ TEST(Options, RecordingAndItsLimitsAreRead) {
   UNSIGNED_LONGS_EQUAL(7, options.max_dropped);
   UNSIGNED_LONGS_EQUAL(8, options.actuators);
   CHECK(options.actuators_given);
-  CHECK(!accepted({"plant", "--image", "p"}).actuators_given);
+  CHECK(!accepted<PlantOptions>({"--image", "p"}).actuators_given);
   CHECK(options.pace == PaceKind::sim);
   UNSIGNED_LONGS_EQUAL(0, options.most_missed_syncs);
   refused({"plant", "--image", "p", "--actuators", "9"}, "from 1 to 8");
@@ -169,8 +189,7 @@ TEST(Options, RecordingAndItsLimitsAreRead) {
 }
 
 TEST(Options, ReplayTakesOneRecording) {
-  const Options options = accepted({"replay", "run.hfr", "--json"});
-  CHECK(options.mode == Mode::replay);
+  const auto options = accepted<ReplayOptions>({"run.hfr", "--json"});
   CHECK(options.json);
   STRCMP_EQUAL("run.hfr", options.recording.c_str());
   refused({"replay"}, "needs a recording");
