@@ -31,6 +31,7 @@ std::string text_of(const nlohmann::json& report, const char* key) { return repo
 }  // namespace
 
 TEST_GROUP(Explain){};
+TEST_GROUP(ExplainAtLength){};
 
 TEST(Explain, ARecordHeldOutWholeChangesNothingOfWhatIsFoundAndIsJudgedWithTheModelThatIsWritten) {
   const Record record = oscillator(400.0, kNoise);
@@ -83,7 +84,7 @@ TEST(Explain, InterruptedAtAnyMomentItSaysThatItIsUndecidedAndWhatItKnowsByThen)
   STRCMP_EQUAL("explained", text_of(interrupted_after(1'000'000), "verdict").c_str());
 }
 
-TEST(Explain, AMassThatMovesAgainstItsForceIsRefusedForItsSign) {
+TEST(ExplainAtLength, AMassThatMovesAgainstItsForceIsRefusedForItsSign) {
   Record record = oscillator(400.0, kNoise);
   for (double& position : record.channels[1].values) {
     position = -position;

@@ -50,6 +50,7 @@ void check_run(const Fmu& fmu, const Case& own, int version) {
 }  // namespace
 
 TEST_GROUP(FmuText) { Scratch scratch; };
+TEST_GROUP(FmuTextAtLength) { Scratch scratch; };
 
 TEST(FmuText, KeepsTheRulesOfTheStandards) {
   LONGS_EQUAL(0, std::system(("/usr/bin/python3 " FMU_RULES + exported(scratch)).c_str()));
@@ -59,7 +60,7 @@ TEST(FmuText, TheRulesFindADescriptionThatBreaksOne) {
   LONGS_EQUAL(0, std::system(("/usr/bin/python3 " FMU_RULES " --broken" + exported(scratch)).c_str()));
 }
 
-TEST(FmuText, ItsSourcesCompileAsTheBuildDescriptionSaysAndGiveTheSameBits) {
+TEST(FmuTextAtLength, ItsSourcesCompileAsTheBuildDescriptionSaysAndGiveTheSameBits) {
   const Case own = case_of("simplex", 100);
   Fmu fmu(scratch, own, 3);
   fmu.build(

@@ -17,9 +17,10 @@ namespace py = pybind11;
 
 namespace {
 
-/// Makes the heap keep what a run frees for the next run. The C library returns a large block to the system until it has seen
-/// a block of that size freed; then it keeps twice as much (mallopt(3), M_MMAP_THRESHOLD). A block that nothing writes to is
-/// enough, and costs no memory. Without it a run of a mass takes a third longer: the system clears every page of its record.
+/// Makes the heap keep what a run frees for the next run. The C library returns a large block to the system until it has
+/// seen a block of that size freed; then it keeps twice as much (mallopt(3), M_MMAP_THRESHOLD). A block that nothing writes
+/// to is enough, and costs no memory. Without it a run of a mass takes a third longer: the system clears every page of its
+/// record.
 void keep_memory_of_runs() {
   constexpr std::size_t kLargestKept = 31U << 20U;  // the largest that counts is 32 MiB on a machine of 64 bit
   void* volatile block = std::malloc(kLargestKept);

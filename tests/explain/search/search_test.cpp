@@ -23,6 +23,7 @@ explain::SearchResult<explain::DirectFamily> found_in(const Record& record, int 
 }  // namespace
 
 TEST_GROUP(Search){};
+TEST_GROUP(SearchAtLength){};
 
 TEST(Search, ACubicStiffnessNobodyDeclaredIsFoundWithItsValueAndNothingElse) {
   const auto found = found_in(oscillator(400.0, 1e-3));
@@ -48,7 +49,7 @@ TEST(Search, AWrongDeclaredValueIsCalibratedAndNotTakenForAMissingEffect) {
 }
 
 // Seven tolerances of 5 % below 100: no effect is missing, but the declaration cannot be trusted that far without a look.
-TEST(Search, ACalibrationFarBeyondItsTolerancesIsLookedBeyondAndStillGetsNoEffectsName) {
+TEST(SearchAtLength, ACalibrationFarBeyondItsTolerancesIsLookedBeyondAndStillGetsNoEffectsName) {
   const auto found = found_in(oscillator(0.0, 1e-3), 4, 74.0);
   DOUBLES_EQUAL(1.0, explain::Goodness::combined(found.calibrated.goodness.held_out), 0.1);
   CHECK(!found.trials.empty());
