@@ -106,7 +106,7 @@ void add_recording(Json& json, const Session& session) {
     return;
   }
   json.open("recording");
-  json.add("file", session.recorded_as != nullptr ? session.recorded_as->recording : "");
+  json.add("file", session.recording_file);
   json.add("offered", session.recording->offered);
   json.add("stored", session.recording->stored);
   json.add("dropped", session.recording->dropped());

@@ -91,9 +91,8 @@ std::string recording(const Session& session) {
     return {};
   }
   const RecorderAccount& account = *session.recording;
-  return text("  recording     %s: %llu of %llu cycles, %llu dropped%s%s\n",
-              session.recorded_as != nullptr ? session.recorded_as->recording.c_str() : "", whole(account.stored),
-              whole(account.offered), whole(account.dropped()),
+  return text("  recording     %s: %llu of %llu cycles, %llu dropped%s%s\n", std::string(session.recording_file).c_str(),
+              whole(account.stored), whole(account.offered), whole(account.dropped()),
               account.failure.empty() ? "" : "; ended early: ", account.failure.c_str());
 }
 

@@ -20,7 +20,7 @@ CanSession::CanSession(const CanOptions& options, const RunOptions& run, const c
     : options_(options),
       run_(run),
       more_(more),
-      socket_({options.bus, ids.subscriptions, ids.senders, can::is_fd(options.frame_layout(run.actuators))}) {}
+      socket_({options.bus, ids.subscriptions, ids.senders, can::is_fd(frame_layout(options, run.actuators))}) {}
 
 int CanSession::open() {
   if (const auto refused = refuse_key()) {

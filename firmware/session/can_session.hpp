@@ -43,7 +43,7 @@ class CanSession {
   std::optional<hal::Failure> refuse_load();
   std::optional<hal::Failure> refuse_key();
 
-  can::Layout layout() const { return options_.frame_layout(run_.actuators); }
+  can::Layout layout() const { return frame_layout(options_, run_.actuators); }
 
   const CanOptions& options_;
   const RunOptions& run_;

@@ -98,7 +98,7 @@ int run(const LabOptions& given) {
   // The lab counts them itself, so that its interlock stops what is driven.
   const std::uint64_t cycles = std::exchange(options.loop.cycles, 0);
   options.loop.number_skipped = true;
-  const can::Layout layout = options.frame_layout(options.actuators);
+  const can::Layout layout = frame_layout(options);
   Lab lab(std::move(*image.settings), period);
   if (options.actuators > can::most_actuators(layout)) {
     complain({text("--layout %s has no room for the %zu actuators of the profile",
@@ -158,7 +158,8 @@ int run(const LabOptions& given) {
   Session session{options, loop->result(), kLabTopology, kChannels, kUnits};
   session.input = "readings";
   session.output = "commands";
-  session.recorded_as = &options;
+  session.recording_file = options.recording;
+  session.max_dropped = options.max_dropped;
   session.max_lost = options.max_lost;
   bool left_the_bus = false;
   RunEnd end = end_with(recording.get(), live, [&](Session& result) {

@@ -78,7 +78,10 @@ std::string read_max_step(const std::string& value, RunOptions& options) {
 
 constexpr std::uint64_t kManyCycles = 1'000'000'000'000;
 
-/// An option that `Read(value, options)` reads: of each mode whose options are those that it takes, or are made from them.
+/// What nobody sees: `modes` is asked before a value is read.
+constexpr std::string_view kOfAnotherMode = "an option of this mode";
+
+/// The line of an option. A mode takes it if `Read(value, options)` accepts the options of that mode.
 template <auto Read>
 constexpr OptionLine line(std::string_view name, std::string_view value, std::string_view meaning) {
   const auto read = [](const std::string& given, Options& options) {
@@ -87,15 +90,15 @@ constexpr OptionLine line(std::string_view name, std::string_view value, std::st
           if constexpr (std::is_invocable_v<decltype(Read), const std::string&, Own&>) {
             return Read(given, own);
           } else {
-            return std::string("another mode");
+            return std::string(kOfAnotherMode);
           }
         },
         options);
   };
-  const auto taken = []<class... Own>(const std::variant<Own...>*) {
+  const auto modes = []<class... Own>(const std::variant<Own...>*) {
     return std::array{std::is_invocable_v<decltype(Read), const std::string&, Own&>...};
   };
-  return {name, value, meaning, read, taken(static_cast<const Options*>(nullptr))};
+  return {name, value, meaning, read, modes(static_cast<const Options*>(nullptr))};
 }
 
 constexpr OptionLine kLines[] = {
@@ -105,13 +108,12 @@ constexpr OptionLine kLines[] = {
         "`timing` runs the reference axis with every effect active"),
     line<read_bus>("--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface such as can0; default sim"),
     line<[](const std::string& value, LabOptions& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }>(
-        "--gpio", "CHIP", "lab: the chip with its lines, by path, name or label"),
+        "--gpio", "CHIP", "the chip with its lines, by path, name or label"),
     line<[](const std::string& value, LabOptions& o) { return o.confirm = value, std::string(); }>(
-        "--confirm", "DIGEST",
-        "lab: the profile's digest, as `hotfire check` prints it to the person who has read the profile"),
+        "--confirm", "DIGEST", "the profile's digest, as `hotfire check` prints it to the person who has read the profile"),
     line<[](const std::string&, LabOptions& o) { return o.rehearsal = true, std::string(); }>(
         "--rehearsal", "",
-        "lab: on a virtual CAN interface, also without real time, recording and --confirm, which a lab\n"
+        "on a virtual CAN interface, also without real time, recording and --confirm, which a lab\n"
         "has to have on a real one"),
     line<read_layout>(
         "--layout", "L",
@@ -123,7 +125,7 @@ constexpr OptionLine kLines[] = {
         "--command-age-ms", "X", "greatest age of a command on a CAN bus; an older one gives no current; default 100"),
     line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }>(
         "--heartbeat-age-ms", "X",
-        "plant: greatest age of a HEARTBEAT, after the first one; with an older one no command gives a current; default 50"),
+        "greatest age of a HEARTBEAT, after the first one; with an older one no command gives a current; default 50"),
     line<[](const std::string& value, CanOptions& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }>(
         "--key", "FILE",
         "commands and readings are authenticated with the key in this file, 32 hexadecimal digits; FD layouts only"),
@@ -163,11 +165,11 @@ constexpr OptionLine kLines[] = {
        "masv) has as many as it has axes, and needs no --actuators"),
     line<[](const std::string&, PlantOptions& o) { return o.strings = true, std::string(); }>(
         "--strings", "",
-        "plant on a CAN bus: string potentiometers too, four for each engine. Its pitch and yaw are actuators\n"
+        "on a CAN bus: string potentiometers too, four for each engine. Its pitch and yaw are actuators\n"
         "1 and 2, 3 and 4 and so on"),
     line<[](const std::string&, PlantOptions& o) { return o.load_pressure = true, std::string(); }>(
         "--load-pressure", "",
-        "plant on a CAN bus: the pressure difference across every piston too, for a lab whose profile limits it"),
+        "on a CAN bus: the pressure difference across every piston too, for a lab whose profile\nhas limits.load_pressure"),
     line<[](const std::string& value, PlantRunOptions& o) { return read_name(value, kPaceKinds, o.pace); }>(
         "--sync", "S", "what gives the cycles: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)"),
     line<[](const std::string& value, PlantRunOptions& o) {
@@ -177,7 +179,7 @@ constexpr OptionLine kLines[] = {
       return read_number(value, 0.0, 1e6, o.sync_patience_ms.emplace());
     }>("--sync-patience-ms", "X", "longest wait for a late SYNC; then its cycle runs without it; default half a period"),
     line<[](const std::string&, ControllerOptions& o) { return o.lockstep = true, std::string(); }>(
-        "--lockstep", "", "controller: each cycle begins after the plant has answered the one before"),
+        "--lockstep", "", "each cycle begins after the plant has answered the one before"),
     line<[](const std::string& value, ImageOptions& o) { return o.recording = value, std::string(); }>(
         "--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`"),
     line<[](const std::string&, ImageOptions& o) { return o.overwrite = true, std::string(); }>(

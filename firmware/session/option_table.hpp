@@ -16,7 +16,7 @@ struct OptionLine {
   std::string_view meaning;  ///< a second line after a line feed
   /// Reads a value into the options of a mode that takes it; returns what is allowed if it is not.
   std::string (*read)(const std::string& value, Options& options);
-  std::array<bool, std::variant_size_v<Options>> taken;  ///< by mode, in the order of `Options`
+  std::array<bool, std::variant_size_v<Options>> modes;  ///< which take it, in the order of `Options`
 };
 
 /// Every option, in the order of the help.

@@ -12,6 +12,24 @@
 namespace hotfire::firmware {
 namespace {
 
+/// The modes that take every option of a run.
+constexpr std::string_view kEveryRun = "plant, timing, controller, lab";
+
+std::string_view mode_of(const Options& options) {
+  return std::visit([]<class Own>(const Own&) { return Own::mode; }, options);
+}
+
+/// "plant, timing": the modes that take an option.
+std::string modes_of(const OptionLine& line) {
+  std::string result;
+  const auto add = [&]<class... Own>(const std::variant<Own...>*) {
+    std::size_t index = 0;
+    ((line.modes[index++] ? result.append(result.empty() ? "" : ", ").append(Own::mode) : result), ...);
+  };
+  add(static_cast<const Options*>(nullptr));
+  return result;
+}
+
 std::string help() {
   std::string result =
       "The engine in real time: every period the newest command is read, the model stepped, its reading sent.\n\n"
@@ -25,7 +43,8 @@ std::string help() {
       "  hotfire-rt plant --image plant.image --period-us 500\n"
       "  hotfire-rt replay run.hfr\n\n";
   for (const OptionLine& line : option_lines()) {
-    std::string meaning(line.meaning);
+    std::string meaning = modes_of(line);
+    meaning = meaning == kEveryRun ? std::string(line.meaning) : meaning + ": " + std::string(line.meaning);
     if (const std::size_t at = meaning.find('\n'); at != std::string::npos) {
       meaning.insert(at + 1, 25, ' ');
     }
@@ -49,21 +68,6 @@ ParsedOptions wrong_use(const std::string& message) {
   return {std::nullopt, kWrongUse, "hotfire-rt: " + message + "; see hotfire-rt --help\n"};
 }
 
-std::string_view mode_of(const Options& options) {
-  return std::visit([]<class Own>(const Own&) { return Own::mode; }, options);
-}
-
-/// "plant, timing": the modes that take an option.
-std::string modes_of(const OptionLine& line) {
-  std::string result;
-  const auto add = [&]<class... Own>(const std::variant<Own...>*) {
-    std::size_t index = 0;
-    ((line.taken[index++] ? result.append(result.empty() ? "" : ", ").append(Own::mode) : result), ...);
-  };
-  add(static_cast<const Options*>(nullptr));
-  return result;
-}
-
 /// The first text that says something.
 std::string first_of(std::initializer_list<std::string> texts) {
   const auto found = std::find_if(texts.begin(), texts.end(), [](const std::string& text) { return !text.empty(); });
@@ -79,7 +83,7 @@ std::string apply(const std::vector<std::string>& arguments, std::size_t& i, Opt
   if (line == lines.end()) {
     return "unknown argument " + arguments[i];
   }
-  if (!line->taken[options.index()]) {
+  if (!line->modes[options.index()]) {
     return name + " is no option of " + std::string(mode_of(options)) + ", but of " + modes_of(*line);
   }
   const bool has_own_value = equals < arguments[i].size();
@@ -119,30 +123,22 @@ ParsedOptions parse_replay(const std::vector<std::string>& arguments) {
   return {options, 0, {}};
 }
 
-/// The options of a mode before any argument, but of replay, which has none to read.
-std::optional<Options> defaults_of(const std::string& mode) {
-  if (mode == PlantOptions::mode) {
-    return PlantOptions{};
-  }
-  if (mode == ControllerOptions::mode) {
-    return ControllerOptions{};
-  }
-  if (mode == TimingOptions::mode) {
-    TimingOptions options;
-    options.loop.cycles = 10'000;
-    options.max_overruns = 0;
-    return options;
-  }
-  if (mode == LabOptions::mode) {
-    LabOptions options;
-    // Commands that were not sent in time are not sent at all.
-    options.loop.policy = OverrunPolicy::skip;
-    return options;
-  }
-  return std::nullopt;
+/// The defaults of a mode; none for a word that is no mode, and for replay, which is parsed apart.
+std::optional<Options> defaults_of(std::string_view mode) {
+  std::optional<Options> options;
+  const auto take = [&]<class Own>(std::type_identity<Own>) {
+    if (mode == Own::mode) {
+      options = Own{};
+    }
+  };
+  take(std::type_identity<PlantOptions>{});
+  take(std::type_identity<TimingOptions>{});
+  take(std::type_identity<ControllerOptions>{});
+  take(std::type_identity<LabOptions>{});
+  return options;
 }
 
-// What options that are each allowed say together that cannot be; empty if they can.
+// Each of these says why options that are each allowed contradict each other; empty if they do not.
 
 std::string conflict_of_run(const RunOptions& options) {
   return options.require_realtime && options.priority == 0 ? "--require-realtime and --priority 0 exclude each other" : "";
@@ -155,7 +151,7 @@ std::string conflict_of_image(const ImageOptions& options) {
 }
 
 std::string conflict_of_bus(const CanOptions& options, std::size_t actuators) {
-  const can::Layout layout = options.frame_layout(actuators);
+  const can::Layout layout = frame_layout(options, actuators);
   if (options.on_can() && actuators > can::most_actuators(layout)) {
     return "--layout " + std::string(can::kLayouts[static_cast<std::size_t>(layout)]) + " has room for " +
            std::to_string(can::most_actuators(layout)) + " actuators: leave it out, or take fd-split for classic-split";
@@ -163,7 +159,7 @@ std::string conflict_of_bus(const CanOptions& options, std::size_t actuators) {
   return {};
 }
 
-/// `layout`: none if the number of actuators, which decides it, is not known yet.
+/// `layout`: none if the file of a vehicle or of a lab decides it.
 std::string conflict_of_key(const CanOptions& options, std::optional<can::Layout> layout) {
   if (!options.key.empty() && (!options.on_can() || (layout && !can::is_fd(*layout)))) {
     return "--key needs frames with space for a code: --bus can0 --layout fd, or fd-split";
@@ -184,7 +180,9 @@ std::string conflict_of_mode(const PlantOptions& options) {
   if (options.pace == PaceKind::can && !options.on_can()) {
     return "--sync can needs the CAN bus that SYNC is on: --bus can0";
   }
-  return first_of({conflict_of_bus(options, options.actuators), conflict_of_key(options, options.frame_layout()),
+  const bool is_layout_known = options.layout || options.actuators_given;
+  return first_of({conflict_of_bus(options, options.actuators),
+                   conflict_of_key(options, is_layout_known ? std::optional(frame_layout(options)) : std::nullopt),
                    conflict_of_image(options)});
 }
 
@@ -199,8 +197,7 @@ std::string conflict_of_mode(const ControllerOptions& options) {
   if (!options.on_can()) {
     return "controller needs a bus with a plant on it: --bus can0";
   }
-  return first_of(
-      {conflict_of_bus(options, options.actuators), conflict_of_key(options, options.frame_layout(options.actuators))});
+  return first_of({conflict_of_bus(options, options.actuators), conflict_of_key(options, frame_layout(options))});
 }
 
 std::string conflict_of_mode(const LabOptions& options) {

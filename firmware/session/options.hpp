@@ -50,9 +50,9 @@ struct ImageOptions {
   std::uint64_t max_dropped = 0;  ///< cycles that may be missing in the recording
 };
 
-/// Of a run on a CAN bus.
+/// Of a run that may have a CAN bus.
 struct CanOptions {
-  std::string bus = "sim";  ///< no wire; or a CAN interface
+  std::string bus = "sim";  ///< no bus; or a CAN interface
   std::optional<can::Layout> layout;
   std::string key;  ///< path of the key of commands and readings; empty: they are not authenticated
   double freshness_ms = 1000.0;
@@ -61,10 +61,9 @@ struct CanOptions {
   std::optional<std::uint64_t> max_lost;
 
   bool on_can() const { return bus != "sim"; }
-  can::Layout frame_layout(std::size_t actuators) const { return layout.value_or(can::smallest_layout(actuators)); }
 };
 
-/// Of a run on a CAN bus whose commands are currents.
+/// Of a run on a CAN bus that gives currents a scale; that of a lab is in its profile.
 struct CurrentOptions : CanOptions {
   double command_per_current = 10.0;  ///< [rad/A]
 };
@@ -83,14 +82,15 @@ struct PlantOptions : PlantRunOptions, CurrentOptions {
   double heartbeat_age_ms = 50.0;
   bool strings = false;        ///< on a CAN bus: string potentiometers too
   bool load_pressure = false;  ///< on a CAN bus: it sends them
-
-  /// Of the plant of a number of actuators, which that of a vehicle decides.
-  can::Layout frame_layout() const { return CanOptions::frame_layout(actuators); }
 };
 
 /// Of a number of cycles that judge the machine.
 struct TimingOptions : PlantRunOptions {
   static constexpr std::string_view mode = "timing";
+  TimingOptions() {
+    loop.cycles = 10'000;
+    max_overruns = 0;
+  }
 };
 
 /// Of a controller that commands a plant on a CAN bus.
@@ -102,6 +102,9 @@ struct ControllerOptions : CommandedRunOptions, CurrentOptions {
 /// Of a lab, which drives real actuators through a profile.
 struct LabOptions : RunOptions, ImageOptions, CanOptions {
   static constexpr std::string_view mode = "lab";
+  /// Commands that were not sent in time are not sent at all.
+  LabOptions() { loop.policy = OverrunPolicy::skip; }
+
   std::string gpio;        ///< chip: path, name or label
   std::string confirm;     ///< the digest of the profile, as a person has read it
   bool rehearsal = false;  ///< on a virtual bus, without what a lab on a real one has to have
@@ -116,6 +119,15 @@ struct ReplayOptions {
 
 /// Those of one mode, which the first argument names.
 using Options = std::variant<PlantOptions, TimingOptions, ControllerOptions, LabOptions, ReplayOptions>;
+
+/// The layout of the frames of a run: the smallest that has room for its actuators, unless one is given.
+inline can::Layout frame_layout(const CanOptions& options, std::size_t actuators) {
+  return options.layout.value_or(can::smallest_layout(actuators));
+}
+template <class Own>
+can::Layout frame_layout(const Own& options) {
+  return frame_layout(options, options.actuators);
+}
 
 /// Options, or a text to print and a status to exit with: help and version (0), wrong use (2).
 struct ParsedOptions {

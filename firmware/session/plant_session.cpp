@@ -52,7 +52,7 @@ class PlantSession {
 
   int run_on_can() {
     const can::MoreReadings more{options_.strings, options_.load_pressure};
-    CanSession session(options_, options_, can::plant_ids(options_.frame_layout(), options_.actuators, more), more);
+    CanSession session(options_, options_, can::plant_ids(frame_layout(options_), options_.actuators, more), more);
     if (const int status = session.open(); status != kGood) {
       return status;
     }
@@ -60,14 +60,14 @@ class PlantSession {
       plant_->string_up();
     }
     CanPlantBus wire(session.socket(), clock_,
-                     {options_.frame_layout(), options_.actuators, Plant::channels.size(), options_.command_per_current,
+                     {frame_layout(options_), options_.actuators, Plant::channels.size(), options_.command_per_current,
                       options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6),
                       static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6), session.authentication(),
                       options_.load_pressure ? load_pressure_of<Plant>() : std::nullopt});
     WireAccount account_of_wire;
     account_of_wire.complete = [&](Session& result) {
       BusAccount account = session.account();
-      account.messages = {{can::command_message(options_.frame_layout()).name, wire.commands()},
+      account.messages = {{can::command_message(frame_layout(options_)).name, wire.commands()},
                           {can::heartbeat::kMessage.name, wire.heartbeats()}};
       account.stale_cycles = wire.stale_cycles();
       account.too_old = wire.too_old();
@@ -76,7 +76,7 @@ class PlantSession {
     };
     account_of_wire.counters.can(session.socket())
         .add("bus", "cycles without a command", [&wire] { return wire.stale_cycles(); })
-        .message(std::string(can::command_message(options_.frame_layout()).name), wire.commands())
+        .message(std::string(can::command_message(frame_layout(options_)).name), wire.commands())
         .message(std::string(can::heartbeat::kMessage.name), wire.heartbeats());
     if (options_.pace != PaceKind::can) {
       return run_paced(wire, account_of_wire);
@@ -131,7 +131,8 @@ class PlantSession {
     }
     Session session{options_,        loop->result(),       Plant::topology,
                     Plant::channels, Plant::channel_units, plant_->steps_per_cycle()};
-    session.recorded_as = &options_;
+    session.recording_file = options_.recording;
+    session.max_dropped = options_.max_dropped;
     session.max_lost = options_.max_lost;
     session.synchronised = options_.pace != PaceKind::clock;
     session.is_vehicle = actuators_of(*image_.parameters) != 0;
@@ -208,6 +209,7 @@ int run(const PlantOptions& asked) {
   });
 }
 
+/// A plant without a bus.
 int run(const TimingOptions& options) {
   PlantOptions plant;
   static_cast<PlantRunOptions&>(plant) = options;

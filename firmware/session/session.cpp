@@ -55,9 +55,9 @@ Verdict judge(const Session& session) {
   }
   if (session.recording != nullptr) {
     const std::uint64_t dropped = session.recording->dropped();
-    const std::uint64_t allowed = session.recorded_as != nullptr ? session.recorded_as->max_dropped : 0;
-    add(dropped <= allowed, text("%llu cycles missing in the recording, allowed %llu",
-                                 static_cast<unsigned long long>(dropped), static_cast<unsigned long long>(allowed)));
+    add(dropped <= session.max_dropped,
+        text("%llu cycles missing in the recording, allowed %llu", static_cast<unsigned long long>(dropped),
+             static_cast<unsigned long long>(session.max_dropped)));
   }
   if (session.recording != nullptr && session.recording->is_error) {
     add(false, "the recording failed: " + session.recording->failure);

@@ -41,7 +41,8 @@ struct Session {
   hal::ResourceUsage usage{};                  ///< of the loop after warm-up
   std::optional<std::uint64_t> allocations{};  ///< of the loop after warm-up, if a guard is linked
   const RecorderAccount* recording = nullptr;  ///< null: nothing was recorded
-  const ImageOptions* recorded_as = nullptr;   ///< of the recording; null in a mode that records nothing
+  std::string_view recording_file{};           ///< its path
+  std::uint64_t max_dropped = 0;               ///< cycles that may be missing in it
   std::optional<BusAccount> bus{};             ///< none: there is no wire
   std::optional<std::uint64_t> max_lost{};     ///< frames that may be lost; none: no limit
   bool synchronised = false;                   ///< syncs give the cycles, not the machine's clock

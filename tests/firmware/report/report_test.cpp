@@ -76,17 +76,20 @@ TEST(Report, LimitsAreJudgedWithoutTheWarmUp) {
 
 TEST(Report, CycleMissingInTheRecordingIsBadUnlessAllowed) {
   RecorderAccount account{100, 99, "the disk is full"};
+  std::uint64_t most_dropped = 0;
   const auto with_recording = [&] {
     Session with = session();
     with.recording = &account;
-    with.recorded_as = &options;
+    with.recording_file = "run.hfr";
+    with.max_dropped = most_dropped;
     return with;
   };
   CHECK(!judge(with_recording()).good);
-  STRCMP_CONTAINS("99 of 100 cycles, 1 dropped; ended early: the disk is full", text_report(with_recording()).c_str());
-  STRCMP_CONTAINS("\"recording\":{\"file\":\"\",\"offered\":100,\"stored\":99,\"dropped\":1",
+  STRCMP_CONTAINS("run.hfr: 99 of 100 cycles, 1 dropped; ended early: the disk is full",
+                  text_report(with_recording()).c_str());
+  STRCMP_CONTAINS("\"recording\":{\"file\":\"run.hfr\",\"offered\":100,\"stored\":99,\"dropped\":1",
                   json_report(with_recording()).c_str());
-  options.max_dropped = 1;
+  most_dropped = 1;
   CHECK(judge(with_recording()).good);
   account.is_error = true;
   CHECK(!judge(with_recording()).good);

@@ -5,10 +5,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
+#include <map>
 
 #include "firmware/session/key_file.hpp"
+#include "firmware/session/option_table.hpp"
 
 namespace hotfire::firmware {
 
@@ -68,12 +72,11 @@ TEST(Options, PeriodOutsideItsRangeIsRefusedWithTheRange) {
 }
 
 TEST(Options, LayoutOfACanBusIsTheSmallestThatHasRoomUnlessSaid) {
-  CHECK(accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--actuators", "2"}).frame_layout() ==
-        can::Layout::classic);
-  CHECK(accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--actuators", "3"}).frame_layout() == can::Layout::fd);
-  CHECK(accepted<ControllerOptions>({"--bus", "can0", "--layout", "fd"}).frame_layout(1) == can::Layout::fd);
+  CHECK(frame_layout(accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--actuators", "2"})) == can::Layout::classic);
+  CHECK(frame_layout(accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--actuators", "3"})) == can::Layout::fd);
+  CHECK(accepted<ControllerOptions>({"--bus", "can0", "--layout", "fd"}).layout == can::Layout::fd);
   refused({"plant", "--image", "p", "--bus", "can0", "--actuators", "3", "--layout", "classic"}, "room for 2 actuators");
-  CHECK(accepted<ControllerOptions>({"--bus", "can0", "--layout", "fd-split"}).frame_layout(1) == can::Layout::fd_split);
+  CHECK(accepted<ControllerOptions>({"--bus", "can0", "--layout", "fd-split"}).layout == can::Layout::fd_split);
 }
 
 TEST(Options, KeyNeedsFramesThatHaveRoomForACode) {
@@ -135,16 +138,38 @@ TEST(Options, WrongUseIsRefusedWithWhatIsAllowed) {
 }
 
 TEST(Options, AnOptionOfAnotherModeIsRefusedWithTheModesThatTakeIt) {
-  refused({"timing", "--bus", "can0"}, "--bus is no option of timing, but of plant, controller, lab");
-  refused({"controller", "--bus", "can0", "--sync", "can"}, "--sync is no option of controller, but of plant, timing");
-  refused({"controller", "--bus", "can0", "--record", "r"},
-          "--record is no option of controller, but of plant, timing, lab");
-  refused({"controller", "--strings"}, "--strings is no option of controller, but of plant");
-  refused({"lab", "--load-pressure"}, "--load-pressure is no option of lab, but of plant");
-  refused({"lab", "--actuators", "2"}, "--actuators is no option of lab, but of plant, timing, controller");
-  refused({"plant", "--rehearsal"}, "--rehearsal is no option of plant, but of lab");
-  refused({"timing", "--confirm", "1"}, "--confirm is no option of timing, but of lab");
-  refused({"plant", "--lockstep"}, "--lockstep is no option of plant, but of controller");
+  const std::map<std::string, std::vector<const char*>> options_by_modes{
+      {"plant, timing, lab",
+       {"--image", "--record", "--overwrite", "--record-buffer-s", "--record-max-mib", "--max-dropped"}},
+      {"plant, controller, lab",
+       {"--bus", "--layout", "--key", "--freshness-ms", "--bit-rate", "--data-bit-rate", "--max-lost"}},
+      {"plant, timing, controller", {"--actuators", "--command", "--amplitude", "--frequency"}},
+      {"plant, timing", {"--sync", "--max-missed-syncs", "--sync-patience-ms"}},
+      {"plant, controller", {"--command-per-current"}},
+      {"plant", {"--command-age-ms", "--heartbeat-age-ms", "--strings", "--load-pressure"}},
+      {"controller", {"--lockstep"}},
+      {"lab", {"--gpio", "--confirm", "--rehearsal"}}};
+  std::size_t limited = 0;
+  for (const auto& [modes, options] : options_by_modes) {
+    for (const char* option : options) {
+      ++limited;
+      for (const std::string mode : {"plant", "timing", "controller", "lab"}) {
+        const std::string refusal = std::string(option) + " is no option of " + mode + ", but of " + modes + ";";
+        const ParsedOptions parsed = parse_options({"hotfire-rt", mode, option, "1"});
+        const bool taken = (", " + modes + ",").find(", " + mode + ",") != std::string::npos;
+        CHECK_EQUAL_TEXT(!taken, parsed.message.find(refusal) != std::string::npos, (mode + " " + option).c_str());
+      }
+    }
+  }
+  // All others are of every run.
+  const auto lines = option_lines();
+  const auto of_every_run = [](const OptionLine& line) { return line.modes == std::array{true, true, true, true, false}; };
+  LONGS_EQUAL(lines.size() - limited, std::count_if(lines.begin(), lines.end(), of_every_run));
+}
+
+TEST(Options, KeyOfAVehicleWhoseFileDecidesTheLayoutIsTaken) {
+  STRCMP_EQUAL("k", accepted<PlantOptions>({"--image", "p", "--bus", "can0", "--key", "k"}).key.c_str());
+  refused({"plant", "--image", "p", "--bus", "can0", "--actuators", "2", "--key", "k"}, "--layout fd, or fd-split");
 }
 
 TEST(Options, LabThatMovesRealActuatorsNeedsARecordingADigestAndRealTime) {

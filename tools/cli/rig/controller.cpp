@@ -5,7 +5,8 @@
 namespace hotfire {
 
 void add_controller(CLI::App& program) {
-  add_realtime_command(program, "controller", "Command a plant on a CAN bus, to try a rig that has nothing else", false);
+  add_realtime_command(program, "controller", "Command a plant on a CAN bus, to try a rig that has nothing else",
+                       TakesModel::never);
 }
 
 }  // namespace hotfire

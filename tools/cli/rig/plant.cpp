@@ -6,7 +6,7 @@ namespace hotfire {
 
 void add_plant(CLI::App& program) {
   add_realtime_command(program, "plant", "Run a model in real time: answer commands with sensor readings, every period",
-                       true);
+                       TakesModel::always);
 }
 
 }  // namespace hotfire

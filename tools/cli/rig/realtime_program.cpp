@@ -47,22 +47,24 @@ void become_realtime_program(const std::vector<std::string>& arguments) {
       fmt::format("cannot start {}: {}; build or install hotfire-rt beside hotfire", program, std::strerror(errno)));
 }
 
-void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model) {
+void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, TakesModel model) {
   const auto path = std::make_shared<std::string>();
   const auto played = std::make_shared<PlayedFiles>();
   CLI::App* command = program.add_subcommand(name, description);
   command->set_help_flag();
   command->allow_extras();
-  command->add_option("--model", *path, "model file (.toml), of one axis or of a vehicle");
-  command->add_option("--faults", played->faults, "faults to play (.toml)");
-  command->add_option("--disturbances", played->disturbances, "record whose torque, force, vibration and thrust to play");
-  command->callback([command, path, played, name, needs_model] {
+  if (model != TakesModel::never) {
+    command->add_option("--model", *path, "model file (.toml), of one axis or of a vehicle");
+    command->add_option("--faults", played->faults, "faults to play (.toml)");
+    command->add_option("--disturbances", played->disturbances, "record whose torque, force, vibration and thrust to play");
+  }
+  command->callback([command, path, played, name, model] {
     std::vector<std::string> arguments = command->remaining();
     arguments.insert(arguments.begin(), name);
     if (!asks_for_text_only(arguments)) {
       if (!path->empty()) {
         arguments.insert(arguments.end(), {"--image", share_image(image_of_model(*path, *played))});
-      } else if (needs_model) {
+      } else if (model == TakesModel::always) {
         throw UsageError("--model FILE is needed");
       } else if (!played->faults.empty() || !played->disturbances.empty()) {
         throw UsageError("--faults and --disturbances need --model FILE, whose plant plays them");

@@ -7,14 +7,17 @@
 
 namespace hotfire {
 
-/// Adds a command that is carried out by hotfire-rt, the small executable for the real-time target beside this one. The
-/// command has `--model`, `--faults` and `--disturbances` of its own: the model and what its plant plays are read and
-/// checked here, and handed over as a plant image in memory. Every other argument is passed on as it is, so that
+/// Whether a real-time command takes a model.
+enum class TakesModel { never, optionally, always };
+
+/// Adds a command that is carried out by hotfire-rt, the small executable for the real-time target beside this one. A
+/// command with a model has `--model`, `--faults` and `--disturbances` of its own: the model and what its plant plays are
+/// read and checked here, and handed over as a plant image in memory. Every other argument is passed on as it is, so that
 /// hotfire-rt's own table of options is the only one.
 ///
-/// Throws FileError for a model that is refused, UsageError if `needs_model` and there is none, or if hotfire-rt cannot be
-/// started. Else it does not return: the process becomes hotfire-rt, whose exit status is the command's.
-void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, bool needs_model);
+/// Throws FileError for a model that is refused, UsageError if there is none where there always is one, or if hotfire-rt
+/// cannot be started. Else it does not return: the process becomes hotfire-rt, whose exit status is the command's.
+void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, TakesModel model);
 
 /// Puts an image into memory that the next program inherits, and returns the path under which it finds it. Throws
 /// UsageError.

@@ -5,7 +5,8 @@
 namespace hotfire {
 
 void add_timing(CLI::App& program) {
-  add_realtime_command(program, "timing", "Check this machine's deterministic timing, with a verdict", false);
+  add_realtime_command(program, "timing", "Check this machine's deterministic timing, with a verdict",
+                       TakesModel::optionally);
 }
 
 }  // namespace hotfire
