@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The binary interface of libhotfire against the kept list abi.txt: exported names, SONAME, sizes of the structures,
+# The binary interface of libhotfire against the kept list abi.txt: exported names, SONAME, sizes and members of the structures,
 # values of the constants. The types of the functions are checked where abi_sizes.c is compiled.
 #   cmake -D LIBRARY=... -D SIZES=... -D KEPT=... -P abi.cmake
 cmake_minimum_required(VERSION 3.25)

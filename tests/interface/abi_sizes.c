@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/* Prints the sizes of the structures of the C interface and the values of its constants, for abi.cmake. It does not compile
- * if a function takes or returns other types than a program that was built before expects. */
+/* Prints the sizes and members of the structures of the C interface and the values of its constants, for abi.cmake. It does
+ * not compile if a function takes or returns other types than a program that was built before expects. */
 #include <hotfire.h>
+#include <stddef.h>
 #include <stdio.h>
 
 typedef struct kept_functions {
@@ -35,10 +36,26 @@ const kept_functions kept = {hotfire_version,    hotfire_default_options, hotfir
                              hotfire_period,     hotfire_differentiate,   hotfire_state_size, hotfire_save,
                              hotfire_load};
 
+/* Where a member is. */
+#define AT(type, member) printf("offsetof " #type " " #member " %zu\n", offsetof(type, member))
+
 int main(void) {
   printf("sizeof hotfire_options %zu\n", sizeof(hotfire_options));
+  AT(hotfire_options, size);
+  AT(hotfire_options, period);
+  AT(hotfire_options, seed);
   printf("sizeof hotfire_variable %zu\n", sizeof(hotfire_variable));
+  AT(hotfire_variable, name);
+  AT(hotfire_variable, unit);
+  AT(hotfire_variable, description);
+  AT(hotfire_variable, start);
+  AT(hotfire_variable, lower);
+  AT(hotfire_variable, upper);
+  AT(hotfire_variable, tunable);
   printf("sizeof hotfire_seed %zu\n", sizeof(hotfire_seed));
+  AT(hotfire_seed, kind);
+  AT(hotfire_seed, index);
+  AT(hotfire_seed, value);
   printf("statuses %d %d %d %d %d\n", HOTFIRE_OK, HOTFIRE_WRONG_USE, HOTFIRE_BAD_DATA, HOTFIRE_RAN_AWAY, HOTFIRE_NO_MEMORY);
   printf("kinds %d %d %d\n", HOTFIRE_INPUT, HOTFIRE_OUTPUT, HOTFIRE_PARAMETER);
   return kept.version() == NULL;

@@ -101,12 +101,25 @@ Case direct(std::size_t rows) {
   return made;
 }
 
-Case vehicle(const std::string& topology, const std::string& rest, const std::vector<std::string>& axes, std::size_t rows) {
+/// A measured load. It is held: `simulate` interpolates most of them between rows, and a plant holds its inputs.
+struct Load {
+  std::string name;
+  std::string unit;
+  double value;
+};
+
+Case vehicle(const std::string& topology, const std::string& rest, const std::vector<std::string>& axes,
+             const std::vector<Load>& loads, std::size_t rows) {
   Case made{topology, kHead + '"' + topology + "\"\n" + rest, 1e-3, 1, {}, {}, {}};
   std::vector<Channel> channels;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     channels.push_back(channel("command." + axes[i], "rad", rows, i, 0.015));
     made.inputs.push_back(channels.back().name);
+    made.driven.push_back(channels.back().values);
+  }
+  for (const Load& load : loads) {
+    channels.push_back({load.name, load.unit, std::vector<double>(rows, load.value)});
+    made.inputs.push_back(load.name);
     made.driven.push_back(channels.back().values);
   }
   made.simulated = simulate(parse_vehicle(made.text, "case.toml"), record_of(rows, channels));
@@ -145,10 +158,20 @@ Case case_of(const std::string& topology, std::size_t rows) {
     return direct(rows);
   }
   if (topology == "taos") {
-    return vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"}, rows);
+    return vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"},
+                   {{"torque.pitch", "N.m", 3e3},
+                    {"torque.yaw", "N.m", -2e3},
+                    {"force.x", "N", 4e5},
+                    {"force.y", "N", -2e5},
+                    {"force.z", "N", 1e5},
+                    {"vibration.pitch", "rad/s", 0.02},
+                    {"vibration.yaw", "rad/s", -0.03},
+                    {"thrust", "N", 1.2e6}},
+                   rows);
   }
   return vehicle("masv", "[effects.valve_deadband]\nhalf_width = 0.004\n" + kGimbal,
-                 {"pitch1", "yaw1", "pitch2", "yaw2", "pitch3", "yaw3", "pitch4", "yaw4"}, rows);
+                 {"pitch1", "yaw1", "pitch2", "yaw2", "pitch3", "yaw3", "pitch4", "yaw4"},
+                 {{"torque.yaw2", "N.m", 2e3}, {"force.x3", "N", 4e5}, {"thrust.engine1", "N", 1.2e6}}, rows);
 }
 
 std::vector<Case> cases(std::size_t rows) {

@@ -32,7 +32,7 @@ endif()
 
 # 2. add_subdirectory, with an effect of the project's own.
 file(READ ${ROOT}/examples/own_effect/CMakeLists.txt text)
-string(REPLACE "find_package(hotfire REQUIRED)" "add_subdirectory(${ROOT} hotfire EXCLUDE_FROM_ALL)" text "${text}")
+string(REPLACE "find_package(hotfire REQUIRED)" "enable_testing()\nadd_subdirectory(${ROOT} hotfire EXCLUDE_FROM_ALL)" text "${text}")
 file(WRITE ${SCRATCH}/own_effect/CMakeLists.txt "${text}")
 file(COPY ${ROOT}/examples/own_effect/main.cpp DESTINATION ${SCRATCH}/own_effect)
 build(add_subdirectory ${SCRATCH}/own_effect -DCMAKE_EXPORT_COMPILE_COMMANDS=ON)

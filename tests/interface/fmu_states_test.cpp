@@ -46,7 +46,8 @@ struct Call {
 };
 
 /// The calls of one FMU [FMI 2.0 section 4.2.4, the table of calling sequences; FMI 3.0 sections 2.3 and 4.2.1]. What the
-/// standards allow for debugging after an error is allowed.
+/// standards allow for debugging after an error is allowed. Before the initialization both versions allow what FMI 3.0
+/// allows there: also to set inputs and to get parameters, which the table of FMI 2.0 does not have.
 std::vector<Call> calls_of(const Fmu& fmu, int version) {
   const std::string prefix = version == 3 ? "fmi3" : "fmi2";
   const std::string state_name = version == 3 ? "FMUState" : "FMUstate";

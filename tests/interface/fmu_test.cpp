@@ -191,6 +191,61 @@ TEST(Fmu, AStateGoesOnWithTheSameBitsAfterBytesOfAnotherInstance) {
   }
 }
 
+TEST(Fmu, ADamagedStateIsRefusedAndChangesNothing) {
+  const Case own = cases(20)[0];
+  for (const int version : kVersions) {
+    const Fmu fmu(scratch, own, version);
+    const Run run(fmu, version);
+    const std::string prefix = version == 3 ? "fmi3" : "fmi2";
+    const std::string state_name = version == 3 ? "FMUState" : "FMUstate";
+    const auto serialized_size =
+        fmu.function<int(void*, void*, std::size_t*)>((prefix + "Serialized" + state_name + "Size").c_str());
+    const auto serialize = fmu.function<int(void*, void*, char*, std::size_t)>((prefix + "Serialize" + state_name).c_str());
+    const auto deserialize = fmu.function<int(void*, const char*, std::size_t, void**)>(
+        version == 3 ? "fmi3DeserializeFMUState" : "fmi2DeSerializeFMUstate");
+    const auto set = fmu.function<int(void*, void*)>((prefix + "Set" + state_name).c_str());
+    run.enter();
+    run.call("ExitInitializationMode");
+    run.step(0.0, 0.05);
+    void* state = nullptr;
+    LONGS_EQUAL(0, fmu.function<int(void*, void**)>((prefix + "Get" + state_name).c_str())(run.instance(), &state));
+    std::size_t size = 0;
+    LONGS_EQUAL(0, serialized_size(run.instance(), state, &size));
+    std::vector<char> bytes(size);
+    LONGS_EQUAL(0, serialize(run.instance(), state, bytes.data(), size));
+    constexpr std::size_t kHead = 128;  // what an FMU adds to the model's state, and the head of that
+    for (std::size_t at = 0; at < size; at += at < kHead ? 1 : 41) {
+      std::vector<char> damaged = bytes;
+      damaged[at] = static_cast<char>(damaged[at] ^ 0x01);
+      LONGS_EQUAL(0, deserialize(run.instance(), damaged.data(), size, &state));
+      LONGS_EQUAL_TEXT(3, set(run.instance(), state), std::to_string(at).c_str());
+      // A state is what an instance waits for after an error.
+      LONGS_EQUAL(0, deserialize(run.instance(), bytes.data(), size, &state));
+      LONGS_EQUAL(0, set(run.instance(), state));
+    }
+    LONGS_EQUAL(0, run.step(0.05, 0.05));
+    LONGS_EQUAL(0, fmu.function<int(void*, void**)>((prefix + "Free" + state_name).c_str())(run.instance(), &state));
+  }
+}
+
+TEST(Fmu, ARefusedValueChangesNoneOfTheOthersOfItsCall) {
+  const Case own = cases(20)[0];
+  for (const int version : kVersions) {
+    const Fmu fmu(scratch, own, version);
+    const Run run(fmu, version);
+    run.enter();
+    const double inertia = run.got(fmu.references({"engine.inertia"}))[0];
+    constexpr int kDiscard = 2;
+    LONGS_EQUAL(kDiscard, run.set(fmu.references({"engine.inertia", "command"}), {0.5 * inertia, std::nan("")}));
+    DOUBLES_EQUAL(inertia, run.got(fmu.references({"engine.inertia"}))[0], 0.0);
+    LONGS_EQUAL(kDiscard, run.set(fmu.references({"command", "engine.inertia"}), {0.01, -1.0}));
+    DOUBLES_EQUAL(inertia, run.got(fmu.references({"engine.inertia"}))[0], 0.0);
+    DOUBLES_EQUAL(0.0, run.got(fmu.references({"command"}))[0], 0.0);
+    LONGS_EQUAL(0, run.set(fmu.references({"command", "engine.inertia"}), {0.01, 0.5 * inertia}));
+    DOUBLES_EQUAL(0.5 * inertia, run.got(fmu.references({"engine.inertia"}))[0], 0.0);
+  }
+}
+
 TEST(Fmu, ResetGivesTheRunOfAFreshInstance) {
   const Case own = cases(20)[0];
   for (const int version : kVersions) {

@@ -3,18 +3,21 @@
 add_library(hotfire_settings INTERFACE)
 target_compile_features(hotfire_settings INTERFACE cxx_std_20)
 target_include_directories(hotfire_settings INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(hotfire_settings INTERFACE -Werror -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align
-  -Wcast-qual -Woverloaded-virtual -Wold-style-cast -Wfloat-conversion -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough
-  -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wundef -Wextra-semi -Wredundant-decls -Wmissing-declarations
-  -Wzero-as-null-pointer-constant -Wsuggest-override -Wvla)
-# A build in batches compiles a few sources as one: each is then an included file, and its unnamed namespace is that of a header
-# to this warning.
-if(CMAKE_UNITY_BUILD)
-  target_compile_options(hotfire_settings INTERFACE -Wno-subobject-linkage)
-endif()
-# g++ 12 sees an overlap in `"text" + std::string` that is not there (GCC bug 105651); g++ 13 does not.
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(hotfire_settings INTERFACE -Wno-restrict)
+# In another project its own warnings hold.
+if(PROJECT_IS_TOP_LEVEL)
+  target_compile_options(hotfire_settings INTERFACE -Werror -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align
+    -Wcast-qual -Woverloaded-virtual -Wold-style-cast -Wfloat-conversion -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough
+    -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wundef -Wextra-semi -Wredundant-decls -Wmissing-declarations
+    -Wzero-as-null-pointer-constant -Wsuggest-override -Wvla)
+  # A build in batches compiles a few sources as one: each is then an included file, and its unnamed namespace is that of a
+  # header to this warning.
+  if(CMAKE_UNITY_BUILD)
+    target_compile_options(hotfire_settings INTERFACE -Wno-subobject-linkage)
+  endif()
+  # g++ 12 sees an overlap in `"text" + std::string` that is not there (GCC bug 105651); g++ 13 does not.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(hotfire_settings INTERFACE -Wno-restrict)
+  endif()
 endif()
 # Contraction would make the same source give other bits on a machine with fused multiply-add.
 target_compile_options(hotfire_settings INTERFACE -ffp-contract=off)
@@ -44,7 +47,7 @@ endfunction()
 option(HOTFIRE_TUNE "Compile the host tools for AVX2 if this machine has it: same bits, faster fits" ON)
 add_library(hotfire_host_settings INTERFACE)
 target_link_libraries(hotfire_host_settings INTERFACE hotfire_settings)
-if(HOTFIRE_TUNE)
+if(HOTFIRE_TUNE AND PROJECT_IS_TOP_LEVEL)
   include(CheckCXXSourceRuns)
   check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"avx2\") ? 0 : 1; }" HOTFIRE_HOST_HAS_AVX2)
   if(HOTFIRE_HOST_HAS_AVX2)

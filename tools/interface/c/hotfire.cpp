@@ -170,6 +170,9 @@ hotfire_status hotfire_find(hotfire_model* model, hotfire_kind kind, const char*
   if (table == nullptr) {
     return HOTFIRE_WRONG_USE;
   }
+  if (name == nullptr || index == nullptr) {
+    return fail(model, HOTFIRE_WRONG_USE, "hotfire_find: a null pointer; allowed: a name and a place for its index");
+  }
   const auto found = std::find_if(table->begin(), table->end(), [name](const Variable& own) { return own.name == name; });
   if (found == table->end()) {
     return fail(model, HOTFIRE_WRONG_USE, "%s: the model has no such %s; the first of %zu is %s", name, table_name(kind),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/interface/c/saved_state.hpp"
 
-#include <cstdint>
 #include <cstring>
 
 namespace hotfire::interface {
@@ -18,9 +17,10 @@ struct Header {
 
 constexpr std::string_view kMark = "hotfire1";
 
-/// FNV-1a over words of eight bytes: a damaged byte changes it. What does not fill a word is left as it is with zeros.
-std::uint64_t fingerprint_of(std::uint64_t started, std::span<const std::byte> bytes) noexcept {
-  std::uint64_t value = 0xcbf29ce484222325U ^ started;
+}  // namespace
+
+std::uint64_t fingerprint_of(std::uint64_t start, std::span<const std::byte> bytes) noexcept {
+  std::uint64_t value = 0xcbf29ce484222325U ^ start;
   for (std::size_t at = 0; at < bytes.size(); at += sizeof value) {
     std::uint64_t word = 0;
     std::memcpy(&word, bytes.data() + at, bytes.size() - at < sizeof word ? bytes.size() - at : sizeof word);
@@ -29,8 +29,6 @@ std::uint64_t fingerprint_of(std::uint64_t started, std::span<const std::byte> b
   }
   return value;
 }
-
-}  // namespace
 
 std::size_t saved_size(const plant::Plant& plant) noexcept { return sizeof(Header) + plant.state_size(); }
 

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include "tools/interface/c/model_handle.hpp"
+#include "tools/interface/c/saved_state.hpp"
 
 namespace hotfire::fmu {
 
@@ -23,6 +26,11 @@ struct Slave::Saved {
   double stop;
   double time;
   double last_successful;
+  std::uint64_t fingerprint;  ///< of all above; the model's own bytes have theirs
+
+  std::uint64_t expected() const noexcept {
+    return interface::fingerprint_of(0, std::as_bytes(std::span(this, 1)).first(offsetof(Saved, fingerprint)));
+  }
 };
 
 std::unique_ptr<Slave> Slave::open(const std::string& text, const char* token, Log log, void* instance,
@@ -263,15 +271,17 @@ Status Slave::save(std::span<std::byte> bytes) noexcept {
   if (bytes.size() < saved_size()) {
     return refuse(Status::error, "saving a state", "too few bytes; allowed: as many as the size of the state");
   }
-  const Saved saved{static_cast<std::uint32_t>(phase_),
-                    current_ ? 1U : 0U,
-                    set_up_ ? 1U : 0U,
-                    stop_defined_ ? 1U : 0U,
-                    periods_,
-                    start_,
-                    stop_,
-                    time_,
-                    last_successful_};
+  Saved saved{static_cast<std::uint32_t>(phase_),
+              current_ ? 1U : 0U,
+              set_up_ ? 1U : 0U,
+              stop_defined_ ? 1U : 0U,
+              periods_,
+              start_,
+              stop_,
+              time_,
+              last_successful_,
+              0};
+  saved.fingerprint = saved.expected();
   std::memcpy(bytes.data(), &saved, sizeof saved);
   hotfire_save(model_, bytes.data() + sizeof saved, bytes.size() - sizeof saved);
   return Status::ok;
@@ -283,9 +293,8 @@ Status Slave::load(std::span<const std::byte> bytes) noexcept {
     return refuse(Status::error, "setting a state", "too few bytes for a state of this FMU");
   }
   std::memcpy(&saved, bytes.data(), sizeof saved);
-  if (saved.phase > static_cast<std::uint32_t>(Phase::failed) || saved.current > 1 || saved.set_up > 1 ||
-      saved.stop_defined > 1) {
-    return refuse(Status::error, "setting a state", "not a state of this FMU");
+  if (saved.fingerprint != saved.expected()) {
+    return refuse(Status::error, "setting a state", "a damaged state, or not one of this FMU");
   }
   if (hotfire_load(model_, bytes.data() + sizeof saved, bytes.size() - sizeof saved) != HOTFIRE_OK) {
     return refuse(Status::error, "setting a state", hotfire_message(model_));

@@ -15,6 +15,12 @@ bool is_missing(std::span<T> values) noexcept {
   return values.data() == nullptr && !values.empty();
 }
 
+/// A value that is no number is within no bounds.
+template <class Bounds>
+bool is_inside(const Bounds& bounds, double value) noexcept {
+  return value >= bounds.lower && value <= bounds.upper;
+}
+
 }  // namespace
 
 bool Slave::find(Reference reference, Place& place) const noexcept {
@@ -62,8 +68,7 @@ Status Slave::set(std::span<const Reference> references, std::span<const double>
   }
   for (std::size_t i = 0; i < references.size(); ++i) {
     const std::size_t index = references[i] - kFirstInput;
-    // A value that is no number is within no bounds.
-    if (index >= inputs_.size() || !(values[i] >= input_bounds_[index].lower && values[i] <= input_bounds_[index].upper)) {
+    if (index >= inputs_.size() || !is_inside(input_bounds_[index], values[i])) {
       return set_any(references, values);
     }
   }
@@ -83,11 +88,18 @@ Status Slave::set_any(std::span<const Reference> references, std::span<const dou
   if (references.size() != values.size() || references.size() > indices_.size()) {
     return refuse(Status::error, "setting variables", "as many values as value references are allowed, each variable once");
   }
-  for (const Reference reference : references) {
+  bool are_inputs_inside = true;
+  for (std::size_t i = 0; i < references.size(); ++i) {
     Place place{};
-    if (!find(reference, place) || place.kind == HOTFIRE_OUTPUT) {
-      return refuse_reference("setting variables", reference);
+    if (!find(references[i], place) || place.kind == HOTFIRE_OUTPUT) {
+      return refuse_reference("setting variables", references[i]);
     }
+    are_inputs_inside =
+        are_inputs_inside && (place.kind != HOTFIRE_INPUT || is_inside(input_bounds_[place.index], values[i]));
+  }
+  // A refused call changes nothing: a parameter is set only if no input is refused after it.
+  if (!are_inputs_inside) {
+    return set_of_kind(HOTFIRE_INPUT, references, values);
   }
   const Status status = set_of_kind(HOTFIRE_PARAMETER, references, values);
   return status == Status::ok ? set_of_kind(HOTFIRE_INPUT, references, values) : status;
