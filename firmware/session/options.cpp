@@ -43,8 +43,12 @@ std::string help() {
       "  hotfire-rt plant --image plant.image --period-us 500\n"
       "  hotfire-rt replay run.hfr\n\n";
   for (const OptionLine& line : option_lines()) {
-    std::string meaning = modes_of(line);
-    meaning = meaning == kEveryRun ? std::string(line.meaning) : meaning + ": " + std::string(line.meaning);
+    const std::string modes = modes_of(line);
+    std::string meaning;
+    if (modes != kEveryRun) {
+      meaning.append(modes).append(": ");
+    }
+    meaning.append(line.meaning);
     if (const std::size_t at = meaning.find('\n'); at != std::string::npos) {
       meaning.insert(at + 1, 25, ' ');
     }
