@@ -4,13 +4,7 @@
 #   cmake -D ROOT=... -D SCRATCH=... [-D COMPILER=...] -P consumer_of_sources.cmake
 cmake_minimum_required(VERSION 3.25)
 set(flags "-Wall -Wextra -O1")
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ${status}\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 file(REMOVE_RECURSE ${SCRATCH})
 file(READ ${ROOT}/examples/c/CMakeLists.txt text)

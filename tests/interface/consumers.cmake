@@ -4,13 +4,7 @@
 cmake_minimum_required(VERSION 3.25)
 set(flags "-Wall -Wextra -Wconversion -Werror -O1 -fno-strict-aliasing")
 
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${ARGN}: ${status}\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 # build(NAME SOURCE OPTION...): configures and builds a project.
 function(build name source)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstddef>
 
+#include "model/checks.hpp"
 #include "tools/interface/c/model_handle.hpp"
 #include "tools/interface/fmu/slave.hpp"
 
@@ -13,12 +14,6 @@ constexpr const char* kMissing = "an argument is missing: a null pointer is vali
 template <class T>
 bool is_missing(std::span<T> values) noexcept {
   return values.data() == nullptr && !values.empty();
-}
-
-/// A value that is no number is within no bounds.
-template <class Bounds>
-bool is_inside(const Bounds& bounds, double value) noexcept {
-  return value >= bounds.lower && value <= bounds.upper;
 }
 
 }  // namespace
@@ -68,7 +63,7 @@ Status Slave::set(std::span<const Reference> references, std::span<const double>
   }
   for (std::size_t i = 0; i < references.size(); ++i) {
     const std::size_t index = references[i] - kFirstInput;
-    if (index >= inputs_.size() || !is_inside(input_bounds_[index], values[i])) {
+    if (index >= inputs_.size() || !model::is_inside(values[i], input_bounds_[index].lower, input_bounds_[index].upper)) {
       return set_any(references, values);
     }
   }
@@ -94,8 +89,9 @@ Status Slave::set_any(std::span<const Reference> references, std::span<const dou
     if (!find(references[i], place) || place.kind == HOTFIRE_OUTPUT) {
       return refuse_reference("setting variables", references[i]);
     }
-    are_inputs_inside =
-        are_inputs_inside && (place.kind != HOTFIRE_INPUT || is_inside(input_bounds_[place.index], values[i]));
+    are_inputs_inside = are_inputs_inside &&
+                        (place.kind != HOTFIRE_INPUT ||
+                         model::is_inside(values[i], input_bounds_[place.index].lower, input_bounds_[place.index].upper));
   }
   // A refused call changes nothing: a parameter is set only if no input is refused after it.
   if (!are_inputs_inside) {
