@@ -38,16 +38,18 @@ class Interpolation {
     return mean;
   }
 
-  /// The mean over that part of a row. `values` is the signal, which has at least one row.
+  /// The mean over that part of a row. `values` is the signal, which has at least one row. The weights apply to what the
+  /// rows differ from this one: their sum is one only up to rounding, and a constant signal keeps its value bit for bit.
   double mean(std::span<const double> values, std::size_t row, const Weights& weights) const noexcept {
     const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
     const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row) - before(nodes_);
-    double mean = 0.0;
+    const double present = values[std::min(row, values.size() - 1)];
+    double change = 0.0;
     for (std::ptrdiff_t node = 0; node < nodes_; ++node) {
       const auto at = std::clamp<std::ptrdiff_t>(first + node, 0, last);
-      mean += weights[static_cast<std::size_t>(node)] * values[static_cast<std::size_t>(at)];
+      change += weights[static_cast<std::size_t>(node)] * (values[static_cast<std::size_t>(at)] - present);
     }
-    return mean;
+    return present + change;
   }
 
  private:

@@ -22,16 +22,6 @@ struct Close {
 };
 using Model = std::unique_ptr<hotfire_model, Close>;
 
-/// The sentence about a text that is refused with this status.
-std::string problem_of_text(const std::string& text, const hotfire_options* options = nullptr,
-                            hotfire_status expected = HOTFIRE_BAD_DATA) {
-  std::array<char, 512> message{};
-  hotfire_model* model = nullptr;
-  LONGS_EQUAL(expected, hotfire_open_text(text.c_str(), "own.toml", options, &model, message.data(), message.size()));
-  CHECK(model == nullptr);
-  return message.data();
-}
-
 Model open(const Case& own) {
   hotfire_options options;
   hotfire_default_options(&options);
@@ -293,69 +283,6 @@ TEST(CLibrary, ATunableParameterChangesTheRunAsADeclaredOneDoes) {
     hotfire_step(from_file.get());
   }
   check_same_bits(outputs_of(from_file.get()), outputs_of(tuned.get()));
-}
-
-TEST(CLibrary, RefusesWithTheWordsOfTheCommand) {
-  STRCMP_EQUAL("own.toml:3:22: engine.inertia = -1: outside its bounds; allowed: 1e-06 to 1e+09 kg.m^2",
-               problem_of_text("schema = 1\ntopology = \"simplex\"\nengine = { inertia = -1 }\n").c_str());
-}
-
-TEST(CLibrary, RefusesValuesOutsideTheirBoundsAndSetsNoneOfThem) {
-  const Model model = open(cases(20)[0]);
-  const std::size_t both[]{0, 1};
-  const double values[]{0.01, std::nan("")};
-  LONGS_EQUAL(HOTFIRE_BAD_DATA, hotfire_set(model.get(), HOTFIRE_INPUT, both, values, 2));
-  STRCMP_EQUAL("torque = nan: not a finite number; allowed: a number in N.m", hotfire_message(model.get()));
-  double command = 1.0;
-  hotfire_get(model.get(), HOTFIRE_INPUT, &both[0], &command, 1);
-  DOUBLES_EQUAL(0.0, command, 0.0);
-  std::size_t inertia = 0;
-  hotfire_find(model.get(), HOTFIRE_PARAMETER, "engine.inertia", &inertia);
-  const double negative = -1.0;
-  LONGS_EQUAL(HOTFIRE_BAD_DATA, hotfire_set(model.get(), HOTFIRE_PARAMETER, &inertia, &negative, 1));
-  STRCMP_EQUAL("engine.inertia = -1: outside its bounds; allowed: 1e-06 to 1e+09 kg.m^2", hotfire_message(model.get()));
-}
-
-TEST(CLibrary, RefusesCallsInTheWrongOrder) {
-  const std::vector<Case> all = cases(20);
-  const Model model = open(all[1]);
-  const std::size_t first = 0;
-  double value = 0.0;
-  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_step(model.get()));
-  STRCMP_EQUAL("hotfire_step: the model has not been started; call hotfire_start first", hotfire_message(model.get()));
-  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_get(model.get(), HOTFIRE_OUTPUT, &first, &value, 1));
-  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_set(model.get(), HOTFIRE_OUTPUT, &first, &value, 1));
-  std::size_t start = 0;
-  hotfire_find(model.get(), HOTFIRE_PARAMETER, "start.position", &start);
-  value = 0.25;
-  LONGS_EQUAL(HOTFIRE_OK, hotfire_set(model.get(), HOTFIRE_PARAMETER, &start, &value, 1));
-  LONGS_EQUAL(HOTFIRE_OK, hotfire_start(model.get(), 0.0));
-  DOUBLES_EQUAL(0.25, outputs_of(model.get())[0], 0.0);
-  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_set(model.get(), HOTFIRE_PARAMETER, &start, &value, 1));
-  STRCMP_EQUAL("start.position: is not tunable; set it before the start", hotfire_message(model.get()));
-}
-
-TEST(CLibrary, RefusesAPeriodThatNoModelTakes) {
-  hotfire_options options;
-  hotfire_default_options(&options);
-  options.period = 2.0;
-  STRCMP_EQUAL("options.period = 2: outside its bounds; allowed: 1e-06 to 1 s",
-               problem_of_text(cases(20)[0].text, &options, HOTFIRE_WRONG_USE).c_str());
-  options.period = 1e-3;
-  options.size = 4;
-  STRCMP_CONTAINS("options.size = 4", problem_of_text(cases(20)[0].text, &options, HOTFIRE_WRONG_USE).c_str());
-}
-
-TEST(CLibrary, RefusesToOpenWithoutATextOrAPlaceForTheModel) {
-  std::array<char, 512> message{};
-  hotfire_model* model = nullptr;
-  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_open(nullptr, nullptr, &model, message.data(), message.size()));
-  STRCMP_EQUAL("a path, a text, a name or the place for the model is NULL", message.data());
-  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_open_text("", nullptr, nullptr, &model, nullptr, 0));
-  LONGS_EQUAL(HOTFIRE_WRONG_USE, hotfire_open_plant("", "plant.txt", nullptr, nullptr, 0));
-  LONGS_EQUAL(HOTFIRE_BAD_DATA, hotfire_open_plant("", "plant.txt", &model, nullptr, 0));
-  LONGS_EQUAL(HOTFIRE_BAD_DATA, hotfire_open("/no/such/file.toml", nullptr, &model, message.data(), message.size()));
-  STRCMP_CONTAINS("/no/such/file.toml", message.data());
 }
 
 TEST(CLibrary, InstancesInThreadsDoNotDisturbEachOther) {

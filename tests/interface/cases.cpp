@@ -101,8 +101,7 @@ Case direct(std::size_t rows) {
   return made;
 }
 
-/// A measured load. It is held: `simulate` interpolates most of them between rows, and a plant holds its inputs. Powers of
-/// two are interpolated without rounding.
+/// A measured load, constant: `simulate` interpolates most loads between rows, and a plant holds its inputs.
 struct Load {
   std::string name;
   std::string unit;
@@ -159,13 +158,24 @@ Case case_of(const std::string& topology, std::size_t rows) {
     return direct(rows);
   }
   if (topology == "taos") {
-    return vehicle(
-        "taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"},
-        {{"force.x", "N", 262144.0}, {"force.y", "N", -131072.0}, {"force.z", "N", 65536.0}, {"thrust", "N", 1.2e6}}, rows);
+    return vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"},
+                   {{"force.x", "N", 26e4},
+                    {"force.y", "N", -13e4},
+                    {"force.z", "N", 6.6e4},
+                    {"torque.pitch", "N.m", 4.1e3},
+                    {"torque.yaw", "N.m", -2.3e3},
+                    {"vibration.pitch", "rad/s", 0.017},
+                    {"vibration.yaw", "rad/s", -0.03},
+                    {"thrust", "N", 1.2e6}},
+                   rows);
   }
   return vehicle("masv", "[effects.valve_deadband]\nhalf_width = 0.004\n" + kGimbal,
                  {"pitch1", "yaw1", "pitch2", "yaw2", "pitch3", "yaw3", "pitch4", "yaw4"},
-                 {{"force.x3", "N", 262144.0}, {"thrust.engine1", "N", 1.2e6}}, rows);
+                 {{"force.x3", "N", 26e4},
+                  {"torque.yaw2", "N.m", 2.3e3},
+                  {"vibration.pitch4", "rad/s", 0.02},
+                  {"thrust.engine1", "N", 1.2e6}},
+                 rows);
 }
 
 std::vector<Case> cases(std::size_t rows) {

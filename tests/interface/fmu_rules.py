@@ -7,7 +7,9 @@ each FMU, and exits 1 if one of the copies passes.
 """
 import copy
 import re
+import subprocess
 import sys
+import tempfile
 import xml.etree.ElementTree as xml
 import zipfile
 
@@ -83,6 +85,29 @@ ROLES = {("parameter", "fixed", "exact"), ("parameter", "tunable", "exact"), ("i
 # The SI units of section 2.2.2 as exponents of kg, m, s and rad.
 FACTORS = {"1": (0, 0, 0, 0), "kg": (1, 0, 0, 0), "m": (0, 1, 0, 0), "s": (0, 0, 1, 0), "rad": (0, 0, 0, 1), "N": (1, 1, -2, 0),
            "Pa": (1, -1, -2, 0), "Hz": (0, 0, -1, 0), "J": (1, 2, -2, 0)}
+
+# The functions that a binary exports: section 2.1 and 4.2 of 2.0 for co-simulation; appendix of 3.0, where an FMU has all.
+TYPES_2 = ["Real", "Integer", "Boolean", "String"]
+TYPES_3 = ["Float32", "Float64", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean", "String", "Binary",
+           "Clock"]
+FUNCTIONS = {
+    "2.0": {"fmi2" + name for name in """GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment
+        EnterInitializationMode ExitInitializationMode Terminate Reset GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize
+        SerializeFMUstate DeSerializeFMUstate GetDirectionalDerivative SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep
+        GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus""".split()
+            + [v + t for v in ("Get", "Set") for t in TYPES_2]},
+    "3.0": {"fmi3" + name for name in """GetVersion SetDebugLogging InstantiateModelExchange InstantiateCoSimulation
+        InstantiateScheduledExecution FreeInstance EnterInitializationMode ExitInitializationMode EnterEventMode Terminate Reset
+        GetNumberOfVariableDependencies GetVariableDependencies GetFMUState SetFMUState FreeFMUState SerializedFMUStateSize
+        SerializeFMUState DeserializeFMUState GetDirectionalDerivative GetAdjointDerivative EnterConfigurationMode ExitConfigurationMode
+        GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal
+        SetShiftFraction EvaluateDiscreteStates UpdateDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime
+        SetContinuousStates GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+        GetNumberOfEventIndicators GetNumberOfContinuousStates EnterStepMode GetOutputDerivatives DoStep
+        ActivateModelPartition""".split() + [v + t for v in ("Get", "Set") for t in TYPES_3]},
+}
+# Debian 12: the oldest system that the binary is for.
+NEWEST_GLIBC = (2, 36)
 
 
 def elements(root, version):
@@ -234,6 +259,30 @@ def archive(path, root, version):
                 yield f"{name} is missing"
 
 
+def binary(data, version):
+    """The binary exports the functions of the standard and nothing else, and needs the C library of Debian 12 and nothing else."""
+    with tempfile.NamedTemporaryFile(suffix=".so") as file:
+        file.write(data)
+        file.flush()
+        exported = subprocess.run(["nm", "-D", "--defined-only", file.name], capture_output=True, text=True, check=True).stdout
+        needs = subprocess.run(["readelf", "--wide", "-d", "-V", file.name], capture_output=True, text=True, check=True).stdout
+    found = {line.split()[-1].split("@")[0] for line in exported.splitlines()}
+    for name in sorted(found ^ FUNCTIONS[version]):
+        yield f"binary: {name} is {'not a function of the standard' if name in found else 'missing'}"
+    for library in re.findall(r"\(NEEDED\).*\[(.*)\]", needs):
+        if library not in ("libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2"):
+            yield f"binary: needs {library}"
+    versions = {tuple(map(int, number.split("."))) for number in re.findall(r"GLIBC_([\d.]+)", needs)}
+    if not versions or max(versions) > NEWEST_GLIBC:
+        yield f"binary: needs a C library of version {max(versions, default=None)}"
+
+
+def binary_of(path, root, version):
+    folder = "linux64" if version == "2.0" else "x86_64-linux"
+    with zipfile.ZipFile(path) as file:
+        return file.read(f"binaries/{folder}/{root.find('CoSimulation').get('modelIdentifier')}.so")
+
+
 RULES = [elements, names, roles, starts, units, structure, capabilities]
 
 
@@ -296,7 +345,7 @@ def main(words):
             root = xml.fromstring(file.read("modelDescription.xml"))
         version = root.get("fmiVersion")
         if not broken:
-            for problem in [*problems(root, version), *archive(path, root, version)]:
+            for problem in [*problems(root, version), *archive(path, root, version), *binary(binary_of(path, root, version), version)]:
                 failed = True
                 print(f"{path}: {problem}")
             continue
@@ -306,6 +355,11 @@ def main(words):
             if not any(problem.startswith(f"{rule}: ") for problem in problems(changed, version)):
                 failed = True
                 print(f"{path}: break {number} of the rule {rule} was not found")
+        of_version = b"fmi" + version[:1].encode()
+        without_step = binary_of(path, root, version).replace(of_version + b"DoStep\0", of_version + b"DoStop\0")
+        if len(list(binary(without_step, version))) != 2:
+            failed = True
+            print(f"{path}: a binary without DoStep was not found")
     return 1 if failed else 0
 
 

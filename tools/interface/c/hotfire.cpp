@@ -94,6 +94,10 @@ hotfire_status set_parameters(hotfire_model* model, const std::size_t* indices, 
                                values[0], static_cast<int>(broken.size()), broken.data());
 }
 
+hotfire_status refuse_null(hotfire_model* model, const char* call) {
+  return fail(model, HOTFIRE_WRONG_USE, "%s: a null pointer; allowed: a pointer to as many values as the call says", call);
+}
+
 hotfire_status refuse_before_start(hotfire_model* model, const char* call) {
   return fail(model, HOTFIRE_WRONG_USE, "%s: the model has not been started; call hotfire_start first", call);
 }
@@ -159,6 +163,9 @@ hotfire_status hotfire_describe(hotfire_model* model, hotfire_kind kind, size_t 
   if (index >= table->size()) {
     return refuse_index(model, kind, index);
   }
+  if (variable == nullptr) {
+    return refuse_null(model, "hotfire_describe");
+  }
   const Variable& own = (*table)[index];
   *variable = {own.name.c_str(), own.unit.c_str(), own.description.c_str(), own.start,
                own.lower,        own.upper,        own.tunable ? 1 : 0};
@@ -171,7 +178,7 @@ hotfire_status hotfire_find(hotfire_model* model, hotfire_kind kind, const char*
     return HOTFIRE_WRONG_USE;
   }
   if (name == nullptr || index == nullptr) {
-    return fail(model, HOTFIRE_WRONG_USE, "hotfire_find: a null pointer; allowed: a name and a place for its index");
+    return refuse_null(model, "hotfire_find");
   }
   const auto found = std::find_if(table->begin(), table->end(), [name](const Variable& own) { return own.name == name; });
   if (found == table->end()) {
@@ -190,6 +197,9 @@ hotfire_status hotfire_set(hotfire_model* model, hotfire_kind kind, const size_t
   }
   if (kind == HOTFIRE_OUTPUT) {
     return fail(model, HOTFIRE_WRONG_USE, "an output cannot be set; allowed: HOTFIRE_INPUT, HOTFIRE_PARAMETER");
+  }
+  if (count > 0 && (indices == nullptr || values == nullptr)) {
+    return refuse_null(model, "hotfire_set");
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (indices[i] >= table->size()) {
@@ -215,6 +225,9 @@ hotfire_status hotfire_get(hotfire_model* model, hotfire_kind kind, const size_t
   }
   if (kind == HOTFIRE_OUTPUT && !model->started) {
     return refuse_before_start(model, "hotfire_get of outputs");
+  }
+  if (count > 0 && (indices == nullptr || values == nullptr)) {
+    return refuse_null(model, "hotfire_get");
   }
   const std::span<const double> present = values_of(model, kind);
   for (std::size_t i = 0; i < count; ++i) {
@@ -252,6 +265,9 @@ hotfire_status hotfire_differentiate(hotfire_model* model, const hotfire_seed* s
                 "hotfire_differentiate: %zu seeds, %zu places; allowed: at most %zu seeds, %zu places", count, outputs,
                 model->seeds.size(), model->plant->outputs().size());
   }
+  if (sensitivity == nullptr || (count > 0 && seeds == nullptr)) {
+    return refuse_null(model, "hotfire_differentiate");
+  }
   for (std::size_t i = 0; i < count; ++i) {
     if (seeds[i].kind != HOTFIRE_INPUT && seeds[i].kind != HOTFIRE_PARAMETER) {
       return fail(model, HOTFIRE_WRONG_USE, "seed %zu: allowed: HOTFIRE_INPUT, HOTFIRE_PARAMETER", i);
@@ -272,11 +288,17 @@ hotfire_status hotfire_save(hotfire_model* model, void* bytes, size_t size) {
   if (size < hotfire_state_size(model)) {
     return fail(model, HOTFIRE_WRONG_USE, "hotfire_save: %zu bytes; allowed: at least %zu", size, hotfire_state_size(model));
   }
+  if (bytes == nullptr) {
+    return refuse_null(model, "hotfire_save");
+  }
   hotfire::interface::save(*model->plant, model->started, static_cast<std::byte*>(bytes));
   return HOTFIRE_OK;
 }
 
 hotfire_status hotfire_load(hotfire_model* model, const void* bytes, size_t size) {
+  if (bytes == nullptr) {
+    return refuse_null(model, "hotfire_load");
+  }
   const std::string_view broken =
       hotfire::interface::broken_state(*model->plant, std::span(static_cast<const std::byte*>(bytes), size));
   if (!broken.empty()) {

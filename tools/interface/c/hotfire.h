@@ -34,7 +34,8 @@
  *
  * Errors. A function that can fail returns a status. hotfire_message has the sentence: what is wrong, the value, and what
  * is allowed; the functions that open a model write it to a buffer of the caller. After an error the model is as it was
- * before the call, except after HOTFIRE_RAN_AWAY.
+ * before the call, except after HOTFIRE_RAN_AWAY. `model` must not be NULL except in hotfire_close. Any other pointer may be
+ * NULL where the call says so or its count is 0, and is refused with HOTFIRE_WRONG_USE elsewhere.
  *
  * Licence: Apache-2.0.
  */
