@@ -42,6 +42,8 @@ struct InterlockInputs {
   bool start_changed = false;  ///< as `arm_changed`
   bool stop = false;           ///< acts while it is on; also when the profile has ended
   bool at_rest = false;        ///< every actuator is at rest
+  /// What was switched off still reads on: a press to arm is refused. It is no fault before `read_back_cycles`.
+  bool supply_still_on = false;
 };
 
 /// Everything that an interlock remembers from one cycle to the next. The default is what a program starts with.
@@ -114,7 +116,7 @@ constexpr RigState next_state(const InterlockSettings& settings, const Interlock
 /// 1. A cause that is present while anything is driven makes the rig `faulted` in the same cycle; nothing is driven any
 /// more. Those of `kFaultsOfASafeRig` do so in `safe` too.
 /// 2. Nothing leaves `faulted` or `safe` but a person's arming: a press of the arm button (`press`), from its beginning to
-/// its end in that state, with no cause present and no stop asked for meanwhile.
+/// its end in that state, with no cause present, no stop asked for and the supply read back as off meanwhile.
 /// 3. `armed` to `running`: a press of the start button that begins no sooner than `least_armed` after the arming. After
 /// `most_armed` the rig is `safe` again.
 /// 4. `stop` brings `armed` to `safe` and `running` to `stopping`, which ends in `safe` when the actuators are at rest, or
@@ -129,7 +131,7 @@ constexpr InterlockDecision decide(const InterlockSettings& settings, InterlockM
                              ? memory.arm_contact
                              : settled(memory.start_contact, inputs.start, inputs.start_changed, settings.debounce);
   const bool driven = drives(memory.state);
-  const bool forbidden = inputs.causes.any() || inputs.stop;
+  const bool forbidden = inputs.causes.any() || inputs.stop || (!driven && inputs.supply_still_on);
   const Press arm =
       driven ? Press::none : press(memory.arm, memory.arm_contact, true, forbidden, {1, settings.longest_press});
   const Press start = memory.state != RigState::armed

@@ -79,8 +79,12 @@ class Lab {
       advance();
     }
     const bool stop = inputs.stop || (before == RigState::running && completed_);
+    const bool at_rest = still_cycles_ >= kStillCycles;
     outputs_.interlock = interlock_.step({look(inputs), inputs.arm, inputs.arm_changed, inputs.start, inputs.start_changed,
-                                          stop, still_cycles_ >= kStillCycles});
+                                          stop, at_rest, inputs.rig.supply_reads_other});
+    if (before == RigState::stopping && outputs_.interlock.state == RigState::safe) {
+      came_to_rest_ = at_rest;
+    }
     if (before != RigState::faulted && outputs_.interlock.fault_out) {
       ++fault_counts_[static_cast<std::size_t>(outputs_.interlock.first)];
     }
@@ -105,6 +109,8 @@ class Lab {
   }
   /// The whole profile has been run since the last arming.
   bool completed() const noexcept { return completed_; }
+  /// False if the time to stop was over before every piston was at rest, since the last arming.
+  bool came_to_rest() const noexcept { return came_to_rest_; }
   std::uint64_t armings() const noexcept { return armings_; }
   /// How often a fault was the first that made the rig faulted.
   std::uint64_t times_first(Fault fault) const noexcept { return fault_counts_[static_cast<std::size_t>(fault)]; }
@@ -140,6 +146,7 @@ class Lab {
     time_ = 0.0;
     at_begin_ = false;
     completed_ = false;
+    came_to_rest_ = true;
     ++armings_;
   }
 
@@ -192,6 +199,7 @@ class Lab {
   double time_ = 0.0;
   bool at_begin_ = false;
   bool completed_ = false;
+  bool came_to_rest_ = true;
 };
 
 }  // namespace hotfire::firmware

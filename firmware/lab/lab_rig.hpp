@@ -33,13 +33,19 @@ namespace hotfire::firmware {
 ///
 /// When driving ends, a command that is still before the bus one cycle later is taken back with `stop`, so that it does not
 /// leave when the bus can be used again. Where the kernel refuses that, it is asked again every kTakeBackEveryNs, and until
-/// it does so the rig is faulted. After bus-off, down or a command that was taken back, the first press of the arm button,
-/// which the interlock refuses, takes the bus into use again, with what is heard from then on, and the next one arms.
+/// it does so the rig is faulted.
+///
+/// The program may end (`ended`) when that is decided, the lines are set and the read-backs agree with them. It does not
+/// wait for that longer than kMostLeavingNs, or the time that a read-back may take if that is longer. After bus-off, down or
+/// a command that was taken back, the first press of the arm button, which the interlock refuses, takes the bus into use
+/// again, with what is heard from then on, and the next one arms.
 template <hal::CanBus Can, hal::GpioLines Gpio, hal::Clock Clock>
 class LabRig {
  public:
   /// How often the kernel is asked for a command that it has not given back.
   static constexpr std::int64_t kTakeBackEveryNs = 100'000'000;
+  /// How long the end of the program waits at most for lines, read-backs and a command that the kernel has not given back.
+  static constexpr std::int64_t kMostLeavingNs = 1'000'000'000;
 
   /// `wiring`: where the inputs of the lab are among those of `gpio`.
   LabRig(Lab& lab, Can& can, Gpio& gpio, const LabGpio& wiring, Clock& clock, can::Layout layout,
@@ -55,7 +61,9 @@ class LabRig {
         echo_(piston_messages_),
         sync_(can::sync::kMessage, period_ns),
         heartbeat_(can::heartbeat::kMessage, period_ns),
-        take_back_every_(std::max<std::int64_t>(1, kTakeBackEveryNs / period_ns)) {
+        take_back_every_(std::max<std::int64_t>(1, kTakeBackEveryNs / period_ns)),
+        most_leaving_(std::max<std::uint64_t>(static_cast<std::uint64_t>(kMostLeavingNs / period_ns),
+                                              lab.limits().read_back_cycles + kReadBackLag)) {
     for (std::size_t i = 0; i < messages_; ++i) {
       budgets_[i] = {message(i), period_ns};
     }
@@ -80,15 +88,20 @@ class LabRig {
   void stop_after(std::uint64_t cycles) noexcept { most_cycles_ = cycles; }
 
   /// Sets every output to off, whatever the interlock says: when the loop has ended. False if they cannot be set.
-  bool drop_lines() noexcept {
+  /// `hold_fault`: all but the fault line of a rig that is faulted.
+  bool drop_lines(bool hold_fault = false) noexcept {
     constexpr int kTries = 3;
+    const bool fault = hold_fault && lab_.outputs().interlock.fault_out;
     for (int i = 0; i < kTries; ++i) {
-      if (gpio_.try_write(0)) {
+      if (gpio_.try_write(fault ? 1U << kFault : 0U)) {
         return true;
       }
     }
     return false;
   }
+
+  /// Whether a command may still be before the bus: it must leave no more.
+  bool may_have_command_before_bus() const noexcept { return drove_ || take_back_refused_; }
 
   bool try_receive_command(hal::Command&) noexcept {
     const std::int64_t now = clock_.now_ns();
@@ -130,8 +143,8 @@ class LabRig {
       }
       not_taken_ = 0;
       sent_ns_ = 0;
-      ended_.store(inputs_.stop || lab_.completed(), std::memory_order_relaxed);
     }
+    note_end(interlock.drive);
     return taken;
   }
 
@@ -159,6 +172,8 @@ class LabRig {
   static constexpr double kNode = 1.0;
   /// A driver that confirms a frame a little late is no fault; one that does so twice in a row is.
   static constexpr unsigned kMostNotTaken = 2;
+  /// A cycle reads back what the cycle before has set.
+  static constexpr std::uint64_t kReadBackLag = 2;
 
   /// A count of what should not be.
   class Growth {
@@ -282,6 +297,16 @@ class LabRig {
     }
   }
 
+  /// Whether the program may end after this cycle.
+  void note_end(bool driven) noexcept {
+    undriven_ = driven ? 0 : undriven_ + 1;
+    const bool wanted = !driven && (inputs_.stop || lab_.completed());
+    leaving_ = wanted ? leaving_ + 1 : 0;
+    const bool reads_as_set = !inputs_.rig.supply_reads_other && !inputs_.rig.fault_line_reads_other;
+    const bool is_left = lines_set_ && !may_have_command_before_bus() && undriven_ >= kReadBackLag && reads_as_set;
+    ended_.store(wanted && (is_left || leaving_ > most_leaving_), std::memory_order_relaxed);
+  }
+
   void set_lines(const InterlockOutputs& interlock) noexcept {
     beat_ = !beat_;
     set_ =
@@ -352,6 +377,7 @@ class LabRig {
   can::PeriodicFrame sync_;
   can::PeriodicFrame heartbeat_;
   std::int64_t take_back_every_;  ///< cycles
+  std::uint64_t most_leaving_;    ///< cycles
   const Recorder* recorder_ = nullptr;
   const std::atomic<bool>* stop_asked_ = nullptr;
   std::atomic<bool> ended_{false};
@@ -380,6 +406,8 @@ class LabRig {
   bool taken_back_ = false;
   bool take_back_refused_ = false;
   std::int64_t since_take_back_ = 0;  ///< cycles
+  std::uint64_t undriven_ = 0;        ///< cycles since anything was driven
+  std::uint64_t leaving_ = 0;         ///< cycles since the program may end but for what is still to be seen off
 };
 
 }  // namespace hotfire::firmware

@@ -119,6 +119,8 @@ void add_lab(Json& json, const LabAccount& lab) {
   json.add("state", kRigStates[static_cast<std::size_t>(lab.state)]);
   json.add("armings", lab.armings);
   json.add("completed", lab.completed);
+  json.add("came_to_rest", lab.came_to_rest);
+  json.add("lines_dropped", lab.lines_dropped);
   json.add("first_fault", static_cast<int>(lab.first));
   json.open("ended_driving");
   for (const FaultText& fault : kFaults) {

@@ -79,13 +79,13 @@ std::optional<hal::Failure> CanSession::refuse_without_take_back() {
       "AmbientCapabilities= of its unit"};
 }
 
-bool CanSession::leave() {
+bool CanSession::leave(bool may_wait) {
   constexpr std::int64_t kFrameNs = 1'000'000;
   constexpr int kMostFrames = 20;
   constexpr std::int64_t kAskAgainNs = 100'000'000;
   constexpr int kMostAsked = 10;
   const hal::PosixClock clock;
-  for (int i = 0; i < kMostFrames && socket_.anything_pending(); ++i) {
+  for (int i = 0; may_wait && i < kMostFrames && socket_.anything_pending(); ++i) {
     clock.sleep_until_ns(clock.now_ns() + kFrameNs);
     socket_.receive(clock.now_ns());
   }
@@ -95,9 +95,12 @@ bool CanSession::leave() {
     }
     clock.sleep_until_ns(clock.now_ns() + kAskAgainNs);
   }
-  complain({"a frame is still before " + options_.bus + " and cannot be taken back",
-            "'ip link set " + options_.bus + " down'; the program may do that itself with CAP_NET_ADMIN"});
   return false;
+}
+
+hal::Failure CanSession::not_left() const {
+  return {"a frame is still before " + options_.bus + " and cannot be taken back",
+          "'ip link set " + options_.bus + " down'; the program may do that itself with CAP_NET_ADMIN"};
 }
 
 BusAccount CanSession::account() const {

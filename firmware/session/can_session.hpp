@@ -24,10 +24,12 @@ class CanSession {
   int open();
 
   /// Sees to it that nothing that was handed to the bus leaves after the program: a command that nobody has acknowledged
-  /// must not move anything when somebody does. A frame that is on its way is given the time it takes; what is left is taken
-  /// back with the interface, and the kernel asked for a second if it refuses that. False, and a complaint, if it still
+  /// must not move anything when somebody does. If it `may_wait`, a frame that is on its way is given the time it takes.
+  /// What is left is taken back with the interface, and the kernel asked for a second if it refuses that. False if it still
   /// does.
-  bool leave();
+  bool leave(bool may_wait = true);
+  /// What there is to do then.
+  hal::Failure not_left() const;
 
   /// Whether this program may not take the interface down, which alone takes a command back: said before anything is sent.
   std::optional<hal::Failure> refuse_without_take_back();

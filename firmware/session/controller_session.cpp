@@ -24,6 +24,7 @@ RecordedPlant shown(const ControllerOptions& options) {
 }  // namespace
 
 int run(const ControllerOptions& options) {
+  stop_on_signals();
   using Clock = hal::PosixClock;
   using Bus = can::ControllerBus<hal::SocketCan, Clock>;
   const can::Layout layout = frame_layout(options);
@@ -64,7 +65,11 @@ int run(const ControllerOptions& options) {
     session.output = "commands";
     session.max_lost = options.max_lost;
     RunEnd end = end_with(nullptr, live, complete);
-    end.make_safe = [&] { can_session.leave(); };
+    end.make_safe = [&] {
+      if (!can_session.leave()) {
+        complain(can_session.not_left());
+      }
+    };
     return run_loop(*loop, session, end);
   };
   if (!options.lockstep) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "firmware/image/image_entries.hpp"
+#include "firmware/lab/lab_end.hpp"
 #include "firmware/lab/lab_image.hpp"
 #include "firmware/lab/lab_recorder.hpp"
 #include "firmware/lab/lab_rig.hpp"
@@ -12,6 +13,7 @@
 #include "hal/linux/can_bit_rates.hpp"
 #include "hal/linux/gpiod_lines.hpp"
 #include "hal/linux/posix_clock.hpp"
+#include "hal/linux/simulated_gpio.hpp"
 
 namespace hotfire::firmware {
 namespace {
@@ -32,9 +34,10 @@ RecordedPlant recorded(const Lab& lab, const std::string& image) {
   return plant;
 }
 
-LabAccount account_of(const Lab& lab, bool left_the_bus) {
+LabAccount account_of(const Lab& lab, const LabEnd& end) {
   const InterlockOutputs& interlock = lab.outputs().interlock;
-  LabAccount account{interlock.state, lab.completed(), lab.armings(), {}, interlock.first, left_the_bus};
+  LabAccount account{interlock.state, lab.completed(),  lab.armings(),     {},
+                     interlock.first, end.left_the_bus, end.lines_dropped, lab.came_to_rest()};
   for (const FaultText& text : kFaults) {
     account.times_first[static_cast<std::size_t>(text.fault)] = lab.times_first(text.fault);
   }
@@ -51,12 +54,32 @@ std::optional<hal::Failure> refuse_unconfirmed(const LabOptions& options, const 
                       "read the profile, and confirm the digest that 'hotfire check' prints of it"};
 }
 
-std::optional<hal::Failure> refuse_rehearsal(const LabOptions& options) {
-  if (!options.rehearsal || hal::is_virtual_can(options.bus)) {
+/// A watchdog on the heartbeat trips kWindowCycles after its last edge (docs/heartbeat.md): the program must find a command
+/// that is too old before that, and name the fault.
+std::optional<hal::Failure> refuse_slow_limit(const LabOptions& options, const FaultLimits& limits) {
+  constexpr std::int64_t kWindowCycles = 5;
+  const std::int64_t longest_ns = (kWindowCycles - 1) * options.loop.period_ns;
+  if (options.rehearsal || limits.command_age_ns <= longest_ns) {
     return std::nullopt;
   }
-  return hal::Failure{"--rehearsal: " + options.bus + " is no virtual CAN interface",
-                      "a vcan, or leave --rehearsal out: what moves real actuators is no rehearsal"};
+  return hal::Failure{
+      text("limits.command_age = %g s is longer than 4 periods, %g s: a watchdog of the heartbeat would trip "
+           "before the program finds the fault",
+           static_cast<double>(limits.command_age_ns) * 1e-9, static_cast<double>(longest_ns) * 1e-9),
+      "a shorter command_age in the profile, or a longer --period-us; see docs/heartbeat.md"};
+}
+
+std::optional<hal::Failure> refuse_rehearsal(const LabOptions& options) {
+  if (options.rehearsal && !hal::is_virtual_can(options.bus)) {
+    return hal::Failure{"--rehearsal: " + options.bus + " is no virtual CAN interface",
+                        "a vcan, or leave --rehearsal out: what moves real actuators is no rehearsal"};
+  }
+  // A real line of a rehearsal would switch a real supply. A chip that is not there is refused later, with its remedy.
+  if (options.rehearsal && !hal::is_simulated_gpio(options.gpio).value_or(true)) {
+    return hal::Failure{"--rehearsal: " + options.gpio + " is no simulated GPIO chip",
+                        "a chip of gpio-sim, or leave --rehearsal out: what switches a real supply is no rehearsal"};
+  }
+  return std::nullopt;
 }
 
 BusAccount account_of(const CanSession& can_session, const Rig& rig) {
@@ -80,6 +103,9 @@ LiveCounters counters_of(CanSession& can_session, const Rig& rig) {
 }  // namespace
 
 int run(const LabOptions& given) {
+  // From here on a signal ends the program through the interlock and closes the recording.
+  stop_on_signals();
+  stop_instead_of_suspending();
   const double period = static_cast<double>(given.loop.period_ns) * 1e-9;
   const ReadText file = read_image_text(given.image);
   LabImage image = file.error.empty() ? parse_lab_image(file.text, given.image, period) : LabImage{{}, {}, file.error, {}};
@@ -88,6 +114,10 @@ int run(const LabOptions& given) {
     return kBadData;
   }
   if (const auto refused = refuse_unconfirmed(given, image.text)) {
+    complain(*refused);
+    return kWrongUse;
+  }
+  if (const auto refused = refuse_slow_limit(given, image.settings->limits)) {
     complain(*refused);
     return kWrongUse;
   }
@@ -145,7 +175,6 @@ int run(const LabOptions& given) {
   if (!options.recording.empty() || !options.live_view.empty()) {
     recorder = std::make_unique<LabRecorder<Rig, CycleOutputs>>(outputs, rig);
   }
-  stop_instead_of_suspending();
   rig.ask_to_stop_when(stop_asked);
   rig.stop_after(cycles == 0 ? 0 : cycles + options.loop.warm_up_cycles);
   const auto loop = std::make_unique<Loop<Rig, Rig, Clock, OwnPace<Clock>, LabRecorder<Rig, CycleOutputs>>>(
@@ -161,18 +190,24 @@ int run(const LabOptions& given) {
   session.recording_file = options.recording;
   session.max_dropped = options.max_dropped;
   session.max_lost = options.max_lost;
-  bool left_the_bus = false;
+  LabEnd reached;
   RunEnd end = end_with(recording.get(), live, [&](Session& result) {
-    result.lab = account_of(lab, left_the_bus);
+    result.lab = account_of(lab, reached);
     result.bus = account_of(can_session, rig);
   });
   end.make_safe = [&] {
-    if (!rig.drop_lines()) {
+    reached = make_lab_safe(
+        rig, [&](bool may_wait) { return can_session.leave(may_wait); },
+        [&] {
+          if (recorder) {
+            recorder->finish();
+          }
+        });
+    if (!reached.lines_dropped) {
       complain({"the lines of " + options.gpio + " cannot be set to off", "take the supply away by hand"});
     }
-    left_the_bus = can_session.leave();
-    if (recorder) {
-      recorder->finish();
+    if (!reached.left_the_bus) {
+      complain(can_session.not_left());
     }
   };
   return run_loop(*loop, session, end, rig.ended());

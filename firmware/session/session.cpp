@@ -1,33 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/session/session.hpp"
 
+#include <optional>
+
 #include "firmware/text/text.hpp"
 
 namespace hotfire::firmware {
 
-Verdict judge(const Session& session) {
-  const RunOptions& options = session.options;
+namespace {
+
+/// What became of the recording, beside a verdict that another cause has made bad.
+std::string also_recording(const Session& session) {
+  return session.recording != nullptr && session.recording->is_error
+             ? "; the recording failed too: " + session.recording->failure
+             : std::string();
+}
+
+/// What an end must have reached, whatever the limits; nothing if it has.
+std::optional<Verdict> bad_end(const Session& session) {
   const LoopResult& result = session.result;
   if (result.ending != Ending::completed && result.ending != Ending::asked) {
-    return {false, std::string(kEndings[static_cast<std::size_t>(result.ending)]),
-            result.ending == Ending::not_finite ? kBadData : kTiming};
+    return Verdict{false, std::string(kEndings[static_cast<std::size_t>(result.ending)]),
+                   result.ending == Ending::not_finite ? kBadData : kTiming};
   }
   if (session.lab && session.lab->first != Fault{}) {
     const FaultText& fault = text_of(session.lab->first);
-    return {false,
-            text("interlock: fault %d, %s: %s; see docs/faults.md", static_cast<int>(fault.fault), fault.name.data(),
-                 fault.meaning.data()),
-            kInterlock};
+    return Verdict{false,
+                   text("interlock: fault %d, %s: %s; see docs/faults.md", static_cast<int>(fault.fault), fault.name.data(),
+                        fault.meaning.data()),
+                   kInterlock};
+  }
+  if (session.lab && !session.lab->lines_dropped) {
+    return Verdict{false, "the lines cannot be set to off: take the supply away by hand", kHardware};
   }
   if (session.lab && !session.lab->left_the_bus) {
-    return {false, "a command is still before the bus: take the interface down", kHardware};
+    return Verdict{false, "a command is still before the bus: take the interface down", kHardware};
+  }
+  if (session.recording != nullptr && session.recording->is_error) {
+    return Verdict{false, "the recording failed: " + session.recording->failure, kHardware};
+  }
+  if (session.lab && !session.lab->came_to_rest) {
+    return Verdict{false, "a piston still moved when the stopping time was over", kBadVerdict};
   }
   if (session.lab && !session.lab->completed) {
-    return {false, "asked to stop before the profile had ended", kBadVerdict};
+    return Verdict{false, "asked to stop before the profile had ended", kBadVerdict};
   }
   if (session.bus && session.bus->state >= hal::CanState::bus_off) {
     const char* const state = hal::kCanStates[static_cast<std::size_t>(session.bus->state)];
-    return {false, session.bus->interface + " is " + state + ": correct the fault of the bus and start again", kHardware};
+    return Verdict{false, session.bus->interface + " is " + state + ": correct the fault of the bus and start again",
+                   kHardware};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Verdict judge(const Session& session) {
+  const RunOptions& options = session.options;
+  const LoopResult& result = session.result;
+  if (std::optional<Verdict> bad = bad_end(session)) {
+    bad->reason += bad->reason.starts_with("the recording failed") ? "" : also_recording(session);
+    return *bad;
   }
   Verdict verdict;
   const auto add = [&](bool met, const std::string& reason) {
@@ -58,10 +91,6 @@ Verdict judge(const Session& session) {
     add(dropped <= session.max_dropped,
         text("%llu cycles missing in the recording, allowed %llu", static_cast<unsigned long long>(dropped),
              static_cast<unsigned long long>(session.max_dropped)));
-  }
-  if (session.recording != nullptr && session.recording->is_error) {
-    add(false, "the recording failed: " + session.recording->failure);
-    verdict.status = kHardware;
   }
   if (verdict.reason.empty()) {
     verdict.reason = "no limit asked for";

@@ -26,6 +26,8 @@ struct LabAccount {
   FaultCounts times_first{};  ///< how often each was the first that made the rig faulted
   Fault first = Fault{};      ///< of those since the last arming; 0: none
   bool left_the_bus = true;   ///< no command is before the bus
+  bool lines_dropped = true;  ///< every output was set to off at the end
+  bool came_to_rest = true;   ///< false if the time to stop was over before every piston was at rest
 };
 
 /// All that is known when a loop has ended.

@@ -126,7 +126,11 @@ std::optional<Failure> GpiodLines::Request::take(const GpioSettings& settings) n
   }
   for (std::size_t i = 0; i < with_edges.lines.num_lines; ++i) {
     const int file = gpiod_line_event_get_fd(with_edges.lines.lines[i]);
-    fcntl(file, F_SETFL, fcntl(file, F_GETFL) | O_NONBLOCK);
+    const int flags_of_file = fcntl(file, F_GETFL);
+    // The loop would wait for an edge else.
+    if (flags_of_file < 0 || fcntl(file, F_SETFL, flags_of_file | O_NONBLOCK) != 0) {
+      return not_requested(settings.chip, "edges", errno);
+    }
   }
   std::array<int, GPIOD_LINE_BULK_MAX_LINES> values{};
   for (std::size_t i = 0; i < outputs.lines.num_lines; ++i) {

@@ -122,9 +122,15 @@ std::optional<Failure> RecordingFile::create(std::string_view header) {
     return failure(errno == EEXIST ? unnamed : path_);
   }
   if (flock(file_, LOCK_EX | LOCK_NB) != 0 || !write_all(file_, std::as_bytes(std::span(header)), {}) || fsync(file_) != 0 ||
-      !take_name(unnamed) || !sync_folder_of(path_)) {
+      !take_name(unnamed)) {
     const Failure why = failure(path_);
     unlink(unnamed.c_str());
+    return why;
+  }
+  if (!sync_folder_of(path_)) {
+    // The file would block its name for the next attempt.
+    const Failure why = failure(path_);
+    unlink(path_.c_str());
     return why;
   }
   if (older_ >= 0) {

@@ -20,7 +20,22 @@ constexpr double kPistonPerCommand = 0.5;
 /// A cause that ends driving in the cycle that is given it, whatever came before.
 bool has_cause(const firmware::ObservedRig& seen) {
   return seen.emergency_stop || !seen.hydraulic_enable || seen.bus_off || seen.bus_down || seen.bad_frame ||
-         seen.second_sender || seen.transmit_queue_full || seen.dropped_recording;
+         seen.second_sender || seen.transmit_queue_full || seen.dropped_recording || seen.not_authentic ||
+         seen.command_not_answered || seen.take_back_refused;
+}
+
+/// The same of what the sensors read: beyond a limit, not finite, or two readings that disagree.
+bool has_cause(const firmware::LabInputs& inputs, std::size_t actuators, double highest_position) {
+  constexpr double kDisagreement = 1e-3;
+  for (std::size_t i = 0; i < actuators; ++i) {
+    const auto& [first, second] = inputs.readings[i];
+    // A reading that is not finite fulfils neither.
+    if (!(std::abs(first) <= highest_position && std::abs(second) <= highest_position) ||
+        !(std::abs(first - second) <= kDisagreement)) {
+      return true;
+    }
+  }
+  return has_cause(inputs.rig);
 }
 
 }  // namespace
@@ -57,7 +72,8 @@ LawsOfARecording laws_of(const std::string& path, double highest_position, bool 
       result.running += state == RigState::running ? 1 : 0;
       seen_off = seen_on_after_off = false;
     }
-    expect(!drives(state) || !has_cause(inputs.rig), "drives, and was given the cause of a fault");
+    expect(!drives(state) || !has_cause(inputs, cycle.commands.size(), highest_position),
+           "drives, and was given the cause of a fault");
     expect(std::ranges::all_of(cycle.commands,
                                [&](double command) {
                                  return std::isfinite(command) &&

@@ -34,6 +34,7 @@ using firmware::Fault;
 
 constexpr const char* kDisk = "/disk";
 constexpr const char* kRecording = "/disk/lab.hfr";
+constexpr int kControllerCycles = 20;      ///< of a second controller, each with a command
 constexpr double kHighestPosition = 0.06;  ///< of the usual image [m]
 
 double number_of(const char* name, double otherwise) {
@@ -207,9 +208,9 @@ TEST_GROUP(LabSoak) {
       case 3:
         if (controller < 0 && now[Trouble::kBus] == nullptr) {
           // What it sends is not to be told from the lab's, but by the lab.
-          controller =
-              start("hotfire-rt controller --bus can0 --period-us 10000 --cycles 20 --warm-up 0 >/tmp/controller.out 2>&1");
-          injected += 1000;
+          controller = start("hotfire-rt controller --bus can0 --period-us 10000 --cycles " +
+                             std::to_string(kControllerCycles) + " --warm-up 0 >/tmp/controller.out 2>&1");
+          injected += kControllerCycles;
           ++happened["a second controller"];
         }
         break;

@@ -47,9 +47,9 @@ using Memories = std::unordered_set<InterlockMemory, HashOfMemory>;
 std::vector<InterlockInputs> every_input(const std::vector<FaultSet>& causes) {
   std::vector<InterlockInputs> inputs;
   for (const FaultSet cause : causes) {
-    for (unsigned bits = 0; bits < 64; ++bits) {
+    for (unsigned bits = 0; bits < 128; ++bits) {
       const auto bit = [bits](unsigned place) { return ((bits >> place) & 1U) != 0; };
-      inputs.push_back({cause, bit(0), bit(1), bit(2), bit(3), bit(4), bit(5)});
+      inputs.push_back({cause, bit(0), bit(1), bit(2), bit(3), bit(4), bit(5), bit(6)});
     }
   }
   return inputs;
@@ -106,8 +106,9 @@ bool leads_to_motion(const InterlockSettings& settings, InterlockMemory memory, 
 }
 
 /// What a line may do at a moment, by its place among the inputs: be off or on, steadily or after a change.
-constexpr std::array<bool InterlockInputs::*, 4> kLines{&InterlockInputs::arm, &InterlockInputs::start,
-                                                        &InterlockInputs::stop, &InterlockInputs::at_rest};
+constexpr std::array<bool InterlockInputs::*, 5> kLines{&InterlockInputs::arm, &InterlockInputs::start,
+                                                        &InterlockInputs::stop, &InterlockInputs::at_rest,
+                                                        &InterlockInputs::supply_still_on};
 
 /// Inputs of which one thing alone is other than before: a line, or a cause that comes or goes.
 std::vector<InterlockInputs> single_events(const InterlockInputs& before) {
@@ -183,6 +184,28 @@ TEST(InterlockProof, NothingIsDrivenUnlessTheArmButtonWasPressedAndLetGo) {
       CHECK(drives(before.state) || !drives(after) || after == RigState::armed);
       CHECK(after != RigState::running || before.state == RigState::running || before.state == RigState::armed);
     });
+  }
+}
+
+TEST(InterlockProof, NoPressDuringWhichTheSupplyStillReadOnArms) {
+  const std::vector<InterlockInputs> inputs = every_input({FaultSet{}});
+  for (const InterlockSettings& settings : kSettings) {
+    for (const InterlockMemory& memory : every_memory(settings)) {
+      if (drives(memory.state)) {
+        continue;
+      }
+      for (InterlockInputs input : inputs) {
+        input.supply_still_on = true;
+        InterlockMemory later = decide(settings, memory, input).memory;
+        CHECK(!drives(later.state));
+        // Nor if the press goes on, or ends, when it no longer does.
+        input = {};
+        for (std::uint32_t cycle = 0; cycle < settings.longest_press + settings.debounce + 2; ++cycle) {
+          later = decide(settings, later, input).memory;
+          CHECK(!drives(later.state));
+        }
+      }
+    }
   }
 }
 

@@ -47,6 +47,7 @@ class LabOnWire {
     before_lab();
     rig.try_receive_command(unused_);
     rig.step(unused_);
+    before_lines();
     rig.try_send_reading({});
     plant.receive(clock.now_ns());
     commands += plant.mailbox(0).fresh ? 1 : 0;
@@ -123,11 +124,12 @@ class LabOnWire {
   Wire::Node node{wire, own_.subscriptions, own_.senders};
   Wire::Node plant{wire, of_plant_.subscriptions, of_plant_.senders};
   Rig rig{lab, node, board, wiring, clock, layout, kPeriodNs};
-  double piston = 0.0;                        ///< what both of its readings say [m]
-  PerActuator load_pressures{};               ///< [Pa]
-  std::uint64_t commands = 0;                 ///< that have reached the plant
-  std::function<void()> before_lab = [] {};   ///< after the plant has sent
-  std::function<void()> after_cycle = [] {};  ///< before the clock goes on
+  double piston = 0.0;                         ///< what both of its readings say [m]
+  PerActuator load_pressures{};                ///< [Pa]
+  std::uint64_t commands = 0;                  ///< that have reached the plant
+  std::function<void()> before_lab = [] {};    ///< after the plant has sent
+  std::function<void()> before_lines = [] {};  ///< when it is decided what they say
+  std::function<void()> after_cycle = [] {};   ///< before the clock goes on
 };
 
 }  // namespace hotfire::firmware::test_lab

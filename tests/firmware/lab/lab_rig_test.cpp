@@ -172,6 +172,7 @@ TEST(LabRig, FaultWhileStoppingIsTheOneThatIsNamed) {
   cycle();
   CHECK(lab.outputs().interlock.first == Fault::emergency_stop);
   CHECK(!on(kSupply));
+  cycles(1);
   CHECK(rig.ended());
 }
 
@@ -189,6 +190,9 @@ TEST(LabRig, EndOfItsCyclesStopsWhatRunsThroughTheInterlock) {
     CHECK(!rig.ended());
     cycle();
   }
+  // The lines that were set are read back in the cycle after.
+  CHECK(!rig.ended());
+  cycle();
   CHECK(rig.ended());
   CHECK(lab.outputs().interlock.state == RigState::safe);
 }
@@ -215,9 +219,13 @@ TEST(LabRig, TakeBackThatTheKernelRefusesIsAFaultThatIsHeldUntilItIsGranted) {
   cycles(2);
   // It was not driven any more for any fault: the stop was asked for.
   CHECK(!on(kSupply));
-  cycles(3);
+  for (int i = 0; i < 3; ++i) {
+    CHECK(!rig.ended());
+    cycle();
+  }
   CHECK(lab.outputs().interlock.first == Fault::take_back_refused);
   CHECK(on(kFault));
+  CHECK(rig.may_have_command_before_bus());
   asked = false;
   press();
   CHECK(!on(kSupply));
@@ -234,6 +242,55 @@ TEST(LabRig, TakeBackThatTheKernelRefusesIsAFaultThatIsHeldUntilItIsGranted) {
   UNSIGNED_LONGS_EQUAL(sent, commands);
   press();
   CHECK(commands > sent);
+}
+
+TEST(LabRig, EndOfTheProgramWaitsASecondForACommandThatTheKernelKeeps) {
+  cycles(2);
+  press();
+  wire.hold();
+  wire.set_stop_refused(true);
+  cycle();
+  std::atomic<bool> asked{true};
+  rig.ask_to_stop_when(asked);
+  int waited = 0;
+  for (; waited < 3000 && !rig.ended(); ++waited) {
+    CHECK(waited < 4 || on(kFault));
+    cycle();
+  }
+  // A second, and the cycles in which it was found.
+  CHECK(waited >= 1000 && waited < 1010);
+  CHECK(lab.outputs().interlock.first == Fault::take_back_refused);
+}
+
+TEST(LabRig, LinesThatCannotBeSetInTheLastCycleAreSetAgainBeforeTheProgramEnds) {
+  std::atomic<bool> asked{false};
+  rig.ask_to_stop_when(asked);
+  run();
+  asked = true;
+  bool broken = true;
+  before_lines = [&] { board.set_broken(broken && !lab.outputs().interlock.drive); };
+  for (int i = 0; i < 300 && lab.outputs().interlock.drive; ++i) {
+    cycle();
+  }
+  cycles(5);
+  CHECK(on(kSupply));
+  CHECK(!rig.ended());
+  broken = false;
+  cycles(3);
+  CHECK(!on(kSupply));
+  CHECK(rig.ended());
+}
+
+TEST(LabRig, EndOfTheProgramWaitsASecondForLinesThatCannotBeSet) {
+  std::atomic<bool> asked{true};
+  rig.ask_to_stop_when(asked);
+  board.set_broken(true);
+  int waited = 0;
+  for (; waited < 3000 && !rig.ended(); ++waited) {
+    cycle();
+  }
+  CHECK(waited >= 1000 && waited < 1010);
+  CHECK(!rig.drop_lines());
 }
 
 namespace {
@@ -301,6 +358,52 @@ TEST(LabReadBack, ContactorThatIsWeldedIsAFaultOfASafeRigAndForbidsArming) {
   cycles(2);
   press();
   CHECK(on(kSupply));
+}
+
+TEST(LabReadBack, ContactorThatWeldsDuringTheProfileIsFoundBeforeTheProgramEnds) {
+  std::atomic<bool> asked{false};
+  rig.ask_to_stop_when(asked);
+  cycles(20);
+  run();
+  welded = true;
+  asked = true;
+  for (int i = 0; i < 3000 && !rig.ended(); ++i) {
+    cycle();
+  }
+  CHECK(rig.ended());
+  CHECK(lab.outputs().interlock.first == Fault::supply_read_back);
+  CHECK(on(kFault));
+}
+
+TEST(LabReadBack, SupplyThatFollowsEndsTheProgramAtOnce) {
+  std::atomic<bool> asked{false};
+  rig.ask_to_stop_when(asked);
+  cycles(20);
+  run();
+  asked = true;
+  int undriven = 0;
+  for (int i = 0; i < 3000 && !rig.ended(); ++i) {
+    cycle();
+    undriven += on(kSupply) ? 0 : 1;
+  }
+  CHECK(lab.outputs().interlock.faults == FaultSet());
+  CHECK(undriven <= 3);
+}
+
+TEST(LabReadBack, PressWhileTheSupplyStillReadsOnArmsNothing) {
+  cycles(20);
+  press();
+  CHECK(on(kSupply));
+  welded = true;
+  drive(kEmergencyStopReleased, false);
+  cycle();
+  drive(kEmergencyStopReleased, true);
+  // Sooner than the read-back is a fault.
+  press(kArm, 1);
+  CHECK(!on(kSupply));
+  CHECK(!lab.outputs().interlock.faults.has(Fault::supply_read_back));
+  cycles(20);
+  CHECK(lab.outputs().interlock.faults.has(Fault::supply_read_back));
 }
 
 TEST(LabReadBack, FaultLineThatDoesNotFollowIsAFault) {

@@ -65,6 +65,23 @@ TEST(Lab, AtTheEndOfTheProfileItComesToRestAndIsSafe) {
   CHECK(lab.completed());
 }
 
+TEST(Lab, PistonThatStillMovesWhenTheStoppingTimeIsOverIsSaid) {
+  for (const bool moves : {false, true}) {
+    press();
+    press();
+    inputs.stop = true;
+    for (int i = 0; i < 300 && state() != RigState::safe; ++i) {
+      const double position = moves && i % 2 == 0 ? 0.001 : 0.0;
+      inputs.readings[0] = {position, position};
+      step();
+    }
+    CHECK(state() == RigState::safe);
+    CHECK(lab.came_to_rest() != moves);
+    inputs.stop = false;
+    step();
+  }
+}
+
 TEST(Lab, EveryFaultEndsDrivingInItsCycleAndNothingMovesUntilArmedAgain) {
   const std::vector<std::pair<Fault, void (*)(LabInputs&)>> provoked{
       {Fault::stale_command, [](LabInputs& in) { in.rig.command_age_ns = 6 * kPeriodNs; }},

@@ -113,6 +113,28 @@ TEST(Report, FaultOfALabIsItsVerdictAlsoIfTheProfileHadBeenRunToItsEnd) {
   account = {RigState::safe, true, 1};
   account.left_the_bus = false;
   LONGS_EQUAL(kHardware, verdict(account).status);
+  account = {RigState::safe, true, 1};
+  account.lines_dropped = false;
+  LONGS_EQUAL(kHardware, verdict(account).status);
+  STRCMP_CONTAINS("take the supply away by hand", verdict(account).reason.c_str());
+  account = {RigState::safe, true, 1};
+  account.came_to_rest = false;
+  LONGS_EQUAL(kBadVerdict, verdict(account).status);
+  STRCMP_CONTAINS("a piston still moved", verdict(account).reason.c_str());
+}
+
+TEST(Report, RecordingThatFailedIsSaidAlsoIfALabWasStoppedOrFaulted) {
+  RecorderAccount recording{100, 99, "the disk is full"};
+  recording.is_error = true;
+  Session of_lab = session();
+  of_lab.recording = &recording;
+  of_lab.max_dropped = 100;
+  of_lab.lab = LabAccount{RigState::safe, false, 1};
+  LONGS_EQUAL(kHardware, judge(of_lab).status);
+  STRCMP_EQUAL("the recording failed: the disk is full", judge(of_lab).reason.c_str());
+  of_lab.lab->first = Fault::emergency_stop;
+  LONGS_EQUAL(kInterlock, judge(of_lab).status);
+  STRCMP_CONTAINS("; the recording failed too: the disk is full", judge(of_lab).reason.c_str());
 }
 
 TEST(Report, LoopStoppedByAnOverrunIsBadWhateverTheLimits) {

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/lab/lab_end.hpp"
 #include "firmware/lab/lab_recorder.hpp"
 #include "firmware/session/run_loop.hpp"
 #include "tests/firmware/lab/lab_on_wire.hpp"
@@ -24,7 +25,16 @@ TEST(EndOfRun, LinesAreDroppedBeforeTheRecordingIsClosedWhichADiskMayHoldUp) {
   CHECK(bench.on(kSupply));
   std::vector<std::string> order;
   RunEnd end;
-  end.make_safe = [&] { order.emplace_back(bench.rig.drop_lines() ? "lines" : "none"); };
+  end.make_safe = [&] {
+    make_lab_safe(
+        bench.rig,
+        [&](bool) {
+          CHECK(!bench.on(kSupply));
+          order.emplace_back("bus");
+          return true;
+        },
+        [&] { order.emplace_back("last cycle"); });
+  };
   end.close_recording = [&] {
     // A disk that stalls would hold the program here.
     CHECK(!bench.on(kSupply));
@@ -33,7 +43,47 @@ TEST(EndOfRun, LinesAreDroppedBeforeTheRecordingIsClosedWhichADiskMayHoldUp) {
   };
   end.complete = [&](Session&) { order.emplace_back("complete"); };
   end_run(session, end, watchdog);
-  CHECK((order == std::vector<std::string>{"lines", "recording", "complete"}));
+  CHECK((order == std::vector<std::string>{"bus", "last cycle", "recording", "complete"}));
+}
+
+TEST(EndOfRun, FaultLineOfAFaultedRigIsHeldUntilTheBusIsLeft) {
+  test_lab::LabOnWire bench(test_lab::settings());
+  bench.cycles(2);
+  bench.press();
+  bench.wire.hold();
+  bench.cycle();
+  bench.drive(kEmergencyStopReleased, false);
+  bench.cycle();
+  // The command of the cycle before may still be before the bus.
+  bool asked = false;
+  const LabEnd end = make_lab_safe(
+      bench.rig,
+      [&](bool may_wait) {
+        asked = true;
+        CHECK(!may_wait);
+        CHECK(bench.on(kFault));
+        CHECK(!bench.on(kSupply));
+        return false;
+      },
+      [&] { UNSIGNED_LONGS_EQUAL(0, bench.board.outputs()); });
+  CHECK(asked);
+  CHECK(end.lines_dropped);
+  CHECK(!end.left_the_bus);
+}
+
+TEST(EndOfRun, LinesThatCannotBeSetAreSaid) {
+  test_lab::LabOnWire bench(test_lab::settings());
+  bench.cycles(2);
+  bench.board.set_broken(true);
+  const LabEnd end = make_lab_safe(
+      bench.rig,
+      [](bool may_wait) {
+        CHECK(may_wait);
+        return true;
+      },
+      [] {});
+  CHECK(!end.lines_dropped);
+  CHECK(end.left_the_bus);
 }
 
 TEST(EndOfRun, TheLastCycleIsRecordedWithTheFaultThatEndedIt) {
