@@ -265,7 +265,7 @@ TEST(LabRig, EndOfTheProgramWaitsASecondForACommandThatTheKernelKeeps) {
 TEST(LabRig, LinesThatCannotBeSetInTheLastCycleAreSetAgainBeforeTheProgramEnds) {
   std::atomic<bool> asked{false};
   rig.ask_to_stop_when(asked);
-  run();
+  LabOnWire::run();
   asked = true;
   bool broken = true;
   before_lines = [&] { board.set_broken(broken && !lab.outputs().interlock.drive); };
@@ -364,7 +364,7 @@ TEST(LabReadBack, ContactorThatWeldsDuringTheProfileIsFoundBeforeTheProgramEnds)
   std::atomic<bool> asked{false};
   rig.ask_to_stop_when(asked);
   cycles(20);
-  run();
+  LabOnWire::run();
   welded = true;
   asked = true;
   for (int i = 0; i < 3000 && !rig.ended(); ++i) {
@@ -379,7 +379,7 @@ TEST(LabReadBack, SupplyThatFollowsEndsTheProgramAtOnce) {
   std::atomic<bool> asked{false};
   rig.ask_to_stop_when(asked);
   cycles(20);
-  run();
+  LabOnWire::run();
   asked = true;
   int undriven = 0;
   for (int i = 0; i < 3000 && !rig.ended(); ++i) {
