@@ -67,14 +67,14 @@ inline constexpr auto kFaults = std::to_array<FaultText>({
     {Fault::recorder_full, "recorder full", "cycles are no longer recorded"},
     {Fault::take_back_refused, "take-back refused",
      "a command is still before the bus and the kernel does not take it back"},
-    {Fault::supply_read_back, "supply read-back", "the supply is on while it is commanded off, or off while it is on"},
-    {Fault::fault_read_back, "fault-line read-back", "the fault line does not carry what it is commanded"},
+    {Fault::supply_read_back, "supply read-back", "the supply is on while commanded off, or off while commanded on"},
+    {Fault::fault_read_back, "fault-line read-back", "the fault line differs from its commanded state"},
     {Fault::speed, "speed", "an actuator moves faster than its limit"},
     {Fault::load_pressure, "load pressure", "the load pressure of an actuator is beyond its limit"},
     {Fault::second_sender, "second sender", "two nodes send the frames of one message"},
-    {Fault::command_not_answered, "command not answered", "a node does not say that it has the newest commands"},
-    {Fault::heartbeat_lost, "heartbeat lost", "the controller has stopped giving signs of life"},
-    {Fault::not_authentic, "not authentic", "a frame comes from who has not the key, or is a replayed one"},
+    {Fault::command_not_answered, "command not answered", "a node does not confirm the newest commands"},
+    {Fault::heartbeat_lost, "heartbeat lost", "the controller sends no HEARTBEAT any more"},
+    {Fault::not_authentic, "not authentic", "a frame has no valid authentication code, or is a replay"},
 });
 
 /// Of a fault of the list.

@@ -14,6 +14,7 @@
 #include "firmware/can/message_follower.hpp"
 #include "firmware/can/periodic_frame.hpp"
 #include "firmware/lab/lab.hpp"
+#include "firmware/lab/lab_end.hpp"
 #include "firmware/lab/lab_lines.hpp"
 #include "firmware/recording/recorder.hpp"
 #include "hal/can.hpp"
@@ -35,17 +36,15 @@ namespace hotfire::firmware {
 /// leave when the bus can be used again. Where the kernel refuses that, it is asked again every kTakeBackEveryNs, and until
 /// it does so the rig is faulted.
 ///
-/// The program may end (`ended`) when that is decided, the lines are set and the read-backs agree with them. It does not
-/// wait for that longer than kMostLeavingNs, or the time that a read-back may take if that is longer. After bus-off, down or
-/// a command that was taken back, the first press of the arm button, which the interlock refuses, takes the bus into use
-/// again, with what is heard from then on, and the next one arms.
+/// The program may end (`ended`) when that is decided, the lines are set and the read-backs agree (`LabLeaving`).
+///
+/// After bus-off, down or a command that was taken back, the first press of the arm button, which the interlock refuses,
+/// takes the bus into use again, with what is heard from then on, and the next one arms.
 template <hal::CanBus Can, hal::GpioLines Gpio, hal::Clock Clock>
 class LabRig {
  public:
   /// How often the kernel is asked for a command that it has not given back.
   static constexpr std::int64_t kTakeBackEveryNs = 100'000'000;
-  /// How long the end of the program waits at most for lines, read-backs and a command that the kernel has not given back.
-  static constexpr std::int64_t kMostLeavingNs = 1'000'000'000;
 
   /// `wiring`: where the inputs of the lab are among those of `gpio`.
   LabRig(Lab& lab, Can& can, Gpio& gpio, const LabGpio& wiring, Clock& clock, can::Layout layout,
@@ -62,8 +61,7 @@ class LabRig {
         sync_(can::sync::kMessage, period_ns),
         heartbeat_(can::heartbeat::kMessage, period_ns),
         take_back_every_(std::max<std::int64_t>(1, kTakeBackEveryNs / period_ns)),
-        most_leaving_(std::max<std::uint64_t>(static_cast<std::uint64_t>(kMostLeavingNs / period_ns),
-                                              lab.limits().read_back_cycles + kReadBackLag)) {
+        leaving_(period_ns, lab.limits().read_back_cycles) {
     for (std::size_t i = 0; i < messages_; ++i) {
       budgets_[i] = {message(i), period_ns};
     }
@@ -144,7 +142,9 @@ class LabRig {
       not_taken_ = 0;
       sent_ns_ = 0;
     }
-    note_end(interlock.drive);
+    const bool seen_off = lines_set_ && !may_have_command_before_bus() && !inputs_.rig.supply_reads_other &&
+                          !inputs_.rig.fault_line_reads_other;
+    ended_.store(leaving_.may_end(interlock.drive, inputs_.stop || lab_.completed(), seen_off), std::memory_order_relaxed);
     return taken;
   }
 
@@ -172,8 +172,6 @@ class LabRig {
   static constexpr double kNode = 1.0;
   /// A driver that confirms a frame a little late is no fault; one that does so twice in a row is.
   static constexpr unsigned kMostNotTaken = 2;
-  /// A cycle reads back what the cycle before has set.
-  static constexpr std::uint64_t kReadBackLag = 2;
 
   /// A count of what should not be.
   class Growth {
@@ -297,16 +295,6 @@ class LabRig {
     }
   }
 
-  /// Whether the program may end after this cycle.
-  void note_end(bool driven) noexcept {
-    undriven_ = driven ? 0 : undriven_ + 1;
-    const bool wanted = !driven && (inputs_.stop || lab_.completed());
-    leaving_ = wanted ? leaving_ + 1 : 0;
-    const bool reads_as_set = !inputs_.rig.supply_reads_other && !inputs_.rig.fault_line_reads_other;
-    const bool is_left = lines_set_ && !may_have_command_before_bus() && undriven_ >= kReadBackLag && reads_as_set;
-    ended_.store(wanted && (is_left || leaving_ > most_leaving_), std::memory_order_relaxed);
-  }
-
   void set_lines(const InterlockOutputs& interlock) noexcept {
     beat_ = !beat_;
     set_ =
@@ -377,7 +365,7 @@ class LabRig {
   can::PeriodicFrame sync_;
   can::PeriodicFrame heartbeat_;
   std::int64_t take_back_every_;  ///< cycles
-  std::uint64_t most_leaving_;    ///< cycles
+  LabLeaving leaving_;
   const Recorder* recorder_ = nullptr;
   const std::atomic<bool>* stop_asked_ = nullptr;
   std::atomic<bool> ended_{false};
@@ -406,8 +394,6 @@ class LabRig {
   bool taken_back_ = false;
   bool take_back_refused_ = false;
   std::int64_t since_take_back_ = 0;  ///< cycles
-  std::uint64_t undriven_ = 0;        ///< cycles since anything was driven
-  std::uint64_t leaving_ = 0;         ///< cycles since the program may end but for what is still to be seen off
 };
 
 }  // namespace hotfire::firmware

@@ -21,24 +21,25 @@ std::string text_of(const BusAccount& bus) {
            can::kLayouts[static_cast<std::size_t>(bus.layout)].data(), bus.authenticated ? ", authenticated" : "",
            hal::kCanStates[static_cast<std::size_t>(bus.state)], load_text(bus).c_str());
   result += text(
-      "  frames in     %llu received, %llu superseded, %llu foreign, %llu under own ids, %llu dropped by the kernel, %llu "
-      "of errors\n",
+      "  frames in     %llu received, %llu superseded, %llu foreign, %llu with an id of this program, %llu dropped by the "
+      "kernel, %llu "
+      "error frames\n",
       whole(frames.received), whole(frames.superseded), whole(frames.foreign), whole(frames.impostors),
       whole(frames.dropped), whole(frames.error_frames));
-  result += text("  frames out    %llu sent; not sent: %llu pending, %llu queue full, %llu bus unusable, %llu unsayable\n",
-                 whole(frames.sent), whole(frames.pending), whole(frames.queue_full), whole(frames.unusable),
-                 whole(bus.unsayable));
+  result += text(
+      "  frames out    %llu sent; not sent: %llu pending, %llu queue full, %llu bus unusable, %llu not encodable\n",
+      whole(frames.sent), whole(frames.pending), whole(frames.queue_full), whole(frames.unusable), whole(bus.unsayable));
   for (const MessageAccount& message : bus.messages) {
     const can::MessageCounters& counters = message.counters;
     result += text(
-        "  %s: %llu taken, %llu superseded, %llu lost, %llu repeated, %llu out of order, %llu too many, %llu refused, %llu "
+        "  %s: %llu taken, %llu superseded, %llu lost, %llu repeated, %llu out of order, %llu surplus, %llu refused, %llu "
         "not authentic\n",
         message.name.data(), whole(counters.taken), whole(counters.superseded), whole(counters.skipped),
         whole(counters.repeated), whole(counters.backward), whole(counters.too_many), whole(counters.refused),
         whole(counters.unauthentic));
   }
   if (bus.stale_cycles + bus.too_old > 0) {
-    result += text("  stale         %llu cycles without a command that is young enough, %llu commands taken in too late\n",
+    result += text("  stale         %llu cycles without a valid command, %llu commands taken in too late\n",
                    whole(bus.stale_cycles), whole(bus.too_old));
   }
   return result;

@@ -13,7 +13,6 @@
 #include "hal/linux/can_bit_rates.hpp"
 #include "hal/linux/gpiod_lines.hpp"
 #include "hal/linux/posix_clock.hpp"
-#include "hal/linux/simulated_gpio.hpp"
 
 namespace hotfire::firmware {
 namespace {

@@ -108,13 +108,13 @@ constexpr OptionLine kLines[] = {
         "`timing` runs the reference axis with every effect active"),
     line<read_bus>("--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface such as can0; default sim"),
     line<[](const std::string& value, LabOptions& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }>(
-        "--gpio", "CHIP", "the chip with its lines, by path, name or label"),
+        "--gpio", "CHIP", "GPIO chip, by path, name or label"),
     line<[](const std::string& value, LabOptions& o) { return o.confirm = value, std::string(); }>(
         "--confirm", "DIGEST", "the profile's digest, as `hotfire check` prints it to the person who has read the profile"),
     line<[](const std::string&, LabOptions& o) { return o.rehearsal = true, std::string(); }>(
         "--rehearsal", "",
-        "on a virtual CAN interface, also without real time, recording and --confirm, which a lab\n"
-        "has to have on a real one"),
+        "dry run on a virtual CAN interface and a simulated GPIO chip: needs no real time,\n"
+        "no --record and no --confirm"),
     line<read_layout>(
         "--layout", "L",
         "frames on a CAN bus: classic (two actuators at most), fd, classic-split or fd-split (both readings of a\n"
@@ -125,7 +125,7 @@ constexpr OptionLine kLines[] = {
         "--command-age-ms", "X", "greatest age of a command on a CAN bus; an older one gives no current; default 100"),
     line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }>(
         "--heartbeat-age-ms", "X",
-        "greatest age of a HEARTBEAT, after the first one; with an older one no command gives a current; default 50"),
+        "largest age of the last HEARTBEAT, after the first one; if it is older, the valves get no\ncurrent; default 50"),
     line<[](const std::string& value, CanOptions& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }>(
         "--key", "FILE",
         "commands and readings are authenticated with the key in this file, 32 hexadecimal digits; FD layouts only"),
@@ -171,7 +171,7 @@ constexpr OptionLine kLines[] = {
         "--load-pressure", "",
         "on a CAN bus: the pressure difference across every piston too, for a lab whose profile\nhas limits.load_pressure"),
     line<[](const std::string& value, PlantRunOptions& o) { return read_name(value, kPaceKinds, o.pace); }>(
-        "--sync", "S", "what gives the cycles: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)"),
+        "--sync", "S", "trigger of each cycle: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)"),
     line<[](const std::string& value, PlantRunOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
     }>("--max-missed-syncs", "N", "end after more than N in a row; default 10"),
@@ -185,7 +185,7 @@ constexpr OptionLine kLines[] = {
     line<[](const std::string&, ImageOptions& o) { return o.overwrite = true, std::string(); }>(
         "--overwrite", "", "replace an older file that --record names, which is refused otherwise"),
     line<[](const std::string& value, ImageOptions& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }>(
-        "--record-buffer-s", "X", "stall of the disk that the buffer covers; after it cycles are dropped; default 8"),
+        "--record-buffer-s", "X", "longest disk stall that the buffer covers [s]; then cycles are dropped; default 8"),
     line<[](const std::string& value, ImageOptions& o) {
       return read_integer(value, std::uint64_t{1}, std::uint64_t{1} << 24, o.record_max_mib);
     }>("--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384"),

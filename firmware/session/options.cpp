@@ -32,7 +32,8 @@ std::string modes_of(const OptionLine& line) {
 
 std::string help() {
   std::string result =
-      "The engine in real time: every period the newest command is read, the model stepped, its reading sent.\n\n"
+      "The plant in real time. In every period the program reads the newest command, steps the model and sends the\n"
+      "sensor readings.\n\n"
       "  hotfire plant --model simplex.toml --bus sim --cycles 10000 --cpu 1 --max-latency-us 200\n"
       "  hotfire timing --cycles 60000 --max-latency-us 100 --json\n"
       "  hotfire plant --model simplex.toml --record run.hfr\n"
@@ -60,10 +61,10 @@ std::string help() {
          "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
          "  --disturbances FILE    with `hotfire` only: record whose torque, force, vibration and thrust the plant plays\n"
          "  --help, --version\n\n"
-         "Ends on SIGINT, SIGTERM, SIGHUP and SIGQUIT with its result. Exit status: 0 good, 2 wrong use, 3 the bus cannot "
-         "be used or was "
-         "lost,\n"
-         "4 a limit is not met, stopped by an overrun, or no real time where it is required, 5 a lab's interlock, 6 the "
+         "Ends on SIGINT, SIGTERM, SIGHUP and SIGQUIT with its result. Exit status: 0 good, 1 bad verdict, stopped "
+         "profile or replay\n"
+         "that differs, 2 wrong use, 3 the bus cannot be used or was lost, 4 a limit is not met, stopped by an overrun, or "
+         "no real time where it is required, 5 a lab's interlock, 6 the "
          "image\n"
          "is refused or the plant's values are not finite.\n";
 }
@@ -88,7 +89,7 @@ std::string apply(const std::vector<std::string>& arguments, std::size_t& i, Opt
     return "unknown argument " + arguments[i];
   }
   if (!line->modes[options.index()]) {
-    return name + " is no option of " + std::string(mode_of(options)) + ", but of " + modes_of(*line);
+    return name + " is not an option of " + std::string(mode_of(options)) + "; it is an option of " + modes_of(*line);
   }
   const bool has_own_value = equals < arguments[i].size();
   if (line->value.empty()) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "hal/failure.hpp"
 #include "hal/gpio.hpp"
@@ -39,5 +41,12 @@ class GpiodLines {
 };
 
 static_assert(GpioLines<GpiodLines>);
+
+/// Whether the driver of a GPIO chip only simulates it (gpio-sim, gpio-mockup): its lines move nothing. Nothing if there is
+/// no such chip that may be opened. By path, name or label, as `GpiodLines` takes it.
+std::optional<bool> is_simulated_gpio(const std::string& chip);
+
+/// The same of a chip's folder below /sys/bus/gpio/devices.
+bool is_simulated_device(const std::filesystem::path& device);
 
 }  // namespace hotfire::hal

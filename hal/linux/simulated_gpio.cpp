@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/linux/simulated_gpio.hpp"
-
 #include <fcntl.h>
 #include <linux/gpio.h>
 #include <sys/ioctl.h>
@@ -9,6 +7,7 @@
 #include <system_error>
 
 #include "hal/linux/gpio_refusals.hpp"
+#include "hal/linux/gpiod_lines.hpp"
 
 namespace hotfire::hal {
 

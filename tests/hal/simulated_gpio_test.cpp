@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hal/linux/simulated_gpio.hpp"
+#include "hal/linux/gpiod_lines.hpp"
 
 #include <CppUTest/TestHarness.h>
 

@@ -117,7 +117,7 @@ Outcome ambient_sweep(const Bench& bench) {
   outcome.note =
       "One amplitude at a time, 90 frequencies 0.8 % apart, seen in the piston. The amplitude of the measured sweep is not "
       "published. Springs that only stiffen under load cannot ring lower under a vectoring sweep (6.5 Hz) than under a "
-      "hammer (6.75 Hz); a bearing that the sweep breaks loose and the hammer hardly can.";
+      "hammer (6.75 Hz). Friction can: the sweep breaks the bearing loose, and the hammer hardly does.";
   return outcome;
 }
 

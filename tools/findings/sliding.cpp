@@ -89,8 +89,9 @@ Outcome thrust_and_friction(const Bench& bench) {
   outcome.figures.push_back({"trim that full thrust adds", trim(full) - trim(0.0), 38.0, 53.0, "mdeg"});
   outcome.picture = trials::time_chart("F18: thrust from zero by halves to full", record, "pitch");
   outcome.note =
-      "One run of one file, its thrust a channel of the input. Friction is read from the load pressure: half of what it "
-      "differs by between both ways, so that what is viscous cancels between two thrusts. The trim is what a misaligned "
+      "One run of one file, its thrust a channel of the input. Friction is read from the load pressure. It is half of the "
+      "difference between the two directions of motion. Viscous damping cancels in the difference between two thrusts. The "
+      "trim is what a misaligned "
       "thrust and the bearing's give leave at zero command.";
   return outcome;
 }

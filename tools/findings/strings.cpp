@@ -134,9 +134,9 @@ Outcome string_potentiometers(const Bench& bench) {
                      false,
                      {{"error [mdeg rms]", {moved, carried}}}};
   outcome.note =
-      "Nine settled poses of up to 2 deg about both angles, give the affine fit, on the angles that they reached but for "
-      "the second row; then a test of 1 deg, "
-      "0.5 to 4 Hz, about both, both in the plant. Lag 2 ms, noise 20 um, quantisation 10 um. An anchor that is misplaced "
+      "The affine fit uses nine settled poses of up to 2 deg about both axes. It uses the reached angles; row 2 uses the "
+      "commanded ones. The test is a motion of 1 deg, 0.5 to 4 Hz, about both axes. Both run in the plant. Lag 2 ms, noise "
+      "20 um, quantisation 10 um. An anchor that is misplaced "
       "from the start is taken up by the fit; one that moves after it is not, and nor is a floor that the vehicle's modes "
       "move.";
   return outcome;

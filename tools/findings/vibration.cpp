@@ -147,10 +147,11 @@ Outcome friction_under_vibration(const Bench& bench) {
                      false,
                      {{"mean friction over its level", {sine, closed_sine}}}};
   outcome.note =
-      "\"Higher frequency content is more important\" [GF] holds for equal travel of the slip. Of equal speed the faster "
-      "vibration travels less, and what of it the bearing's torsion takes up does not slide: it lowers friction less. Of "
-      "equal torque on the engine its speed falls as one over the frequency, and so does what it takes from friction. "
-      "Without a travel of more than friction over torsional stiffness, 1.1 mrad here, vibration lowers nothing.";
+      "\"Higher frequency content is more important\" [GF] holds for equal amplitude of the slip. At equal slip velocity, "
+      "the "
+      "higher frequency has the smaller amplitude. The torsion of the bearing takes a larger part of it, so friction falls "
+      "less. At equal torque, the velocity falls as 1/f, and so does the reduction of friction. Amplitudes below 1.1 mrad "
+      "(friction over torsional stiffness) reduce no friction.";
   return outcome;
 }
 

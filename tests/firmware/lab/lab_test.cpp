@@ -73,7 +73,7 @@ TEST(Lab, PistonThatStillMovesWhenTheStoppingTimeIsOverIsSaid) {
     for (int i = 0; i < 300 && state() != RigState::safe; ++i) {
       const double position = moves && i % 2 == 0 ? 0.001 : 0.0;
       inputs.readings[0] = {position, position};
-      step();
+      lab.step(inputs);
     }
     CHECK(state() == RigState::safe);
     CHECK(lab.came_to_rest() != moves);

@@ -88,7 +88,7 @@ std::string summary(const explain::Result& result, const std::filesystem::path& 
                       "calibrated", "explained");
   text += error_rows(result.channels);
   for (const explain::HeldOutRecord& record : result.held_out_records) {
-    text += fmt::format("\n{}, held out\n", record.path);
+    text += fmt::format("\n{} (test record, --hold-out)\n", record.path);
     text += error_rows(record.channels);
   }
   if (result.baseline) {

@@ -77,7 +77,8 @@ void run_simulation(const SimulateOptions& options) {
 
 void add_simulate(CLI::App& program) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = program.add_subcommand("simulate", "Run a model open loop on the commands (or forces) of a record");
+  CLI::App* command = program.add_subcommand(
+      "simulate", "Simulate a model, its own position loop closed, under the commands (or forces) of a record");
   command->add_option("--model", options->model, "model file (.toml)")->required();
   command
       ->add_option("--input", options->input,

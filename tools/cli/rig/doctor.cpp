@@ -86,8 +86,8 @@ void add_doctor(CLI::App& program) {
       ->check(CLI::ExistingDirectory);
   command->add_flag("--json", options->json, "print the findings as JSON");
   command->footer(
-      "Example: hotfire doctor --cpu 1 --can can0 --line estop\nExit status: 0 nothing bad (advice is not), 1 something "
-      "is.");
+      "Example: hotfire doctor --cpu 1 --can can0 --line estop\nExit status: 0 no check failed (advice is "
+      "not a failure), 1 a check failed.");
   command->callback([options] {
     options->patient.root = options->root;
     examine(options->patient, options->json);

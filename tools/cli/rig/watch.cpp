@@ -38,10 +38,13 @@ void watch_until_stopped(const WatchOptions& options) {
 void add_watch(CLI::App& program) {
   const auto options = std::make_shared<WatchOptions>();
   CLI::App* command = program.add_subcommand("watch", "Show a running plant, lab or controller in a browser");
-  command->add_option("FILE", options->file, "file of its option --watch; the program may start later")->required();
-  command->add_option("--port", options->port, "of the page; 0: any that is free; default 8137");
+  command
+      ->add_option("FILE", options->file,
+                   "live-view file: the FILE of --watch of the running program, which may start later")
+      ->required();
+  command->add_option("--port", options->port, "TCP port of the page; 0: any free port; default 8137");
   command->add_option("--address", options->address,
-                      "number of the interface that the page is served at; default 127.0.0.1: this machine only. Anyone who "
+                      "IP address at which the page is served; default 127.0.0.1: this machine only. Anyone who "
                       "reaches another one can read it");
   command->footer(
       "Example: hotfire plant --model explained.toml --bus sim --watch /dev/shm/plant\n"

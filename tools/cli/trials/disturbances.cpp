@@ -89,11 +89,11 @@ void run_quiescent(const QuiescentOptions& options) {
 
 void add_hammer(CLI::App& program) {
   const auto options = std::make_shared<HammerOptions>();
-  CLI::App* command =
-      program.add_subcommand("hammer", "A blow on the engine with its actuator locked: frequency and damping");
+  CLI::App* command = program.add_subcommand(
+      "hammer", "Impact hammer test with the actuator locked: frequency and damping ratio of the free oscillation");
   add_trial_options(*command, options->trial);
   command->add_option("--impulse", options->blow.impulse, "angular momentum of the blow [N.m.s]")->capture_default_str();
-  command->add_option("--seconds", options->blow.seconds, "of the decay that are used [s]")
+  command->add_option("--seconds", options->blow.seconds, "length of the decay that is analysed [s]")
       ->check(CLI::Range(0.05, 1000.0))
       ->capture_default_str();
   command->footer(
@@ -109,14 +109,14 @@ void add_quiescent(CLI::App& program) {
   add_trial_options(*command, options->trial);
   command
       ->add_option("--torque-density", options->ambient.torque_density,
-                   "one-sided density of the random torque on the engine [(N.m)^2/Hz]")
+                   "one-sided power spectral density of the random torque on the engine [(N.m)^2/Hz]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--seconds", options->ambient.seconds, "length of the test [s]")
       ->check(CLI::Range(1.0, 10000.0))
       ->capture_default_str();
-  command->add_option("--seed", options->ambient.seed, "of the torque")->capture_default_str();
-  command->add_option("--segment", options->segment, "of the spectrum's average [s]")->capture_default_str();
+  command->add_option("--seed", options->ambient.seed, "seed of the random torque")->capture_default_str();
+  command->add_option("--segment", options->segment, "segment length of Welch's method [s]")->capture_default_str();
   command->add_option("--lowest", options->lowest, "lower end of the search for the peak [Hz]")->capture_default_str();
   command->add_option("--highest", options->highest, "upper end of the search for the peak [Hz]")->capture_default_str();
   command->footer(

@@ -75,7 +75,7 @@ void add_step(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("step", "Steps of the command: rise, overshoot, settling and hesitation of piston and engine");
   add_trial_options(*command, options->trial);
-  command->add_option("--amplitudes", options->amplitudes, "from zero and back, to either side [deg]")
+  command->add_option("--amplitudes", options->amplitudes, "step amplitudes, each to both sides and back to zero [deg]")
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--hold", options->hold, "duration of each step [s]; in a record, steps of at least half of it count")

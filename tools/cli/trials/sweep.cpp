@@ -125,7 +125,7 @@ void add_sweep(CLI::App& program) {
                    "driven as well, the other way round), sines, or multisine")
       ->check(CLI::IsMember({"green-run", "green-run-both", "sines", "multisine"}))
       ->capture_default_str();
-  command->add_option("--amplitudes", options->amplitudes, "of sines, one sweep each; of a multisine, its peak [deg]")
+  command->add_option("--amplitudes", options->amplitudes, "amplitude of each stepped sine, or peak of the multisine [deg]")
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--from", options->from, "lowest frequency of sines and multisine [Hz]")
@@ -134,20 +134,21 @@ void add_sweep(CLI::App& program) {
   command->add_option("--to", options->to, "highest frequency of sines and multisine [Hz]")
       ->check(CLI::Range(0.01, 200.0))
       ->capture_default_str();
-  command->add_option("--count", options->count, "frequencies of a sweep by sines")
+  command->add_option("--count", options->count, "number of frequencies of the stepped sine")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
   command->add_flag("--coarse", options->coarse,
-                    "sines: these frequencies alone, without a fine grid around each notch that is held until it settles");
+                    "sines: these frequencies alone, without a fine grid around the notch, each frequency of which is held "
+                    "until the modes settle");
   command->add_option("--lowest", options->goal.lowest, "lower end of the search for notch and peak [Hz]")
       ->capture_default_str();
   command->add_option("--highest", options->goal.highest, "upper end of the search for notch and peak [Hz]")
       ->capture_default_str();
-  command->add_option("--segment", options->goal.segment, "of a broadband record's analysis [s]")
+  command->add_option("--segment", options->goal.segment, "segment length of Welch's method [s]")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   command->add_option("--moment-arm", options->moment_arm,
-                      "gain of the piston is over command times this [m]; left out: the model's, or 1 for a record");
+                      "moment arm that normalises the piston gain [m]; default: that of the model, 1 for a record");
   command->footer(
       "Example: hotfire sweep --model lab.toml --profile sines --amplitudes 0.05,0.1,0.2,0.4 --from 4 --to 13 --picture "
       "bode.svg\n"

@@ -170,7 +170,9 @@ std::string factor(const std::string& key, double share) { return fmt::format("{
 
 std::string hardly_separated(const std::string& key, const std::vector<std::string>& others, double share) {
   return fmt::format(
-      "The data hardly separate these parameters. With {} larger by 1 %, {} fits nearly as well. {} alone is known to {}.",
+      "These estimates are strongly correlated. With {} larger by 1 %, {} gives nearly the same error. The relative "
+      "standard "
+      "deviation of {} alone is {}.",
       key, fmt::join(others, ", "), key, percent(share));
 }
 
@@ -179,7 +181,7 @@ std::string moves_along(const std::string& key, double rate) {
 }
 
 std::string not_determined(const std::vector<std::string>& keys) {
-  return fmt::format("The data say little about {}: the declared values are kept.", fmt::join(keys, ", "));
+  return fmt::format("The data do not determine {}. The declared values are kept.", fmt::join(keys, ", "));
 }
 
 std::string name_of(Combination combination) {

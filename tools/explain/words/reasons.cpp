@@ -7,10 +7,10 @@ namespace hotfire::explain::words {
 
 std::string_view text(Reason reason) noexcept {
   constexpr std::array<std::string_view, kReasons> texts{
-      "not fitted: no law that it contains reached the finalists",
+      "not fitted: none of its simpler laws was a finalist",
       "does not lower the BIC",
       "ranked below the finalists in screening",
-      "the model is as good without it: it only led the other effects to their final values",
+      "removed: the error is the same without it",
       "the model is as good without it since a later effect was added",
       "explains little beside a term of unknown law",
       ", but its signal falls where it should rise",
@@ -24,7 +24,7 @@ std::string_view text(Reason reason) noexcept {
 
 std::string text(LawChange change, const std::string& other) {
   constexpr std::array<std::string_view, kLawChanges> texts{
-      "has no parameter that the data leave open, in contrast to",
+      "is preferred, because the data determine all its parameters, unlike",
       "is better, with a later effect added, than",
       "explains more, with a later effect added, than",
       "with the later effects added, it explains as much as",

@@ -11,8 +11,9 @@ namespace hotfire::explain::words {
 
 std::string turned_mass(const std::string& record, double left_turned, double left) {
   return fmt::format(
-      "{}: the mass moves against its force. With the sign of one turned, a model leaves {:.3g} of position (rms, held-out "
-      "data), else {:.3g}. Position or force looks inverted. Turn its sign in the records; nothing is fitted to it",
+      "{}: the mass moves against its force. With one sign inverted, the rms error of position on held-out data is {:.3g}; "
+      "as "
+      "recorded it is {:.3g}. Position or force is probably inverted. Invert it in the record. Nothing was fitted",
       record, left_turned, left);
 }
 

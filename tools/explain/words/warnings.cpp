@@ -62,8 +62,8 @@ std::string excluded(const std::string& record, double from, double to) {
 
 std::string input_held(const std::string& record) {
   return fmt::format(
-      "{}: the input is missing in excluded rows, where its last value is held. If it moved there, exclude about a second "
-      "more, until the axis has settled.",
+      "{}: the input is missing in excluded rows, where its last value is held. If it moved there, exclude about 2 s more, "
+      "until the transient has decayed.",
       record);
 }
 

@@ -44,9 +44,9 @@ function independence({ independent }) {
 }
 
 function inputCorrelation(report) {
-  return smallCharts("What is left: correlation with the input", "How the residual follows what the input (command or force) " +
-    "was so much earlier. A residual that has nothing to do with it stays inside the grey band at 99 % of the lags; outside of the " +
-    "band something that the input does is still missing in the model.",
+  return smallCharts("What is left: correlation with the input", "Cross-correlation of the residual with the past input " +
+    "(command or force). A residual that is independent of the input is inside the grey band at 99 % of the lags. Outside the band, " +
+    "the model misses a response to the input.",
   correlationFigures(report, "input_correlation", { title: "correlation with the input", remark: independence,
     rangeOf: (values, band) => extent([...values, band, -band], 0.06) }));
 }

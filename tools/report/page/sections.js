@@ -10,8 +10,8 @@ const VERDICTS = {
   "unlisted-effect": ["Unlisted effect", "An effect is missing in the declared model, and none of the known effects explains it."],
   undecided: ["Undecided", "The search did not come to an end: more than noise is left, and nothing is known to explain it."],
 };
-const STAGES = [{ key: "before", title: "as declared", colour: "declared" },
-  { key: "calibrated", title: "calibrated", colour: "calibrated" }, { key: "after", title: "with the effects", colour: "explained" }];
+const STAGES = [{ key: "before", title: "declared model", colour: "declared" },
+  { key: "calibrated", title: "calibrated model", colour: "calibrated" }, { key: "after", title: "explained model", colour: "explained" }];
 
 // Friction laws that carry a name.
 const LAWS = { coulomb: "Coulomb", dahl: "Dahl", lugre: "LuGre" };
@@ -80,23 +80,23 @@ function zeroTable(records) {
   const rows = (records ?? []).flatMap((record) => Object.entries(record.channels ?? {})
     .filter(([, channel]) => Number.isFinite(channel.zero)).map(([name, channel]) => ({ record: record.path, name, ...channel })));
   if (!rows.length) return null;
-  return section("Zeros of the records", table([
+  return section("Sensor offsets of the records", table([
     { title: "record", cell: (row) => row.record },
     { title: "channel", cell: (row) => words(row.name) },
-    { title: "zero", number: true, cell: (row) => number(row.zero) },
+    { title: "offset", number: true, cell: (row) => number(row.zero) },
     { title: "noise", number: true, cell: (row) => number(row.noise) },
-  ], rows), paragraph("Measured minus modelled, in the channel's unit: of the record, not of the plant. A zero of the command " +
-    "shows in the same way.", "note"));
+  ], rows), paragraph("Measured minus modelled, in the channel's unit. An offset belongs to the record and not to the plant. An offset of the " +
+    "command has the same effect.", "note"));
 }
 
 /** On held-out blocks of the records, then on every record that was kept back whole. */
 const errorTables = (report) => [
   errorTable("Error on data that no fit has seen", report.channels),
-  paragraph("Of the model before its last fit, which takes the held-out blocks in as well: explained.toml is of that one.", "note"),
+  paragraph("These errors are those of the fit without the held-out blocks. explained.toml comes from a last fit to all blocks.", "note"),
   isFilled(report.baseline?.sentence) ? paragraph(report.baseline.sentence, report.baseline.better_than_explained ? "warning" : "note") : null,
   zeroTable(report.records),
   ...(report.held_out_records ?? []).map((record) =>
-    errorTable(`Error on ${record.path}, which neither fit nor choice has seen`, record.channels))];
+    errorTable(`Error on ${record.path}, which no fit and no decision has used`, record.channels))];
 
 /** The interval of a parameter; one from a profile carries a mark, for which `parameterTable` has a footnote. */
 function intervalOf(row) {
@@ -194,7 +194,7 @@ function calibration(report) {
   });
   return section("Declared parameters, calibrated", table([
     { title: "parameter", cell: (row) => [code(row.key), row.pressed ? element("div", {},
-      element("span", { class: "tag alert" }, "at the edge of its tolerance")) : ""] },
+      element("span", { class: "tag alert" }, "more than 2.5 tolerances from the declared value, or at a bound")) : ""] },
     { title: "declared", number: true, cell: (row) => row.before },
     { title: "calibrated", number: true, cell: (row) => row.text.value },
     { title: "unit", cell: (row) => row.text.unit },

@@ -4,8 +4,8 @@
 
 const MODELS = [
   { key: "declared", title: "declared model", colour: COLOURS.declared, width: 1.4 },
-  { key: "calibrated", title: "calibrated", colour: COLOURS.calibrated, width: 1.4, dashes: [6, 3] },
-  { key: "after", title: "with the effects", colour: COLOURS.explained, width: 1.4 },
+  { key: "calibrated", title: "calibrated model", colour: COLOURS.calibrated, width: 1.4, dashes: [6, 3] },
+  { key: "after", title: "explained model", colour: COLOURS.explained, width: 1.4 },
 ];
 
 // Wider than the models' lines, so that a model which lies on it leaves a dark edge.
