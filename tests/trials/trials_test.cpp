@@ -127,6 +127,17 @@ TEST(Trials, TheStiffnessOfASoftActuatorRisesWithTheAmplitudeToThatUnderALargeLo
   DOUBLES_EQUAL(1.6e8, before, 1e-4 * 1.6e8);
 }
 
+TEST(Trials, TheLoadSpringOfAVehicleWithoutItsThrustIsThatOfTheUnloadedStructure) {
+  VehicleFile vehicle;
+  TaosParameters parameters;
+  parameters.gimbals[0].bearing.thrust = parameters.gimbals[0].bearing.rated_thrust = 1.86e6;
+  parameters.gimbals[0].bearing.unloaded_structure = 0.4;
+  vehicle.parameters = parameters;
+  const double stiffness = parameters.axes[0].structure.stiffness;
+  DOUBLES_EQUAL(stiffness, load_spring_of(vehicle, "pitch").load.load_stiffness, 1e-9 * stiffness);
+  DOUBLES_EQUAL(0.4 * stiffness, load_spring_of(with_thrust(vehicle, 0.0), "pitch").load.load_stiffness, 1e-9 * stiffness);
+}
+
 TEST(Trials, TheLoadSpringOfAVehicleHasTheModesOfItsAttachPointInSeries) {
   VehicleFile vehicle;
   TaosParameters parameters;

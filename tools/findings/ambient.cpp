@@ -76,7 +76,15 @@ Outcome quiescent_peaks(const Bench& bench) {
   std::vector<analysis::Spectrum> spectra;
   std::vector<double> peaks;
   double widest = 0.0;
-  for (const double density : {1.0, 1e3, 1e4, 1e5}) {
+  struct Excitation {
+    double density;
+    double lowest;  ///< frequency of the peak
+    double highest;
+  };
+  // The weakest and the strongest are the published peaks within a resolution of the spectrum; between them it may be
+  // anywhere.
+  for (const auto& [density, lowest, highest] :
+       {Excitation{1.0, 8.0, 8.4}, {1e3, 5.9, 8.2}, {1e4, 5.9, 8.2}, {1e5, 5.7, 6.1}}) {
     trials::Quiescence quiet;
     quiet.torque_density = density;
     const Record record = trials::quiescent(bench.ambient(), kPitch, quiet);
@@ -85,7 +93,7 @@ Outcome quiescent_peaks(const Bench& bench) {
     const auto peak = analysis::find_peak(spectra.back(), 3.0, 12.0);
     peaks.push_back(peak ? peak->frequency : kNone);
     widest = peak ? std::max(widest, half_power_width(spectra.back(), peak->frequency)) : kNone;
-    outcome.figures.push_back({fmt::format("largest peak under {}", labels.back()), peaks.back(), 5.7, 8.4, "Hz"});
+    outcome.figures.push_back({fmt::format("largest peak under {}", labels.back()), peaks.back(), lowest, highest, "Hz"});
   }
   const double moved = peaks.front() - peaks.back();
   outcome.figures.push_back({"the peak moves down with the excitation by", moved, 1.5, 2.5, "Hz"});

@@ -6,7 +6,6 @@
 #include "model/effects/gimbal/gimbal_compliance.hpp"
 #include "model/effects/gimbal/gimbal_friction.hpp"
 #include "model/effects/load/soft_stiffness.hpp"
-#include "model/effects/valve/valve_deadband.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/findings/parameters.hpp"
 
@@ -23,8 +22,6 @@ void remove_from_axis(Parameters& axis, Physics physics) {
     axis.actuator.stiffness = axis.structure.stiffness = kRigid;
   } else if (physics == Physics::soft_stiffness) {
     set_active<model::SoftStiffness>(axis, false);
-  } else if (physics == Physics::valve_deadband) {
-    set_active<model::ValveDeadband>(axis, false);
   }
 }
 
@@ -89,10 +86,10 @@ void remove_from_stage(TaosParameters& stage, Physics physics) {
 }  // namespace
 
 std::string_view physics_name(Physics physics) {
-  constexpr std::array<std::string_view, 13> kNames{
-      "load_spring",     "soft_stiffness", "valve_deadband",     "friction",  "friction_follows_load",
-      "friction_vector", "stribeck",       "bearing_compliance", "vibration", "unloaded_structure",
-      "misalignment",    "modes",          "string_motion"};
+  constexpr std::array<std::string_view, 12> kNames{"load_spring",           "soft_stiffness",  "friction",
+                                                    "friction_follows_load", "friction_vector", "stribeck",
+                                                    "bearing_compliance",    "vibration",       "unloaded_structure",
+                                                    "misalignment",          "modes",           "string_motion"};
   return kNames[static_cast<std::size_t>(physics)];
 }
 

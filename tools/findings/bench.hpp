@@ -15,7 +15,6 @@ namespace hotfire::findings {
 enum class Physics {
   load_spring,            ///< actuator and structure give way under load
   soft_stiffness,         ///< the actuator is softer under small loads
-  valve_deadband,         ///< no flow near the valve's centre
   friction,               ///< of the gimbal bearing
   friction_follows_load,  ///< its level is mu N r; without, it is that of full thrust whatever the thrust
   friction_vector,        ///< one bristle vector over both axes; without, a friction of its own on each

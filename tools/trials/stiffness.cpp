@@ -30,7 +30,7 @@ analysis::SpringCurve soft_curve(const Soft::Params<double>& law, double stiffne
   };
 }
 
-/// `flexibility` is that of the modes at the attach point [m/N].
+/// `flexibility` is what gives way beside the declared structure at the attach point [m/N].
 template <class Parameters>
 LoadSpring spring_of(const Parameters& axis, double arm, double flexibility) {
   const double stiffness = axis.actuator.stiffness;
@@ -83,6 +83,9 @@ LoadSpring load_spring_of(const VehicleFile& model, const std::string& axis) {
           const double w = 2.0 * std::numbers::pi * parameters.modes.frequency[static_cast<std::size_t>(k)];
           flexibility += parameters.modes.shape(port, k) * parameters.modes.shape(port, k) / (w * w);
         }
+        // Without its rated thrust a structure is softer than declared.
+        const auto& bearing = parameters.gimbals[index / 2].bearing;
+        flexibility += bearing.further_structure(bearing.thrust) / parameters.axes[index].structure.stiffness;
         return spring_of(parameters.axes[index], moment_arm_of(model, axis), flexibility);
       },
       model.parameters);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 #include "tests/model/support/vehicles.hpp"
 
@@ -202,6 +203,68 @@ TEST(BearingUnderLoad, DoesNotMatterWhetherThrustIsDeclaredOrPutIn) {
     }
     CHECK_TRUE(std::isfinite(largest));
   }
+}
+
+namespace {
+
+/// Angles of pitch [rad] over a second of two sines, as a plant with these parameters moves under what `act` puts in.
+template <class Act>
+std::vector<double> pitch_of(const Taos::Parameters& parameters, Act&& act) {
+  const auto plant = std::make_unique<Taos>(parameters, kBearingLoadStep);
+  const auto state = std::make_unique<Taos::State>(plant->steady({}));
+  Taos::Inputs inputs;
+  std::vector<double> angles;
+  for (int k = 0; k < 2000; ++k) {
+    const double time = k * kBearingLoadStep;
+    inputs.commands = {0.01 * std::sin(20.0 * time), 0.007 * std::sin(13.0 * time)};
+    act(*plant, *state, inputs);
+    plant->step(*state, inputs);
+    angles.push_back(state->axes[0].y(Taos::AxisModel::kAngle));
+  }
+  return angles;
+}
+
+double largest_difference(const std::vector<double>& one, const std::vector<double>& other) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    largest = std::max(largest, std::abs(one[k] - other[k]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST(BearingUnderLoad, IsLoadedByAForceAsByAThrust) {
+  Taos::Parameters parameters = hot_fire<Taos>();
+  parameters.gimbals[0].friction.coulomb_torque = 0.0;
+  parameters.gimbals[0].friction.coefficient = 0.08;
+  constexpr double kMore = 1e6;
+  const auto nothing = [](const auto&, const auto&, auto&) {};
+  const auto thrust = [](const auto&, const auto&, Taos::Inputs& inputs) { inputs.thrust = {kMore}; };
+  const auto force = [](const Taos& plant, const Taos::State& state, Taos::Inputs& inputs) {
+    const auto& angle = Taos::AxisModel::kAngle;
+    inputs.force[0] = kMore * plant.geometry(0).at(state.axes[0].y(angle), state.axes[1].y(angle)).thrust;
+  };
+  const std::vector<double> of_thrust = pitch_of(parameters, thrust);
+  const double moved = largest_difference(of_thrust, pitch_of(parameters, nothing));
+  CHECK_TRUE(moved > 1e-4);
+  // A step's thrust turns with the engine within the step, the force does not.
+  DOUBLES_EQUAL(0.0, largest_difference(of_thrust, pitch_of(parameters, force)), 0.01 * moved);
+}
+
+TEST(BearingUnderLoad, VibratesInProportionToTheThrust) {
+  constexpr double kHalf = 0.93e6;
+  const auto under_half = [](double rated, double velocity) {
+    Taos::Parameters parameters = hot_fire<Taos>();
+    auto& gimbal = parameters.gimbals[0];
+    gimbal.bearing.thrust = kHalf;
+    gimbal.bearing.rated_thrust = rated;
+    gimbal.vibration = {velocity, velocity, 60.0};
+    return pitch_of(parameters, [](const auto&, const auto&, auto&) {});
+  };
+  const std::vector<double> half = under_half(2.0 * kHalf, 0.4);
+  DOUBLES_EQUAL(0.0, largest_difference(half, under_half(kHalf, 0.2)), 1e-12);
+  CHECK_TRUE(largest_difference(half, under_half(kHalf, 0.4)) > 1e-4);
 }
 
 TEST(BearingUnderLoad, IsWhatATorqueOnTheEngineIsThatAnEffectNames) {
