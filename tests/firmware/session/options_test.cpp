@@ -154,7 +154,8 @@ TEST(Options, AnOptionOfAnotherModeIsRefusedWithTheModesThatTakeIt) {
     for (const char* option : options) {
       ++limited;
       for (const std::string mode : {"plant", "timing", "controller", "lab"}) {
-        const std::string refusal = std::string(option) + " is not an option of " + mode + "; it is an option of " + modes + ";";
+        const std::string refusal =
+            std::string(option) + " is not an option of " + mode + "; it is an option of " + modes + ";";
         const ParsedOptions parsed = parse_options({"hotfire-rt", mode, option, "1"});
         const bool taken = (", " + modes + ",").find(", " + mode + ",") != std::string::npos;
         CHECK_EQUAL_TEXT(!taken, parsed.message.find(refusal) != std::string::npos, (mode + " " + option).c_str());
