@@ -238,7 +238,7 @@ TEST(BearingUnderLoad, IsLoadedByAForceAsByAThrust) {
   Taos::Parameters parameters = hot_fire<Taos>();
   parameters.gimbals[0].friction.coulomb_torque = 0.0;
   parameters.gimbals[0].friction.coefficient = 0.08;
-  constexpr double kMore = 1e6;
+  static constexpr double kMore = 1e6;
   const auto nothing = [](const auto&, const auto&, auto&) {};
   const auto thrust = [](const auto&, const auto&, Taos::Inputs& inputs) { inputs.thrust = {kMore}; };
   const auto force = [](const Taos& plant, const Taos::State& state, Taos::Inputs& inputs) {
