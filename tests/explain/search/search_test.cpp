@@ -67,6 +67,34 @@ TEST(Search, AForceThatNoListedEffectHasIsTakenDownAsATableOverWhatItDependsOn) 
                        [](const auto& a, const auto& b) { return a.round < b.round; }));
 }
 
+TEST(Search, ADeclaredEffectIsCalibratedWithinItsToleranceAndOneWithoutSupportIsSaid) {
+  ModelFile model = declared_oscillator(100.0);
+  auto& parameters = std::get<DirectParameters>(model.parameters);
+  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    if constexpr (E::name == "cubic_stiffness") {
+      parameters.effects.active[index] = true;
+      values.stiffness = 250.0;
+    }
+    if constexpr (E::name == "quadratic_stiffness") {
+      parameters.effects.active[index] = true;
+      values.stiffness = 1e-3;
+    }
+  });
+  model.tolerance["effects.cubic_stiffness.stiffness"] = 0.5;
+  const auto data = explain::make_dataset(model, {oscillator(400.0, 1e-3)});
+  const auto found = explain::search<explain::DirectFamily>(data, model, {2, 4, {}});
+  LONGS_EQUAL(0, found.kept.size());
+  const auto& calibrated = found.calibrated.model;
+  double cubic = 0.0;
+  for (std::size_t k = 0; k < calibrated.free.size(); ++k) {
+    cubic =
+        calibrated.free[k].key == "effects.cubic_stiffness.stiffness" ? calibrated.free[k].value(calibrated.u[k]) : cubic;
+  }
+  DOUBLES_EQUAL(400.0, cubic, 0.1 * 400.0);
+  LONGS_EQUAL(1, found.not_supported.size());
+  STRCMP_EQUAL("quadratic_stiffness", found.not_supported[0].name.c_str());
+}
+
 TEST(Search, AllowedNoEffectItCalibratesAndLooksForNoneUnlistedEither) {
   const auto found = found_in(oscillator(400.0, 1e-3), 0);
   LONGS_EQUAL(0, found.trials.size());

@@ -196,6 +196,14 @@ TEST(Model, noise_and_tolerance_are_read_by_channel_and_by_key) {
   LONGS_EQUAL(3, model.tolerance.size());
 }
 
+TEST(Model, a_number_of_a_declared_effect_may_have_a_tolerance) {
+  const ModelFile model = load(kSimplex +
+                               "[tolerance]\neffects.gimbal_friction.coulomb_torque = 0.3\n"
+                               "[effects.gimbal_friction]\nlaw = \"coulomb\"\ncoulomb_torque = 11e3\n");
+  DOUBLES_EQUAL(0.3, model.tolerance.at("effects.gimbal_friction.coulomb_torque"), 0.0);
+  CHECK(parse_model(model_text(model), "again.toml").tolerance == model.tolerance);
+}
+
 TEST(Model, an_effect_that_is_present_is_active_with_its_law) {
   const auto effects = simplex("[effects.gimbal_friction]\nlaw = \"dahl\"\ncoulomb_torque = 12e3\n").effects;
   bool active = false;

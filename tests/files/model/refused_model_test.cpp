@@ -127,6 +127,12 @@ TEST(RefusedModel, a_tolerance_must_name_a_declared_parameter_and_lie_above_0_an
   expect_message(refused("[tolerance]\nengine.inertia = 0\n"), {"m.toml:4:18:", "engine.inertia = 0", "above 0, at most 1"});
   expect_message(refused("[tolerance]\nengine.inertia = 1.5\n"),
                  {"m.toml:4:18:", "engine.inertia = 1.5", "above 0, at most 1"});
+  // Of an effect: one that is declared, and a number that its law uses.
+  expect_message(refused("[tolerance]\neffects.gimbal_friction.coulomb_torque = 0.3\n"),
+                 {"m.toml:4:", "effects.gimbal_friction.coulomb_torque", "no such declared parameter"});
+  expect_message(refused("[tolerance]\neffects.gimbal_friction.stiffness = 0.3\n"
+                         "[effects.gimbal_friction]\nlaw = \"coulomb\"\ncoulomb_torque = 11e3\n"),
+                 {"m.toml:4:", "effects.gimbal_friction.stiffness", "no such declared parameter"});
 }
 
 TEST(RefusedModel, an_effect_of_the_other_axis_needs_one) {

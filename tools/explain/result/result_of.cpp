@@ -88,6 +88,9 @@ std::vector<std::string> warnings_of(const ModelFile& model, const Dataset& data
   }
   warn_of_rows(data, warnings);
   warn_of_channels(found.kept, warnings);
+  for (const Candidate& effect : found.not_supported) {
+    warnings.push_back(words::not_supported(label(effect)));
+  }
   for (const std::string& key : model.left_out) {
     warnings.push_back(words::left_out(key));
   }

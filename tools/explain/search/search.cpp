@@ -13,6 +13,7 @@
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/channel_check.hpp"
+#include "tools/explain/search/declared_effects.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/refiner.hpp"
 #include "tools/explain/search/round.hpp"
@@ -98,6 +99,8 @@ class Search {
         take_out_harmful();
       }
     }
+    result_.not_supported =
+        effects_without_support(data_, refiner_, result_.declared.model.base, result_.explained, options_.watch);
     result_.searched = options_.most_effects > 0;
     result_.interrupted = options_.watch.interrupted();
     return std::move(result_);

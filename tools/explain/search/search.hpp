@@ -20,10 +20,11 @@ struct SearchResult {
   Assessed<Family> explained;
   std::vector<Kept> kept;
   std::vector<Trial> trials;
-  std::optional<Rival<Family>> rival;  ///< of an effect that is kept, the last if that has one
-  Located located;                     ///< where what the explained model is still missing acts; no places where nothing is
-  Intervals profiles;                  ///< of the explained model's parameters whose error is no parabola
-  bool searched = true;                ///< effects were searched for
+  std::optional<Rival<Family>> rival;    ///< of an effect that is kept, the last if that has one
+  std::vector<Candidate> not_supported;  ///< effects of the declared model without which the error is the same
+  Located located;       ///< where what the explained model is still missing acts; no places where nothing is
+  Intervals profiles;    ///< of the explained model's parameters whose error is no parabola
+  bool searched = true;  ///< effects were searched for
   bool interrupted = false;
 
   /// Number of the next round, under which its trials are filed.

@@ -153,6 +153,17 @@ bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candid
 }
 
 template <class Family>
+bool has_law(const PlainParameters<Family>& parameters, const Candidate& candidate) {
+  bool has = parameters.effects.active[candidate.effect];
+  visit_effect(parameters, candidate.effect, [&]<class E>(const auto& values) {
+    if constexpr (E::options.size() > 0) {
+      has = has && values.option == candidate.option;
+    }
+  });
+  return has;
+}
+
+template <class Family>
 std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,
                                                const std::map<std::string, double>& tolerance) {
   std::vector<FreeParameter> free;
@@ -160,7 +171,8 @@ std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& ba
   model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double& value) {
     const Address address{key, field.name};
     const auto found = tolerance.find(address.key());
-    if (!key.is_effect && found != tolerance.end() && value != 0.0) {
+    const bool is_declared = !key.is_effect || base.effects.active[key.effect_index];
+    if (is_declared && found != tolerance.end() && value != 0.0) {
       FreeParameter parameter = FreeParameter::at(index, address, field.unit);
       parameter.scale = FreeParameter::Scale::tolerance;
       parameter.declared = value;
@@ -285,6 +297,7 @@ void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
   template std::vector<Candidate> all_candidates<Family>(const Dataset&);                                         \
   template std::vector<Candidate> laws_of<Family>(const Dataset&, const Candidate&);                              \
   template bool has_what_it_carries<Family>(const PlainParameters<Family>&, const Candidate&);                    \
+  template bool has_law<Family>(const PlainParameters<Family>&, const Candidate&);                                \
   template std::vector<FreeParameter> declared_parameters<Family>(const PlainParameters<Family>&,                 \
                                                                   const std::map<std::string, double>&);          \
   template std::vector<FreeParameter> effect_parameters<Family>(const PlainParameters<Family>&, const Candidate&, \

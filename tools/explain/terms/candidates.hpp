@@ -33,7 +33,11 @@ std::vector<Candidate> laws_of(const Dataset& data, const Candidate& candidate);
 template <class Family>
 bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate);
 
-/// The declared parameters that have a tolerance, in the order of the model's keys.
+/// True if a candidate's effect is active in these parameters with the candidate's law.
+template <class Family>
+bool has_law(const PlainParameters<Family>& parameters, const Candidate& candidate);
+
+/// The declared parameters, of parts and of active effects, that have a tolerance, in the order of the model's keys.
 template <class Family>
 std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,
                                                const std::map<std::string, double>& tolerance);

@@ -42,6 +42,13 @@ std::string at_a_bound(const std::string& key) { return fmt::format("{} ended at
 
 std::string undetermined(const std::string& key) { return fmt::format("{} is not determined by the data.", key); }
 
+std::string not_supported(const std::string& effect) {
+  return fmt::format(
+      "The records do not support the declared effect {}: without it the error is the same. Remove it, or add a record in "
+      "which it acts.",
+      effect);
+}
+
 std::string noise_differs(const std::string& channel, double declared, double seen) {
   return fmt::format("The noise of {} is declared as {:.3g}, but the records show {:.3g}.", channel, declared, seen);
 }

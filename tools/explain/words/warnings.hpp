@@ -15,6 +15,8 @@ std::string no_tolerance();
 std::string moved_far(const std::string& key, double tolerances);
 std::string at_a_bound(const std::string& key);
 std::string undetermined(const std::string& key);
+/// `effect`: one of the declared model.
+std::string not_supported(const std::string& effect);
 std::string noise_differs(const std::string& channel, double declared, double seen);
 std::string unused_channel(const std::string& record, const std::string& channel, const std::vector<std::string>& known);
 /// `seconds` from the start of a record are not compared.

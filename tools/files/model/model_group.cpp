@@ -220,6 +220,13 @@ std::vector<std::string> declared_keys(const ModelLayout& layout) {
       keys.push_back(fmt::format("{}.{}", part.name, number.name));
     }
   }
+  for (const KeyGroup& effect : layout.effects) {
+    for (const NumberKey& number : effect.numbers) {
+      if (*effect.active && effect.uses(number.options)) {
+        keys.push_back(fmt::format("effects.{}.{}", effect.name, number.name));
+      }
+    }
+  }
   return keys;
 }
 

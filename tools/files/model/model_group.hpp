@@ -45,7 +45,8 @@ void read_noise(const TomlSource& source, const toml::table& table, const std::s
 /// the same key in quotes. Throws FileError for a key that is not in `declared` and for a value that is no tolerance.
 std::map<std::string, double> read_tolerances(const TomlSource& source, const toml::table& table, const Words& declared);
 
-/// The keys of the numbers of a layout's parts, "servovalve.position_gain".
+/// The keys of the numbers of a layout's parts, "servovalve.position_gain", and of its active effects,
+/// "effects.gimbal_friction.coulomb_torque".
 std::vector<std::string> declared_keys(const ModelLayout& layout);
 
 }  // namespace hotfire

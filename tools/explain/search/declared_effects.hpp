@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tools/explain/search/refiner.hpp"
+
+namespace hotfire::explain {
+
+/// The effects of the declared model that the records do not support: without one, and everything else fitted anew, the
+/// explained model is as good. An effect that another declared one needs is not taken out alone.
+template <class Family>
+std::vector<Candidate> effects_without_support(const Dataset& data, const Refiner<Family>& refiner,
+                                               const PlainParameters<Family>& declared, const Assessed<Family>& explained,
+                                               const Watch& watch);
+
+}  // namespace hotfire::explain
