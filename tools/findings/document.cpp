@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 
@@ -90,7 +91,21 @@ void append_published(std::string& text, const std::vector<Row>& rows) {
   text += '\n';
 }
 
+/// Runs the test of a finding by itself, where that is another command than the findings'.
+std::string own_command(const Finding& finding) {
+  return finding.command.starts_with("hotfire findings")
+             ? std::string()
+             : fmt::format(" This command runs the test by itself: `{}`", finding.command);
+}
+
 }  // namespace
+
+bool is_tuned(const Finding& finding, const Figure& figure) {
+  return std::ranges::any_of(kPublished, [&](const Published& one) {
+    return one.finding == finding.id && figure.what.starts_with(one.figure) && one.tuned != "no" &&
+           !one.tuned.starts_with("given up");
+  });
+}
 
 std::string figure_text(double value, const std::string& unit) {
   return unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
@@ -109,12 +124,13 @@ std::string markdown(const std::vector<Row>& rows) {
   }
   for (const Row& row : rows) {
     fmt::format_to(add,
-                   "\n## {}\n\n{}: {}.\n\n`hotfire findings --only {}` prints these figures. This command runs the test by "
-                   "itself: `{}`\n\n| figure | reached | allowed | |\n|---|---|---|---|\n",
-                   row.finding->id, row.finding->title, row.finding->shown, row.finding->id, row.finding->command);
+                   "\n## {}\n\n{}: {}.\n\n`hotfire findings --only {}` prints these figures.{}\n\n"
+                   "| figure | reached | allowed | |\n|---|---|---|---|\n",
+                   row.finding->id, row.finding->title, row.finding->shown, row.finding->id, own_command(*row.finding));
     for (const Figure& figure : row.outcome.figures) {
-      fmt::format_to(add, "| {} | {} | {:.4g} to {} | {} |\n", figure.what, figure_text(figure.value, figure.unit),
-                     figure.lowest, figure_text(figure.highest, figure.unit), figure.inside() ? "inside" : "**outside**");
+      fmt::format_to(add, "| {} | {} | {:.4g} to {} | {}{} |\n", figure.what, figure_text(figure.value, figure.unit),
+                     figure.lowest, figure_text(figure.highest, figure.unit), figure.inside() ? "inside" : "**outside**",
+                     is_tuned(*row.finding, figure) ? ", tuned" : "");
     }
     fmt::format_to(add, "\nFails without: ");
     for (const Physics physics : row.finding->mutants.all()) {

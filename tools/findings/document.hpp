@@ -17,6 +17,9 @@ struct Row {
 /// The page docs/findings.md.
 std::string markdown(const std::vector<Row>& rows);
 
+/// Whether a number of the parameter sets was tuned to this figure.
+bool is_tuned(const Finding& finding, const Figure& figure);
+
 /// File name of a finding's picture: "F1.svg".
 std::string picture_name(const Finding& finding);
 

@@ -54,7 +54,8 @@ nlohmann::ordered_json to_json(const std::vector<findings::Row>& rows) {
                          {"lowest", figure.lowest},
                          {"highest", figure.highest},
                          {"unit", figure.unit},
-                         {"inside", figure.inside()}});
+                         {"inside", figure.inside()},
+                         {"tuned", findings::is_tuned(*row.finding, figure)}});
     }
     all.push_back({{"id", row.finding->id},
                    {"title", row.finding->title},
