@@ -18,6 +18,11 @@ class CanSession {
   /// `more`: what a plant sends besides its readings, which is a part of the bus's load.
   CanSession(const CanOptions& options, const RunOptions& run, const can::NodeIds& ids, can::MoreReadings more = {});
 
+  /// The same of the options of a mode, which are both.
+  template <class OfMode>
+  CanSession(const OfMode& options, const can::NodeIds& ids, can::MoreReadings more = {})
+      : CanSession(options, options, ids, more) {}
+
   /// Opens it. Refuses an interface that is not there, no CAN, not FD or down, no permission, and a schedule that takes too
   /// much of it. Prints the refusal with its remedy to standard error and returns the exit status; kGood if there is none.
   /// Nothing has been sent then.

@@ -28,7 +28,7 @@ int run(const ControllerOptions& options) {
   using Clock = hal::PosixClock;
   using Bus = can::ControllerBus<hal::SocketCan, Clock>;
   const can::Layout layout = frame_layout(options);
-  CanSession can_session(options, options, can::controller_ids(layout, options.actuators));
+  CanSession can_session(options, can::controller_ids(layout, options.actuators));
   if (const int status = can_session.open(); status != kGood) {
     return status;
   }

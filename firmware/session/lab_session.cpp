@@ -135,7 +135,7 @@ int run(const LabOptions& given) {
               "--layout fd, or fd-split"});
     return kWrongUse;
   }
-  CanSession can_session(options, options, can::controller_ids(layout, options.actuators, has_load_pressure),
+  CanSession can_session(options, can::controller_ids(layout, options.actuators, has_load_pressure),
                          {false, has_load_pressure});
   if (const int status = can_session.open(); status != kGood) {
     return status;

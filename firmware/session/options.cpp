@@ -12,9 +12,6 @@
 namespace hotfire::firmware {
 namespace {
 
-/// The modes that take every option of a run.
-constexpr std::string_view kEveryRun = "plant, timing, controller, lab";
-
 std::string_view mode_of(const Options& options) {
   return std::visit([]<class Own>(const Own&) { return Own::mode; }, options);
 }
@@ -28,6 +25,15 @@ std::string modes_of(const OptionLine& line) {
   };
   add(static_cast<const Options*>(nullptr));
   return result;
+}
+
+/// Whether every mode takes an option that is a run: only these have the options of a loop.
+bool takes_every_run(const OptionLine& line) {
+  const auto takes = [&]<class... Own>(const std::variant<Own...>*) {
+    std::size_t index = 0;
+    return ((line.modes[index++] == std::is_base_of_v<RunOptions, Own>)&&...);
+  };
+  return takes(static_cast<const Options*>(nullptr));
 }
 
 std::string help() {
@@ -46,7 +52,7 @@ std::string help() {
   for (const OptionLine& line : option_lines()) {
     const std::string modes = modes_of(line);
     std::string meaning;
-    if (modes != kEveryRun) {
+    if (!takes_every_run(line)) {
       meaning.append(modes).append(": ");
     }
     meaning.append(line.meaning);

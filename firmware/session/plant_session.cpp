@@ -52,7 +52,7 @@ class PlantSession {
 
   int run_on_can() {
     const can::MoreReadings more{options_.strings, options_.load_pressure};
-    CanSession session(options_, options_, can::plant_ids(frame_layout(options_), options_.actuators, more), more);
+    CanSession session(options_, can::plant_ids(frame_layout(options_), options_.actuators, more), more);
     if (const int status = session.open(); status != kGood) {
       return status;
     }
