@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "firmware/can/layout.hpp"
 #include "firmware/lab/lab.hpp"
 
 namespace hotfire::firmware::test_lab {
@@ -26,6 +27,17 @@ inline LabSettings settings() {
   made.interlock = {true, 0, 1, 1'000'000, 0, 1'000'000, 100};
   made.limits = {5 * kPeriodNs, -0.15, 0.15, 0.001, 10.0, 0.004, 10};
   made.limits.actuators.fill({5 * kPeriodNs, -0.06, 0.06, 100.0});
+  return made;
+}
+
+/// A lab of as many actuators as a layout has room for, with limits of their load pressures.
+inline LabSettings settings_of(can::Layout layout) {
+  LabSettings made = settings();
+  made.actuators = can::most_actuators(layout);
+  made.limits.position_error = 1.0;
+  for (ActuatorLimits& limits : made.limits.actuators) {
+    limits.load_pressure = 2e7;
+  }
   return made;
 }
 

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "tests/firmware/lab/lab_on_wire.hpp"
-#include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::firmware {
 
@@ -17,20 +16,10 @@ using test_lab::LabOnWire;
 constexpr double kTrue = 0.14;       ///< where the piston is: beyond its limit of 0.06 m
 constexpr double kPretended = 0.01;  ///< what the other node says
 
-LabSettings settings_of(can::Layout layout) {
-  LabSettings made = test_lab::settings();
-  made.actuators = can::most_actuators(layout);
-  made.limits.position_error = 1.0;
-  for (ActuatorLimits& limits : made.limits.actuators) {
-    limits.load_pressure = 2e7;
-  }
-  return made;
-}
-
 /// A lab that runs in a layout, and another node, which may send what its plant and itself send.
 class Rivals : public LabOnWire {
  public:
-  explicit Rivals(can::Layout frames) : LabOnWire(settings_of(frames), frames) { run(); }
+  explicit Rivals(can::Layout frames) : LabOnWire(test_lab::settings_of(frames), frames) { run(); }
 
   void other_sends(const hal::CanFrame& frame) {
     other_.receive(clock.now_ns());
@@ -296,52 +285,6 @@ TEST(SplitReadings, NodeOfOneReadingThatFallsSilentIsStaleAndOneThatSaysSomethin
     };
     wrong.cycle();
     CHECK(wrong.lab.outputs().interlock.first == Fault::readings_disagree);
-  }
-}
-
-TEST_GROUP(LabAuthentication){};
-
-TEST(LabAuthentication, ReadingWithoutTheKeyIsAFaultAndOneWithItIsNotAndNothingIsAllocated) {
-  constexpr can::AuthenticationKey kKey{1, 2, 3};
-  constexpr std::int64_t kTolerance = 1'000'000'000;
-  const can::Authentication::RealTime no_time = []() noexcept { return std::int64_t{0}; };
-  for (const can::Layout layout : {can::Layout::fd, can::Layout::fd_split}) {
-    can::Authentication of_lab(kKey, kTolerance, no_time);
-    can::Authentication of_plant(kKey, kTolerance, no_time);
-    LabOnWire world(settings_of(layout), layout);
-    world.rig.authenticate(of_lab);
-    world.sends = false;
-    bool seals_load_pressure = true;
-    world.before_lab = [&] {
-      for (std::size_t i = 0; i < world.rig.messages(); ++i) {
-        hal::CanFrame frame = world.reading(i, static_cast<std::uint8_t>(world.counter - 1));
-        if (!world.is_load_pressure(i) || seals_load_pressure) {
-          of_plant.seal(world.rig.message(i), frame);
-        }
-        world.plant.try_send(frame);
-      }
-    };
-    world.run();
-    {
-      const test::AllocationGuard guard;
-      world.cycles(300);
-      UNSIGNED_LONGS_EQUAL(0, guard.allocations() + guard.releases());
-    }
-    CHECK(world.lab.outputs().interlock.state == RigState::running);
-    std::uint64_t newest = 0;
-    CHECK(of_plant.accepts(can::command_message(layout), world.plant.mailbox(0).frame, newest));
-    seals_load_pressure = false;
-    world.cycle();
-    CHECK(world.lab.outputs().interlock.first == Fault::not_authentic);
-    seals_load_pressure = true;
-    world.press();
-    world.press();
-    CHECK(world.on(kSupply));
-    world.before_lab = [] {};
-    world.sends = true;
-    world.cycle();
-    CHECK(!world.on(kSupply));
-    CHECK(world.lab.outputs().interlock.first == Fault::not_authentic);
   }
 }
 
