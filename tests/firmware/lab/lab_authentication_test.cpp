@@ -12,7 +12,7 @@ namespace {
 
 using test_lab::kPeriodNs;
 using test_lab::LabOnWire;
-using test_lab::settings_of;
+using test_lab::full_settings;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ TEST(LabAuthentication, ReadingWithoutTheKeyIsAFaultAndOneWithItIsNotAndNothingI
   for (const can::Layout layout : {can::Layout::fd, can::Layout::fd_split}) {
     can::Authentication of_lab(kKey, kTolerance, no_time);
     can::Authentication of_plant(kKey, kTolerance, no_time);
-    LabOnWire world(settings_of(layout), layout);
+    LabOnWire world(full_settings(layout), layout);
     world.rig.authenticate(of_lab);
     world.sends = false;
     bool seals_load_pressure = true;
@@ -71,7 +71,7 @@ std::int64_t node_time = 0;
 /// A lab that runs under a key, with a plant that has it.
 class Sealed : public LabOnWire {
  public:
-  explicit Sealed(can::Layout frames) : LabOnWire(settings_of(frames), frames) {
+  explicit Sealed(can::Layout frames) : LabOnWire(full_settings(frames), frames) {
     rig.authenticate(of_lab_);
     sends = false;
     before_lab = [this] { send_true(); };

@@ -31,7 +31,7 @@ inline LabSettings settings() {
 }
 
 /// A lab of as many actuators as a layout has room for, with limits of their load pressures.
-inline LabSettings settings_of(can::Layout layout) {
+inline LabSettings full_settings(can::Layout layout) {
   LabSettings made = settings();
   made.actuators = can::most_actuators(layout);
   made.limits.position_error = 1.0;

@@ -19,7 +19,7 @@ constexpr double kPretended = 0.01;  ///< what the other node says
 /// A lab that runs in a layout, and another node, which may send what its plant and itself send.
 class Rivals : public LabOnWire {
  public:
-  explicit Rivals(can::Layout frames) : LabOnWire(test_lab::settings_of(frames), frames) { run(); }
+  explicit Rivals(can::Layout frames) : LabOnWire(test_lab::full_settings(frames), frames) { run(); }
 
   void other_sends(const hal::CanFrame& frame) {
     other_.receive(clock.now_ns());
