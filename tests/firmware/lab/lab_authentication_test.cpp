@@ -10,9 +10,9 @@ namespace hotfire::firmware {
 
 namespace {
 
+using test_lab::full_settings;
 using test_lab::kPeriodNs;
 using test_lab::LabOnWire;
-using test_lab::full_settings;
 
 }  // namespace
 

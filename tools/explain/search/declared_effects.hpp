@@ -7,7 +7,7 @@
 
 namespace hotfire::explain {
 
-/// The effects of the declared model that the records do not support: without one, and everything else fitted anew, the
+/// The effects of the declared model that the records do not support: without one, and everything else fitted again, the
 /// explained model is as good. An effect that another declared one needs is not taken out alone.
 template <class Family>
 std::vector<Candidate> effects_without_support(const Dataset& data, const Refiner<Family>& refiner,

@@ -10,9 +10,9 @@
 
 #include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/fit/scales.hpp"
+#include "tools/explain/inference/channel_check.hpp"
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/channel_check.hpp"
 #include "tools/explain/search/declared_effects.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/refiner.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/search/channel_check.hpp"
+#include "tools/explain/inference/channel_check.hpp"
 
 #include <fmt/format.h>
 
