@@ -8,6 +8,7 @@
 #include "tools/explain/result/verdict.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/terms/table_points.hpp"
+#include "tools/explain/terms/term_constant.hpp"
 #include "tools/report/report_page.hpp"
 
 namespace hotfire::explain {
@@ -62,6 +63,20 @@ PlainParameters<Family> plant_of(const SearchResult<Family>& found, bool keep_dr
   return plant;
 }
 
+/// Gives the curves of unlisted terms the constants with which the records have the least zeros, where the error stays.
+inline void choose_constants(const Dataset& data, const Evaluator<SimplexFamily>& whole, unsigned threads,
+                             const std::vector<Kept>& found, Assessed<SimplexFamily>& fitted) {
+  constexpr double kSameError = 1.001;
+  for (const Kept& kept : found) {
+    Assessed<SimplexFamily> moved =
+        assess(whole, threads, with_least_zeros(data, fitted.zeros, fitted.model, kept.trial.candidate));
+    if (moved.good() &&
+        Goodness::combined(moved.goodness.fitted) <= kSameError * Goodness::combined(fitted.goodness.fitted)) {
+      fitted = std::move(moved);
+    }
+  }
+}
+
 /// The explained model fitted once more, to the rows that were held out as well: what the rig runs has seen all that there
 /// is, its tables reaching over them, with the intervals that its profile gives. The errors of `found` stay those of the fit
 /// that had not seen them.
@@ -74,9 +89,13 @@ void fit_to_all_rows(Dataset data, unsigned threads, SearchResult<Family>& found
     start = reaching_over(data, start, kept.trial.candidate);
   }
   const bool reaches_further = start.free.size() > found.explained.model.free.size();
-  const Assessed<Family> again = refined(whole, whole, threads, std::move(start), reaches_further ? kFinal : kAllRows);
+  Assessed<Family> again = refined(whole, whole, threads, std::move(start), reaches_further ? kFinal : kAllRows);
   if (again.good()) {
+    if constexpr (std::is_same_v<Family, SimplexFamily>) {
+      choose_constants(data, whole, threads, found.kept, again);
+    }
     found.explained.model = again.model;
+    found.explained.zeros = again.zeros;
     found.profiles = profile_intervals(whole, again.model, threads);
   }
 }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/explain/terms/term_constant.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include "tests/explain/latent/missing_effect.hpp"
+#include "tools/explain/terms/assessed.hpp"
+
+using namespace hotfire;
+using namespace hotfire::explain;
+
+namespace {
+
+using PistonReading = model::Term<model::Site::sensor, 0>;
+using Command = model::Term<model::Site::command>;
+
+/// The declared model with a curve over the position, which adds `constant` everywhere and a bend on top of it.
+template <class E>
+Fitted<SimplexFamily> with_curve(double constant, double size, Candidate& candidate) {
+  Fitted<SimplexFamily> fitted = test::about_declared();
+  model::visit_effects(fitted.base, [&]<class Own>(std::size_t index, auto& effect) {
+    if constexpr (std::is_same_v<Own, E>) {
+      candidate = {index, 0, std::string(E::name), "", std::string(model::site_name(E::site))};
+      fitted.base.effects.active[index] = true;
+      effect.argument = static_cast<int>(model::Argument::position);
+      effect.table.points = 3;
+      effect.table.x = {-0.01, 0.0, 0.01};
+      effect.table.y = {constant, constant + size, constant};
+    }
+  });
+  return fitted;
+}
+
+template <class E>
+double first_ordinate(const Fitted<SimplexFamily>& fitted) {
+  double ordinate = 0.0;
+  model::visit_effects(fitted.base, [&]<class Own>(std::size_t, const auto& effect) {
+    if constexpr (std::is_same_v<Own, E>) {
+      ordinate = effect.table.y[0];
+    }
+  });
+  return ordinate;
+}
+
+/// What a curve that is `constant` too high becomes, of records of the curve without it.
+template <class E>
+double chosen_constant(double constant, double size) {
+  Candidate candidate;
+  ModelFile truth = test::declared();
+  truth.parameters = with_curve<E>(0.0, size, candidate).base;
+  const Dataset data = test::data_of(truth, 2);
+  const Evaluator<SimplexFamily> fine(data, Resolution::fine);
+  const Assessed<SimplexFamily> wrong = assess(fine, 1, with_curve<E>(constant, size, candidate));
+  CHECK(wrong.good());
+  const Assessed<SimplexFamily> right = assess(fine, 1, with_least_zeros(data, wrong.zeros, wrong.model, candidate));
+  CHECK(right.good());
+  DOUBLES_EQUAL(1.0, Goodness::combined(right.goodness.fitted), 0.05);
+  return first_ordinate<E>(right.model);
+}
+
+}  // namespace
+
+TEST_GROUP(TermConstant){};
+
+// The zeros are those of noise over ten thousand rows: a hundredth of it.
+TEST(TermConstant, CurveOfAReadingHasTheConstantWithWhichTheRecordsHaveNoZero) {
+  for (const double constant : {-3e-4, 3e-4}) {
+    DOUBLES_EQUAL(0.0, chosen_constant<PistonReading>(constant, 1e-4), 0.1 * test::kPistonNoise);
+  }
+}
+
+TEST(TermConstant, CurveOfASignalToo) {
+  // A constant of the command moves piston and engine: 1 mrad is 0.7 mm of stroke.
+  DOUBLES_EQUAL(0.0, chosen_constant<Command>(1e-3, 2e-4), 1e-5);
+}
+
+TEST(TermConstant, ModelWithoutACurveStaysAsItIs) {
+  Candidate candidate;
+  Fitted<SimplexFamily> fitted = with_curve<PistonReading>(0.0, 0.0, candidate);
+  const Dataset data = test::data_of(test::declared());
+  const Fitted<SimplexFamily> same = with_least_zeros(data, {{1e-3, 1e-3, 0.0}}, fitted, candidate);
+  DOUBLES_EQUAL(0.0, first_ordinate<PistonReading>(same), 0.0);
+}
