@@ -4,6 +4,7 @@
 // to mean something.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -28,6 +29,7 @@ constexpr std::uint64_t kMostCyclesOnTheWay = 2;
 /// Less than this and a run says nothing: profiles run to their end, and different first faults.
 constexpr std::uint64_t kLeastCompleted = 3;
 constexpr std::size_t kLeastFaults = 11;
+constexpr std::uint64_t kLeastEnds = 10;
 
 /// Something that is so for a random time, again and again.
 class Spell {
@@ -70,6 +72,10 @@ class Soak {
     move();
     bench_->clock.advance_ns(kPeriodNs);
     ++cycles_;
+    if (bench_->rig.ended()) {
+      check_end();
+      restart();
+    }
     return held_;
   }
 
@@ -78,16 +84,18 @@ class Soak {
   bool report() {
     take_account();
     std::size_t different = 0;
-    std::printf("%llu cycles, %llu starts of the program, %llu armings, %llu profiles run to their end; first faults:\n",
-                whole(cycles_), whole(restarts_), whole(armings_), whole(completed_));
+    std::printf(
+        "%llu cycles, %llu starts of the program, %llu ends by itself, %llu armings, %llu profiles run to their end; first "
+        "faults:\n",
+        whole(cycles_), whole(restarts_), whole(ends_), whole(armings_), whole(completed_));
     for (const FaultText& fault : kFaults) {
       const std::uint64_t count = first_.at(static_cast<std::size_t>(fault.fault));
       different += count > 0 ? 1 : 0;
       std::printf("  %2d %-24s %llu\n", static_cast<int>(fault.fault), fault.name.data(), whole(count));
     }
-    if (different < kLeastFaults || completed_ < kLeastCompleted) {
-      std::printf("FAILED: too little happened: wanted %zu different faults and %llu profiles\n", kLeastFaults,
-                  whole(kLeastCompleted));
+    if (different < kLeastFaults || completed_ < kLeastCompleted || ends_ < kLeastEnds) {
+      std::printf("FAILED: too little happened: wanted %zu different faults, %llu profiles and %llu ends\n", kLeastFaults,
+                  whole(kLeastCompleted), whole(kLeastEnds));
       return false;
     }
     return held_;
@@ -107,6 +115,9 @@ class Soak {
     made.profile = Profile({test_lab::segment(0.3, 0.02, 0.02), test_lab::segment(0.3, 0.0, 0.0, 0.02, 5.0, 5.0)});
     made.limits.actuators[0].load_pressure = kLoadPressureLimit;
     bench_ = std::make_unique<LabOnWire>(std::move(made));
+    asked_ = false;
+    bench_->rig.ask_to_stop_when(asked_);
+    holding_ = false;
     ++restarts_;
     state_ = RigState::safe;
     beat_ = bench_->on(kHeartbeat);
@@ -142,9 +153,11 @@ class Soak {
         bench_->wire.release();
       }
     }
+    bench_->wire.set_stop_refused(refuses_take_back_.now(random_));
     if (late_.now(random_)) {
       bench_->rig.note_overrun();
     }
+    asked_ = asked_ || chance(50'000);
   }
 
   void send_readings() {
@@ -239,7 +252,9 @@ class Soak {
     if (interlock.drive) {
       last_driven_ = cycles_;
     }
-    expect(!bench_->plant.mailbox(0).fresh || (last_driven_ && cycles_ - *last_driven_ <= kMostCyclesOnTheWay),
+    // One that the kernel does not give back may leave: the fault line says so.
+    expect(!bench_->plant.mailbox(0).fresh || (last_driven_ && cycles_ - *last_driven_ <= kMostCyclesOnTheWay) ||
+               (interlock.fault_out && interlock.faults.has(Fault::take_back_refused)),
            "a command reached the wire though nothing was driven");
     const double current = bench_->lab.outputs().currents[0];
     const double command = bench_->lab.outputs().commands[0];
@@ -248,6 +263,20 @@ class Soak {
     expect(!interlock.drive ||
                std::abs(command * kPistonPerCommand) <= test_lab::settings().limits.actuators[0].highest_position,
            "a command beyond its limit");
+  }
+
+  /// The program ends: nothing is on, and nothing that it handed over leaves any more, whoever acknowledges.
+  void check_end() {
+    ++ends_;
+    expect(!bench_->on(kSupply), "the program ends with its supply on");
+    bench_->wire.set_bus_off(false);
+    bench_->wire.set_down(false);
+    bench_->wire.release();
+    if (bench_->plant.state() >= hal::CanState::bus_off) {
+      bench_->plant.rearm();
+    }
+    bench_->plant.receive(bench_->clock.now_ns());
+    expect(!bench_->plant.mailbox(0).fresh, "a command leaves after the end of the program");
   }
 
   static constexpr double kMostSayable = 0.19;
@@ -267,6 +296,7 @@ class Soak {
   Spell down_{20'000, 300};
   Spell full_{20'000, 5};
   Spell nobody_acknowledges_{20'000, 20};
+  Spell refuses_take_back_{200, 50};
   Spell late_{20'000, 20};
   Spell silent_{5'000, 10};
   Spell wild_{20'000, 3};
@@ -278,6 +308,7 @@ class Soak {
   double target_ = 0.0;
   std::uint8_t counter_ = 0;
   std::uint8_t gauge_counter_ = 0;
+  std::atomic<bool> asked_{false};
   bool arm_on_ = false;
   bool holding_ = false;
   bool broken_ = false;
@@ -290,6 +321,7 @@ class Soak {
   std::optional<std::uint64_t> last_driven_;
   std::uint64_t cycles_ = 0;
   std::uint64_t restarts_ = 0;
+  std::uint64_t ends_ = 0;
   std::uint64_t armings_ = 0;
   std::uint64_t completed_ = 0;
   std::array<std::uint64_t, 256> first_{};

@@ -4,6 +4,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include "tests/explain/latent/missing_effect.hpp"
+#include "tools/explain/inference/uncertainty.hpp"
 #include "tools/explain/terms/assessed.hpp"
 
 using namespace hotfire;
@@ -72,6 +73,33 @@ TEST(TermConstant, CurveOfAReadingHasTheConstantWithWhichTheRecordsHaveNoZero) {
 TEST(TermConstant, CurveOfASignalToo) {
   // A constant of the command moves piston and engine: 1 mrad is 0.7 mm of stroke.
   DOUBLES_EQUAL(0.0, chosen_constant<Command>(1e-3, 2e-4), 1e-5);
+}
+
+TEST(TermConstant, IntervalsOfACurveAreThoseOfItsShape) {
+  Candidate candidate;
+  Fitted<SimplexFamily> fitted = with_curve<PistonReading>(3e-4, 1e-4, candidate);
+  fitted.free.clear();
+  fitted.u.clear();
+  for (const FreeParameter& p : effect_parameters<SimplexFamily>(fitted.base, candidate, {})) {
+    if (p.is_ordinate()) {
+      fitted.free.push_back(p);
+      fitted.u.push_back(p.coordinate(3e-4));
+    }
+  }
+  CHECK_EQUAL(3U, fitted.free.size());
+  // Differences of ordinates are known to a micrometre, their mean is not.
+  const double precision = fitted.free[0].unit_size / 1e-6;
+  fitted.normal = precision * precision * (Eigen::MatrixXd::Identity(3, 3) - Eigen::MatrixXd::Constant(3, 3, 1.0 / 3.0));
+  for (const Estimate& estimate : estimates(fitted.free, fitted.u, fitted.normal)) {
+    CHECK(!estimate.interval);
+  }
+  const Dataset data = test::data_of(test::declared());
+  const Fitted<SimplexFamily> given = with_least_zeros(data, {{-1e-4, 0.0, 0.0}}, fitted, candidate);
+  for (const Estimate& estimate : estimates(given.free, given.u, given.normal)) {
+    CHECK(estimate.interval.has_value());
+    DOUBLES_EQUAL(2e-4, estimate.value, 1e-9);
+    DOUBLES_EQUAL(2.0 * 1.96e-6, estimate.interval->second - estimate.interval->first, 1e-6);
+  }
 }
 
 TEST(TermConstant, ModelWithoutACurveStaysAsItIs) {

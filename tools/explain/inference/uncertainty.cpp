@@ -15,6 +15,17 @@ constexpr double kFarFromDeclared = 2.5;
 /// True if a fit that is stopped by a bound would end here.
 bool meets(double value, double bound) { return std::abs(value - bound) <= 1e-4 * std::abs(bound); }
 
+/// The size against which a parameter that may be zero is determined: of a curve's ordinate that of the whole curve.
+double size_of(const std::vector<FreeParameter>& free, const std::vector<double>& u, std::size_t k) {
+  double size = std::abs(free[k].value(u[k]));
+  for (std::size_t other = 0; free[k].is_ordinate() && other < free.size(); ++other) {
+    if (free[other].is_ordinate() && free[other].address.owner == free[k].address.owner) {
+      size = std::max(size, std::abs(free[other].value(u[other])));
+    }
+  }
+  return size;
+}
+
 }  // namespace
 
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& normal) {
@@ -47,7 +58,7 @@ std::vector<Estimate> estimates(const std::vector<FreeParameter>& free, const st
         determined = determined && half < std::log(3.0);
         break;
       case FreeParameter::Scale::linear:
-        determined = determined && half < std::abs(u[k]);
+        determined = determined && half * parameter.unit_size < size_of(free, u, k);
         break;
       case FreeParameter::Scale::tolerance:
         determined = determined && half < 0.9 * kTwoSided95;

@@ -12,6 +12,9 @@ namespace hotfire::explain {
 
 namespace {
 
+/// A constant that is given is known to this share of the curve.
+constexpr double kGiven = 1e-3;
+
 /// The largest ordinate of a term's table; nothing if it has no points.
 double largest_ordinate(const PlainParameters<SimplexFamily>& parameters, const Candidate& candidate) {
   double largest = 0.0;
@@ -75,11 +78,19 @@ Fitted<SimplexFamily> with_least_zeros(const Dataset& data, const Zeros& zeros, 
   }
   Fitted<SimplexFamily> moved = fitted;
   raise(moved.base, candidate, constant);
+  Eigen::VectorXd of_mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(moved.free.size()));
+  double ordinates = 0.0;
   for (std::size_t k = 0; k < moved.free.size(); ++k) {
     const FreeParameter& p = moved.free[k];
     if (p.is_of_effect(candidate.effect) && p.is_ordinate()) {
       moved.u[k] = p.coordinate(std::clamp(p.value(moved.u[k]) + constant, p.lower, p.upper));
+      of_mean(static_cast<Eigen::Index>(k)) = p.unit_size;
+      ordinates += 1.0;
     }
+  }
+  if (ordinates > 0.0 && moved.normal.rows() == of_mean.size()) {
+    of_mean /= ordinates * kGiven * size;
+    moved.normal += of_mean * of_mean.transpose();
   }
   return moved;
 }

@@ -9,8 +9,8 @@ namespace hotfire::explain {
 
 /// A fitted model with another constant in the curve of an unlisted term: the one with which the records have the least
 /// zeros, in units of their prior (`data/zeros.hpp`). The records alone do not determine it, because every one of them has
-/// zeros of its own, which take up whatever a curve adds everywhere. `zeros` are those of the fitted model. The same model
-/// where a constant moves nothing at rest.
+/// zeros of its own, which take up whatever a curve adds everywhere. `zeros` are those of the fitted model. The intervals of
+/// the curve are then those of its shape, the constant given. The same model where a constant moves nothing at rest.
 Fitted<SimplexFamily> with_least_zeros(const Dataset& data, const Zeros& zeros, const Fitted<SimplexFamily>& fitted,
                                        const Candidate& candidate);
 
