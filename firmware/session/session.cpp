@@ -9,15 +9,8 @@ namespace hotfire::firmware {
 
 namespace {
 
-/// What became of the recording, beside a verdict that another cause has made bad.
-std::string also_recording(const Session& session) {
-  return session.recording != nullptr && session.recording->is_error
-             ? "; the recording failed too: " + session.recording->failure
-             : std::string();
-}
-
-/// What an end must have reached, whatever the limits; nothing if it has.
-std::optional<Verdict> bad_end(const Session& session) {
+/// What made a run bad or unsafe, whatever the limits; nothing if it was neither.
+std::optional<Verdict> failed_run(const Session& session) {
   const LoopResult& result = session.result;
   if (result.ending != Ending::completed && result.ending != Ending::asked) {
     return Verdict{false, std::string(kEndings[static_cast<std::size_t>(result.ending)]),
@@ -36,9 +29,11 @@ std::optional<Verdict> bad_end(const Session& session) {
   if (session.lab && !session.lab->left_the_bus) {
     return Verdict{false, "a command is still before the bus: take the interface down", kHardware};
   }
-  if (session.recording != nullptr && session.recording->is_error) {
-    return Verdict{false, "the recording failed: " + session.recording->failure, kHardware};
-  }
+  return std::nullopt;
+}
+
+/// What a run that did not fail has not reached, whatever the limits; nothing if it has.
+std::optional<Verdict> unfinished_run(const Session& session) {
   if (session.lab && !session.lab->came_to_rest) {
     return Verdict{false, "a piston still moved when the stopping time was over", kBadVerdict};
   }
@@ -58,8 +53,17 @@ std::optional<Verdict> bad_end(const Session& session) {
 Verdict judge(const Session& session) {
   const RunOptions& options = session.options;
   const LoopResult& result = session.result;
-  if (std::optional<Verdict> bad = bad_end(session)) {
-    bad->reason += bad->reason.starts_with("the recording failed") ? "" : also_recording(session);
+  std::optional<Verdict> bad = failed_run(session);
+  if (session.recording != nullptr && session.recording->is_error) {
+    const std::string& why = session.recording->failure;
+    if (bad) {
+      bad->reason += "; the recording failed too: " + why;
+    } else {
+      bad = Verdict{false, "the recording failed: " + why, kHardware};
+    }
+  }
+  bad = bad ? bad : unfinished_run(session);
+  if (bad) {
     return *bad;
   }
   Verdict verdict;

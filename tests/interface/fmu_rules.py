@@ -106,6 +106,8 @@ FUNCTIONS = {
         GetNumberOfEventIndicators GetNumberOfContinuousStates EnterStepMode GetOutputDerivatives DoStep
         ActivateModelPartition""".split() + [v + t for v in ("Get", "Set") for t in TYPES_3]},
 }
+# Where the binary for this machine is.
+BINARIES = {"2.0": "linux64", "3.0": "x86_64-linux"}
 # Debian 12: the oldest system that the binary is for.
 NEWEST_GLIBC = (2, 36)
 
@@ -233,7 +235,6 @@ def capabilities(root, version):
 def archive(path, root, version):
     """The folders, names and compression of section 2.3 of 2.0 and 2.5 of 3.0; sources that are named are there."""
     identifier = root.find("CoSimulation").get("modelIdentifier")
-    folder = "linux64" if version == "2.0" else "x86_64-linux"
     with zipfile.ZipFile(path) as file:
         entries = {entry.filename: entry for entry in file.infolist()}
         for name, entry in entries.items():
@@ -253,7 +254,7 @@ def archive(path, root, version):
             sources = [entry.get("name") for entry in build.iter("SourceFile")]
         if not sources:
             yield "no source file is named"
-        for name in [f"binaries/{folder}/{identifier}.so", "documentation/index.html", "documentation/licenses/license.txt",
+        for name in [f"binaries/{BINARIES[version]}/{identifier}.so", "documentation/index.html", "documentation/licenses/license.txt",
                      "documentation/externalDependencies.txt", "sources/CMakeLists.txt", *[f"sources/{source}" for source in sources]]:
             if name not in entries:
                 yield f"{name} is missing"
@@ -278,9 +279,8 @@ def binary(data, version):
 
 
 def binary_of(path, root, version):
-    folder = "linux64" if version == "2.0" else "x86_64-linux"
     with zipfile.ZipFile(path) as file:
-        return file.read(f"binaries/{folder}/{root.find('CoSimulation').get('modelIdentifier')}.so")
+        return file.read(f"binaries/{BINARIES[version]}/{root.find('CoSimulation').get('modelIdentifier')}.so")
 
 
 RULES = [elements, names, roles, starts, units, structure, capabilities]

@@ -53,7 +53,7 @@ double chosen_constant(double constant, double size) {
   const Evaluator<SimplexFamily> fine(data, Resolution::fine);
   const Assessed<SimplexFamily> wrong = assess(fine, 1, with_curve<E>(constant, size, candidate));
   CHECK(wrong.good());
-  const Assessed<SimplexFamily> right = assess(fine, 1, with_least_zeros(data, wrong.zeros, wrong.model, candidate));
+  const Assessed<SimplexFamily> right = assess(fine, 1, with_least_zeros(data, wrong.zeros, wrong.model, candidate).value());
   CHECK(right.good());
   DOUBLES_EQUAL(1.0, Goodness::combined(right.goodness.fitted), 0.05);
   return first_ordinate<E>(right.model);
@@ -94,7 +94,7 @@ TEST(TermConstant, IntervalsOfACurveAreThoseOfItsShape) {
     CHECK(!estimate.interval);
   }
   const Dataset data = test::data_of(test::declared());
-  const Fitted<SimplexFamily> given = with_least_zeros(data, {{-1e-4, 0.0, 0.0}}, fitted, candidate);
+  const Fitted<SimplexFamily> given = with_least_zeros(data, {{-1e-4, 0.0, 0.0}}, fitted, candidate).value();
   for (const Estimate& estimate : estimates(given.free, given.u, given.normal)) {
     CHECK(estimate.interval.has_value());
     DOUBLES_EQUAL(2e-4, estimate.value, 1e-9);
@@ -106,6 +106,6 @@ TEST(TermConstant, ModelWithoutACurveStaysAsItIs) {
   Candidate candidate;
   Fitted<SimplexFamily> fitted = with_curve<PistonReading>(0.0, 0.0, candidate);
   const Dataset data = test::data_of(test::declared());
-  const Fitted<SimplexFamily> same = with_least_zeros(data, {{1e-3, 1e-3, 0.0}}, fitted, candidate);
+  const Fitted<SimplexFamily> same = with_least_zeros(data, {{1e-3, 1e-3, 0.0}}, fitted, candidate).value_or(fitted);
   DOUBLES_EQUAL(0.0, first_ordinate<PistonReading>(same), 0.0);
 }

@@ -23,15 +23,30 @@ LabSettings settings_that_read_back() {
 class ReadBackGroup : public Utest, public test_lab::LabOnWire {
  public:
   ReadBackGroup() : LabOnWire(settings_that_read_back(), can::Layout::classic, lines_that_read_back()) {
+    rig.ask_to_stop_when(asked_);
     after_cycle = [this] {
       drive(kSupplyReadBack, welded || (on(kSupply) && !stuck));
       drive(kFaultReadBack, on(kFault) != lamp_is_wrong);
     };
   }
 
+  /// Asks the program to end and goes on until it may; returns for how many cycles its supply was off by then.
+  int end_program() {
+    asked_ = true;
+    int undriven = 0;
+    for (int i = 0; i < 3000 && !rig.ended(); ++i) {
+      cycle();
+      undriven += on(kSupply) ? 0 : 1;
+    }
+    return undriven;
+  }
+
   bool welded = false;
   bool stuck = false;
   bool lamp_is_wrong = false;
+
+ private:
+  std::atomic<bool> asked_{false};
 };
 
 }  // namespace
@@ -73,31 +88,19 @@ TEST(LabReadBack, ContactorThatIsWeldedIsAFaultOfASafeRigAndForbidsArming) {
 }
 
 TEST(LabReadBack, ContactorThatWeldsDuringTheProfileIsFoundBeforeTheProgramEnds) {
-  std::atomic<bool> asked{false};
-  rig.ask_to_stop_when(asked);
   cycles(20);
   LabOnWire::run();
   welded = true;
-  asked = true;
-  for (int i = 0; i < 3000 && !rig.ended(); ++i) {
-    cycle();
-  }
+  end_program();
   CHECK(rig.ended());
   CHECK(lab.outputs().interlock.first == Fault::supply_read_back);
   CHECK(on(kFault));
 }
 
 TEST(LabReadBack, SupplyThatFollowsEndsTheProgramAtOnce) {
-  std::atomic<bool> asked{false};
-  rig.ask_to_stop_when(asked);
   cycles(20);
   LabOnWire::run();
-  asked = true;
-  int undriven = 0;
-  for (int i = 0; i < 3000 && !rig.ended(); ++i) {
-    cycle();
-    undriven += on(kSupply) ? 0 : 1;
-  }
+  const int undriven = end_program();
   CHECK(lab.outputs().interlock.faults == FaultSet());
   CHECK(undriven <= 3);
 }

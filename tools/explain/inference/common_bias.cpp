@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/inference/common_bias.hpp"
 
-#include <array>
-#include <cmath>
+#include "tools/explain/inference/zero_shift.hpp"
 
 namespace hotfire::explain {
 
@@ -19,19 +18,6 @@ bool has_valve_bias(const PlainParameters<SimplexFamily>& parameters) {
     }
   });
   return has;
-}
-
-/// What a unit of bias adds to each reading of an axis at rest.
-std::array<double, 3> shift_by_bias(const PlainParameters<SimplexFamily>& parameters, double step) {
-  constexpr double kSmall = 0.01;
-  const model::Simplex<double> plain(parameters, step);
-  const model::Simplex<double> biased(with_valve_bias(parameters, kSmall), step);
-  const std::array<double, 3> before = plain.measured(plain.steady(0.0));
-  std::array<double, 3> shift = biased.measured(biased.steady(0.0));
-  for (std::size_t c = 0; c < shift.size(); ++c) {
-    shift[c] = (shift[c] - before[c]) / kSmall;
-  }
-  return shift;
 }
 
 }  // namespace
@@ -51,31 +37,11 @@ std::optional<double> common_valve_bias(const Dataset& data, const Zeros& zeros,
   if (data.experiments.size() < kFewestRecords || has_valve_bias(parameters)) {
     return std::nullopt;
   }
-  const std::array<double, 3> shift = shift_by_bias(parameters, data.experiments.front().period);
-  double product = 0.0;
-  double square = 0.0;
-  double whole = 0.0;
-  bool shows = false;
-  // Over the deviation of each channel's zero: as the zeros' prior weighs them.
-  for (std::size_t e = 0; e < zeros.size(); ++e) {
-    for (std::size_t c = 0; c < shift.size(); ++c) {
-      const Experiment& experiment = data.experiments[e];
-      if (experiment.measured[c].empty() || !(experiment.zero_deviation[c] > 0.0)) {
-        continue;
-      }
-      const double zero = zeros[e][c] / experiment.zero_deviation[c];
-      const double of_bias = shift[c] / experiment.zero_deviation[c];
-      product += of_bias * zero;
-      square += of_bias * of_bias;
-      whole += zero * zero;
-      shows = shows || std::abs(zeros[e][c]) > experiment.noise[c];
-    }
-  }
-  if (!shows || !(square > 0.0)) {
-    return std::nullopt;
-  }
-  const double left = whole - product * product / square;
-  return left < kLeft * kLeft * whole ? std::optional(product / square) : std::nullopt;
+  constexpr double kSmall = 0.01;
+  const double step = data.experiments.front().period;
+  const CommonShift common =
+      common_shift(data, zeros, shift_at_rest(parameters, with_valve_bias(parameters, kSmall), kSmall, step));
+  return common.shows && common.left < kLeft * kLeft * common.whole ? common.amount : std::nullopt;
 }
 
 }  // namespace hotfire::explain

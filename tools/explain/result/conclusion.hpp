@@ -68,8 +68,11 @@ inline void choose_constants(const Dataset& data, const Evaluator<SimplexFamily>
                              const std::vector<Kept>& found, Assessed<SimplexFamily>& fitted) {
   constexpr double kSameError = 1.001;
   for (const Kept& kept : found) {
-    Assessed<SimplexFamily> moved =
-        assess(whole, threads, with_least_zeros(data, fitted.zeros, fitted.model, kept.trial.candidate));
+    const auto least = with_least_zeros(data, fitted.zeros, fitted.model, kept.trial.candidate);
+    if (!least) {
+      continue;
+    }
+    Assessed<SimplexFamily> moved = assess(whole, threads, *least);
     if (moved.good() &&
         Goodness::combined(moved.goodness.fitted) <= kSameError * Goodness::combined(fitted.goodness.fitted)) {
       fitted = std::move(moved);
