@@ -3,16 +3,6 @@
 #   cmake -D ROOT=$PWD -P tools/style/layering.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# What a file of a room may include of ours, by its path from the root.
-set(rooms model hal firmware tools tests)
-set(allowed_model model)
-set(allowed_hal hal)
-set(allowed_firmware firmware model hal)
-set(allowed_tools tools model hal/arithmetic hal/sim hal/recording hal/live hal/schedule)
-# What other programs call is compiled on any target, and knows nothing of the host side.
-set(allowed_interface tools/interface model hal/arithmetic firmware/image)
-set(allowed_tests tests tools firmware model hal)
-
 include(${CMAKE_CURRENT_LIST_DIR}/rooms.cmake)
 # Files beside each other in one folder, of any kind.
 set(most_files 20)

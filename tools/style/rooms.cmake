@@ -1,8 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-# The rooms inside the larger folders: what each one is for, and below each room the rooms of the same folder that its files
-# may include. A file beside the rooms may include all of them; no room includes a file beside the rooms. Checked by
-# layering.cmake; drawn into docs/architecture.md by draw_rooms.cmake.
+# The arrows between the folders and between the rooms inside the larger ones. Checked by layering.cmake; drawn into
+# docs/architecture.md by draw_rooms.cmake.
 
+# What a file of a folder may include of ours, by its path from the root.
+set(rooms model hal firmware tools tests)
+set(allowed_model model)
+set(allowed_hal hal)
+set(allowed_firmware firmware model hal)
+set(allowed_tools tools model hal/arithmetic hal/sim hal/recording hal/live hal/schedule)
+# What other programs call is compiled on any target, and knows nothing of the host side.
+set(allowed_interface tools/interface model hal/arithmetic firmware/image)
+set(allowed_tests tests tools firmware model hal)
+
+# The rooms inside the larger folders: what each one is for, and below each room the rooms of the same folder that its files
+# may include. A file beside the rooms may include all of them; no room includes a file beside the rooms.
 set(houses model model/effects firmware tools/explain tools/files tools/study tools/interface tools/cli tests/model)
 
 # room(HOUSE NAME "what it is for" ROOM_BELOW...): rooms are declared from the lowest up.
