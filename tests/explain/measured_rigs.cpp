@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The closed loop on other people's rigs: measured_rigs emps|silverbox, whose data are not part of the project (the folder
-// that holds emps/ and silverbox/ is named by HOTFIRE_MEASURED_DATA, docs/explain.md; exit 77 without it), and measured_rigs
-// mts ARCHIVE FOLDER RECORD..., whose raw logs are in tests/data/measured.
+// that holds emps/ and silverbox/ is named by HOTFIRE_MEASURED_DATA, docs/explain/worked-examples.md; exit 77 without it),
+// and measured_rigs mts ARCHIVE FOLDER RECORD..., whose raw logs are in tests/data/measured.
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +61,8 @@ bool emps(const fs::path& folder) {
     return std::ranges::find(parameters, name, &hotfire::explain::EffectParameter::name)->value;
   };
   // A frictionless mass is off by metres. The friction of the other record is larger by a fortieth, and fits that follow the
-  // training record alike give 5.2 to 6.0 mm on it; 7 mm guards what is reached, not what is aimed at (docs/explain.md).
+  // training record alike give 5.2 to 6.0 mm on it; 7 mm guards what is reached, not what is aimed at
+  // (docs/explain/worked-examples.md).
   return found_first(result, "sliding_friction") && value("viscous_forward") < value("viscous_backward") &&
          check("EMPS", 1e3 * test_error(result.model, folder / "test.csv", 0, 20, SIZE_MAX), 7.0);
 }
@@ -133,7 +134,8 @@ int main(int argc, char** argv) {
   const fs::path folder = fs::path(data != nullptr ? data : "") / argv[1];
   if (data == nullptr || !fs::exists(folder / "train.csv")) {
     std::printf(
-        "skipped: HOTFIRE_MEASURED_DATA does not name a folder with %s/train.csv; docs/explain.md says where to get it\n",
+        "skipped: HOTFIRE_MEASURED_DATA does not name a folder with %s/train.csv; docs/explain/worked-examples.md says "
+        "where to get it\n",
         argv[1]);
     return 77;
   }
