@@ -29,6 +29,7 @@ struct PlantBusSettings {
   std::int64_t heartbeat_age_ns = std::numeric_limits<std::int64_t>::max();  ///< of the controller's last sign of life
   Authentication* authentication = nullptr;    ///< of commands and readings, if it is asked for
   std::optional<std::size_t> load_pressure{};  ///< which value of an actuator that is [Pa]; none: it is not sent
+  bool heartbeat_optional = false;             ///< a controller that has never sent a HEARTBEAT is followed all the same
 };
 
 /// The plant's side of a CAN bus (`hal::PlantBus`): takes the command of its layout, sends the readings of its actuators,
@@ -37,11 +38,11 @@ struct PlantBusSettings {
 /// `Bus` has the ids of `plant_ids`.
 ///
 /// A servovalve that nobody commands gets no current: when the newest command is older than its age limit, the plant is
-/// commanded zero, and the next frame is the first of a new series. The same when the controller's HEARTBEAT, once heard, is
-/// older than its limit though commands come, and for `kSecondSenderHoldNs` after a frame that a single controller does not
-/// send: of two it cannot know the right one. So too after a command that is not authentic. STATUS carries the number of
-/// that fault. What a played fault keeps from being sent is left out; in a frame of several actuators it is held, and the
-/// frame left out if none is left.
+/// commanded zero, and the next frame is the first of a new series. The same when the controller's HEARTBEAT is older than
+/// its limit though commands come, or has not come for as long since the first of them; and for `kSecondSenderHoldNs` after
+/// a frame that a single controller does not send: of two it cannot know the right one. So too after a command that is not
+/// authentic. STATUS carries the number of that fault. What a played fault keeps from being sent is left out; in a frame of
+/// several actuators it is held, and the frame left out if none is left.
 template <hal::CanBus Bus, hal::Clock Clock>
 class PlantBus {
  public:
@@ -65,7 +66,7 @@ class PlantBus {
     const auto arrived_ns = commands_.take_newest(command_message(settings_.layout), bus_.arrivals(), kCommandBox, currents);
     const bool too_old = arrived_ns && now - *arrived_ns > settings_.command_age_ns;
     too_old_ += too_old ? 1 : 0;
-    const Fault refused = refuses_controller(now);
+    const Fault refused = refuses_controller(now, arrived_ns);
     const bool first_refused = refused != Fault{} && refused_ == Fault{};
     refused_ = refused;
     if (refused != Fault{}) {
@@ -119,11 +120,15 @@ class PlantBus {
   static constexpr std::size_t kCommandBox = 0;  ///< as in `plant_ids`
   static constexpr std::size_t kHeartbeatBox = 1;
 
-  /// Why no command is acted on, though one may be there; none if it may be.
-  Fault refuses_controller(std::int64_t now) noexcept {
+  /// Why no command is acted on, though one may be there; none if it may be. `commanded_ns`: when one has come, if any has.
+  Fault refuses_controller(std::int64_t now, std::optional<std::int64_t> commanded_ns) noexcept {
     std::array<double, heartbeat::kSignals.size()> said{};
     const auto heard_ns = heartbeats_.take_newest(heartbeat::kMessage, bus_.arrivals(), kHeartbeatBox, said);
-    heartbeat_heard_ = heartbeat_heard_ || heard_ns;
+    if (commanded_ns && !heartbeat_due_ && !settings_.heartbeat_optional) {
+      heartbeat_due_ = true;
+      heartbeat_ns_ = *commanded_ns;
+    }
+    heartbeat_due_ = heartbeat_due_ || heard_ns;
     heartbeat_ns_ = heard_ns.value_or(heartbeat_ns_);
     const std::uint64_t of_two_senders =
         commands().of_two_senders() + heartbeats().of_two_senders() + bus_.counters().impostors;
@@ -143,7 +148,7 @@ class PlantBus {
     if (rival_heard_ && now - rival_ns_ < kSecondSenderHoldNs) {
       return Fault::second_sender;
     }
-    if (heartbeat_heard_ && now - heartbeat_ns_ > settings_.heartbeat_age_ns) {
+    if (heartbeat_due_ && now - heartbeat_ns_ > settings_.heartbeat_age_ns) {
       heartbeats_.forget();
       return Fault::heartbeat_lost;
     }
@@ -264,11 +269,11 @@ class PlantBus {
   PeriodicFrame strings_;  ///< says when they are due
   std::uint8_t string_counter_ = 0;
   std::int64_t arrived_ns_ = 0;
-  std::int64_t heartbeat_ns_ = 0;
+  std::int64_t heartbeat_ns_ = 0;  ///< when the last one has come, or the first command before any has
   std::int64_t rival_ns_ = 0;
   std::uint64_t of_two_senders_ = 0;
   Fault refused_{};
-  bool heartbeat_heard_ = false;
+  bool heartbeat_due_ = false;
   bool rival_heard_ = false;
   std::uint64_t unauthentic_ = 0;
   std::int64_t forgery_ns_ = 0;

@@ -42,7 +42,16 @@ struct FaultLimits {
   std::uint64_t speed_cycles = 1;      ///< over which a speed is measured; kMostSpeedCycles at most
   std::uint64_t read_back_cycles = 0;  ///< for which a line may read back other than it is commanded: contactors take time
   std::array<ActuatorLimits, hal::kMaxActuators> actuators{};
+  /// How often a node sends each of its messages: more of them are those of a second sender. 0: once in a period of the lab.
+  std::int64_t reading_period_ns = 0;
+  bool readings_answer_sync = false;  ///< one for each SYNC, which the lab sends in every cycle
 
+  std::int64_t reading_due_ns(std::int64_t period_ns) const noexcept {
+    return reading_period_ns == 0 ? period_ns : reading_period_ns;
+  }
+  std::int64_t longest_reading_age_ns() const noexcept {
+    return std::ranges::max(actuators, {}, &ActuatorLimits::reading_age_ns).reading_age_ns;
+  }
   /// Whether load pressures are measured: of all actuators or of none.
   bool has_load_pressure() const noexcept { return std::isfinite(actuators[0].load_pressure); }
 };

@@ -15,6 +15,10 @@ constexpr double kSmallest = 1e-9;
 /// What is done within this time is one act of a person, whose hand, sleeve or button may shake: it can arm or start, not
 /// both. No profile may ask for less [s].
 constexpr double kOneAct = 1.0;
+/// No node sends a message more often: a classic frame of eight bytes takes longer at 1 Mbit/s [s].
+constexpr double kShortestReadingPeriod = 1e-4;
+/// Frames of a message that a cycle looks at, so that those of every message have room (hal::kMaxCanArrivals).
+constexpr double kMostReadingsInAPeriod = 32.0;
 /// Contacts of buttons bounce for some milliseconds [s].
 constexpr double kShortestDebounce = 0.005;
 
@@ -87,6 +91,30 @@ void read_actuator_limits(Entries& entries, FaultLimits& limits, std::size_t act
   }
 }
 
+/// After the limits of the actuators.
+void read_reading_period(Entries& entries, FaultLimits& limits, std::size_t actuators, double period) {
+  constexpr const char* kKey = "limits.reading_period";
+  if (!entries.has(kKey)) {
+    return;
+  }
+  limits.readings_answer_sync = entries.take(kKey)->value == "sync";
+  if (limits.readings_answer_sync) {
+    return;
+  }
+  const double every = read_bounded(entries, kKey, kShortestReadingPeriod, 600.0, "s");
+  limits.reading_period_ns = static_cast<std::int64_t>(1e9 * every);
+  if (period > kMostReadingsInAPeriod * every) {
+    entries.refuse(text("%s = %g s is more than %g frames of a message in a period of %g s", kKey, every,
+                        kMostReadingsInAPeriod, period));
+  }
+  for (std::size_t i = 0; i < actuators; ++i) {
+    if (limits.reading_period_ns > limits.actuators[i].reading_age_ns) {
+      entries.refuse(text("%s is above limits.reading_age of actuator %zu: its readings would be stale", kKey, i + 1));
+      return;
+    }
+  }
+}
+
 void read_limits(Entries& entries, FaultLimits& limits, std::size_t actuators, double period) {
   const auto cycles = [&](const char* key, double most) {
     return static_cast<std::uint64_t>(read_bounded(entries, key, 0.0, most, "s") / period);
@@ -102,6 +130,7 @@ void read_limits(Entries& entries, FaultLimits& limits, std::size_t actuators, d
   limits.speed_cycles = std::max<std::uint64_t>(1, cycles("limits.speed_time", longest));
   limits.read_back_cycles = cycles("limits.read_back_time", 10.0);
   read_actuator_limits(entries, limits, actuators);
+  read_reading_period(entries, limits, actuators, period);
 }
 
 LabLines read_lines(Entries& entries) {

@@ -32,9 +32,10 @@ struct LabImage {
 ///     segment.0.duration 0x1p+2
 ///     segment.0.from 0x0p+0
 ///
-/// Every key is there but for lines that are not wired, and limits.load_pressure [Pa], without which load pressures are not
-/// measured; segments count from 0. What a segment asks for, and a limit of an actuator, is a list with a number for each
-/// actuator, commas between them. As strict as a plant image. `period` in s.
+/// Every key is there but for lines that are not wired, limits.load_pressure [Pa], without which load pressures are not
+/// measured, and limits.reading_period [s], or `sync`, without which a node sends each message once in a period; segments
+/// count from 0. What a segment asks for, and a limit of an actuator, is a list with a number for each actuator, commas
+/// between them. As strict as a plant image. `period` in s.
 LabImage parse_lab_image(const std::string& text, const std::string& name, double period);
 
 }  // namespace hotfire::firmware

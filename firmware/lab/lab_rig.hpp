@@ -61,10 +61,9 @@ class LabRig {
         sync_(can::sync::kMessage, period_ns),
         heartbeat_(can::heartbeat::kMessage, period_ns),
         take_back_every_(std::max<std::int64_t>(1, kTakeBackEveryNs / period_ns)),
-        leaving_(period_ns, lab.limits().read_back_cycles) {
-    for (std::size_t i = 0; i < messages_; ++i) {
-      budgets_[i] = {message(i), period_ns};
-    }
+        leaving_(period_ns, lab.limits().read_back_cycles),
+        period_ns_(period_ns) {
+    budgets_.fill({lab.limits().reading_due_ns(period_ns), lab.limits().longest_reading_age_ns()});
   }
 
   /// The recorder whose drops are a fault; null: nothing is recorded.
@@ -191,6 +190,7 @@ class LabRig {
     std::array<std::array<double, can::pistons_fd::kSignals.size()>, kMostMessages> values{};
     std::array<bool, kMostMessages> taken{};
     bool all = true;
+    const std::int64_t due_now = lab_.limits().readings_answer_sync ? static_cast<std::int64_t>(cycles_) * period_ns_ : now;
     for (std::size_t i = 0; i < messages_; ++i) {
       const auto arrived_ns = followers_[i].take_newest(message(i), can_.arrivals(), i, values[i]);
       taken[i] = arrived_ns.has_value();
@@ -200,7 +200,7 @@ class LabRig {
       }
       const auto came = std::count_if(can_.arrivals().begin(), can_.arrivals().end(),
                                       [i](const hal::CanArrival& arrival) { return arrival.subscription == i; });
-      followers_[i].note_too_many(budgets_[i].excess(static_cast<std::uint64_t>(came), now));
+      followers_[i].note_too_many(budgets_[i].excess(static_cast<std::uint64_t>(came), due_now));
       all = all && taken[i];
     }
     judge_frames();
@@ -366,6 +366,7 @@ class LabRig {
   can::PeriodicFrame heartbeat_;
   std::int64_t take_back_every_;  ///< cycles
   LabLeaving leaving_;
+  std::int64_t period_ns_;
   const Recorder* recorder_ = nullptr;
   const std::atomic<bool>* stop_asked_ = nullptr;
   std::atomic<bool> ended_{false};

@@ -123,9 +123,14 @@ constexpr OptionLine kLines[] = {
         "--command-per-current", "X", "command that a servovalve current on a CAN bus represents [rad/A]; default 10"),
     line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }>(
         "--command-age-ms", "X", "greatest age of a command on a CAN bus; an older one gives no current; default 100"),
-    line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }>(
-        "--heartbeat-age-ms", "X",
-        "largest age of the last HEARTBEAT, after the first one; if it is older, the valves get no\ncurrent; default 50"),
+    line<[](const std::string& value, PlantOptions& o) {
+      return read_number(value, 1.0, 1e6, o.heartbeat_age_ms);
+    }>("--heartbeat-age-ms", "X",
+       "largest age of the last HEARTBEAT, or of the first command without one; if it is older, the valves get\nno current; "
+       "default 50"),
+    line<[](const std::string&, PlantOptions& o) { return o.heartbeat_optional = true, std::string(); }>(
+        "--heartbeat-optional", "",
+        "a controller that never sends HEARTBEAT is followed; a HEARTBEAT that has come and stops is lost\nall the same"),
     line<[](const std::string& value, CanOptions& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }>(
         "--key", "FILE",
         "commands and readings are authenticated with the key in this file, 32 hexadecimal digits; FD layouts only"),

@@ -80,6 +80,7 @@ struct PlantOptions : PlantRunOptions, CurrentOptions {
   static constexpr std::string_view mode = "plant";
   double command_age_ms = 100.0;
   double heartbeat_age_ms = 50.0;
+  bool heartbeat_optional = false;
   bool strings = false;        ///< on a CAN bus: string potentiometers too
   bool load_pressure = false;  ///< on a CAN bus: it sends them
 };

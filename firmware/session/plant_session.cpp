@@ -63,7 +63,7 @@ class PlantSession {
                      {frame_layout(options_), options_.actuators, Plant::channels.size(), options_.command_per_current,
                       options_.loop.period_ns, static_cast<std::int64_t>(options_.command_age_ms * 1e6),
                       static_cast<std::int64_t>(options_.heartbeat_age_ms * 1e6), session.authentication(),
-                      options_.load_pressure ? load_pressure_of<Plant>() : std::nullopt});
+                      options_.load_pressure ? load_pressure_of<Plant>() : std::nullopt, options_.heartbeat_optional});
     WireAccount account_of_wire;
     account_of_wire.complete = [&](Session& result) {
       BusAccount account = session.account();

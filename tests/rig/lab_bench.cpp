@@ -132,7 +132,8 @@ void SensorNode::answer() {
   can::encode(can::piston_1::kMessage, std::array{first, first + second_offset}, counter_, frame);
   frame.data[3] ^= mode == Mode::damaged ? 1 : 0;
   send(frame);
-  if (mode == Mode::doubled) {
+  if (mode == Mode::doubled || mode == Mode::surplus) {
+    counter_ += mode == Mode::surplus ? 1 : 0;
     can::encode(can::piston_1::kMessage, std::array{0.0, 0.0}, counter_, frame);
     send(frame);
   }

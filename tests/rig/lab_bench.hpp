@@ -27,10 +27,11 @@ void wait_until(const std::string& what, const std::function<bool()>& is_so);
 
 /// What is on the bus beside the lab: an actuator that goes where it is told, with its two potentiometers, which answer
 /// SYNC, and with its load pressure if it is told to; it keeps count of the commands, and can be made to go wrong: `doubled`
-/// is a second node that says after every reading, with its counter, that the piston stands at 0.
+/// is a second node that says after every reading, with its counter, that the piston stands at 0; `surplus` is one that says
+/// so with the next counter, on which the first one goes on.
 class SensorNode {
  public:
-  enum class Mode : std::uint8_t { good, silent, damaged, jammed, doubled };
+  enum class Mode : std::uint8_t { good, silent, damaged, jammed, doubled, surplus };
 
   SensorNode();
   ~SensorNode();

@@ -193,6 +193,12 @@ TEST(Lab, FaultOfAReadingLeavesItSafeUntilArmedAgain) {
                  Fault::limit, Fault::readings_disagree});
 }
 
+TEST(Lab, SecondNodeWhoseCountersFitLeavesItSafeHoweverLateTheCyclesAre) {
+  start(std::string(kShortLimitLines) + "limits.reading_period sync\n");
+  goes_safe([&] { node->mode = SensorNode::Mode::surplus; }, [&] { node->mode = SensorNode::Mode::good; });
+  ended_driving({Fault::second_sender});
+}
+
 TEST(Lab, FaultOfTheBusLeavesItSafeUntilArmedAgain) {
   start("limits.reading_age 10\nlimits.command_age 10\n");
   goes_safe([&] { CHECK(node->report_bus_off()); }, [] {});

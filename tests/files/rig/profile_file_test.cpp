@@ -108,6 +108,20 @@ TEST(ProfileFile, LimitOfLoadPressureNeedNotBeSaidAndLeavesNoLineThen) {
   refused_head("load_pressure", "load_presure", {"p.toml:21", "did you mean \"load_pressure\"?"});
 }
 
+TEST(ProfileFile, PeriodOfTheReadingsNeedNotBeSaidAndIsATimeOrSync) {
+  const std::string rest = "[[profile]]\nkind = \"rest\"\nduration = 1\n";
+  CHECK(lines(rest).find("reading_period") == std::string::npos);
+  head.replace(head.find("speed = 50"), 10, "speed = 50\nreading_period = \"sync\"");
+  test::expect_message(lines(rest), {"limits.reading_period sync\n"});
+  head.replace(head.find("\"sync\""), 6, "\"1 ms\"");
+  test::expect_message(lines(rest), {"limits.reading_period 0x1.0624dd2f1a9fcp-10\n"});
+  refused_head("\"1 ms\"", "\"50 us\"", {"p.toml:21", "limits.reading_period", "allowed: 0.0001 to 600 s"});
+  refused_head("\"1 ms\"", "\"2.1 ms\"", {"p.toml:21", "limits.reading_period", "up to limits.reading_age, 0.002 s"});
+  refused_head("\"1 ms\"", "\"synch\"", {"p.toml:21", "limits.reading_period"});
+  refused_head("\"1 ms\"", "\"1 mm\"", {"p.toml:21", "limits.reading_period"});
+  refused_head("reading_period", "reading_perod", {"p.toml:21", "did you mean \"reading_period\"?"});
+}
+
 TEST(ProfileFile, InterlockAndLinesThatNeedNotBeSaidAreReadWhereTheyAre) {
   head += "start = \"go\"\nsupply_read_back = \"contactor\"\nfault_read_back = \"lamp\"\n";
   const std::string rest = "[[profile]]\nkind = \"rest\"\nduration = 1\n";

@@ -71,6 +71,32 @@ TEST(LabImage, LimitOfLoadPressureMayBeThereAndIsThenOfEveryActuator) {
   refused("limits.load_pressure", "limits.load_presure", "limits.load_presure = 2e7,0x1p+20: unknown key");
 }
 
+TEST(LabImage, PeriodOfTheReadingsMayBeThereAndSaysOtherwiseOnceAPeriodOfTheLab) {
+  const auto limits = [this](const char* value) {
+    const LabImage read = parse_lab_image(image + "limits.reading_period " + value + "\n", "image", 1e-2);
+    STRCMP_EQUAL("", read.error.c_str());
+    return read.settings->limits;
+  };
+  const FaultLimits none = parse_lab_image(image, "image", 1e-2).settings->limits;
+  LONGS_EQUAL(10'000'000, none.reading_due_ns(10'000'000));
+  CHECK(!none.readings_answer_sync);
+  LONGS_EQUAL(10'000'000, limits("sync").reading_due_ns(10'000'000));
+  CHECK(limits("sync").readings_answer_sync);
+  LONGS_EQUAL(1'000'000, limits("0x1.0624dd2f1a9fcp-10").reading_due_ns(10'000'000));
+  CHECK(!limits("0.001").readings_answer_sync);
+  LONGS_EQUAL(1'000'000'000, limits("0.001").longest_reading_age_ns());
+  image += "limits.reading_period 0.001\n";
+  const std::string line = "limits.reading_period 0.001";
+  refused(line, "limits.reading_period 0", "allowed is a number from 0.0001 to 600 s");
+  refused(line, "limits.reading_period 5e-05", "allowed is a number from 0.0001 to 600 s");
+  refused(line, "limits.reading_period nan", "allowed is a number from 0.0001 to 600 s");
+  refused(line, "limits.reading_period synch", "allowed is a number from 0.0001 to 600 s");
+  refused(line, "limits.reading_period 0.0079", "above limits.reading_age of actuator 1: its readings would be stale");
+  refused(line, "limits.reading_periode 0.001", "unknown key");
+  STRCMP_CONTAINS("more than 32 frames of a message in a period of 0.0325 s",
+                  parse_lab_image(image, "image", 0.0325).error.c_str());
+}
+
 TEST(LabImage, WhatCannotBeIsRefusedWithItsLine) {
   refused("topology lab", "topology simplex", "line 2: topology = simplex: allowed are lab");
   refused("actuators 2", "actuators 9", "allowed is a number from 1 to 8");

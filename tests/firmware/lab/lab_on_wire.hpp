@@ -21,13 +21,15 @@ class LabOnWire {
   using Wire = hal::sim::CanWire;
   using Rig = LabRig<Wire::Node, hal::sim::GpioBoard, hal::sim::ManualClock>;
 
-  explicit LabOnWire(LabSettings made, can::Layout frames = can::Layout::classic, const LabLines& lines = usual_lines())
+  explicit LabOnWire(LabSettings made, can::Layout frames = can::Layout::classic, const LabLines& lines = usual_lines(),
+                     std::int64_t cycle_ns = kPeriodNs)
       : layout(frames),
         actuators(made.actuators),
+        period_ns(cycle_ns),
         measures_load_pressure_(made.limits.has_load_pressure()),
         wiring(lab_gpio(lines, "board")),
         board(wiring.settings),
-        lab(std::move(made), kPeriod) {
+        lab(std::move(made), 1e-9 * static_cast<double>(cycle_ns)) {
     drive(kEmergencyStopReleased, true);
     drive(kHydraulicEnabled, true);
   }
@@ -55,7 +57,7 @@ class LabOnWire {
       echo = plant.mailbox(0).frame.data[can::command_message(layout).crc_bits / 8];
     }
     after_cycle();
-    clock.advance_ns(kPeriodNs);
+    clock.advance_ns(period_ns);
   }
 
   void cycles(int count) {
@@ -105,6 +107,7 @@ class LabOnWire {
  public:
   can::Layout layout;
   std::size_t actuators;
+  std::int64_t period_ns;
 
  private:
   bool measures_load_pressure_;
@@ -123,7 +126,7 @@ class LabOnWire {
   Lab lab;
   Wire::Node node{wire, own_.subscriptions, own_.senders};
   Wire::Node plant{wire, of_plant_.subscriptions, of_plant_.senders};
-  Rig rig{lab, node, board, wiring, clock, layout, kPeriodNs};
+  Rig rig{lab, node, board, wiring, clock, layout, period_ns};
   double piston = 0.0;                         ///< what both of its readings say [m]
   PerActuator load_pressures{};                ///< [Pa]
   std::uint64_t commands = 0;                  ///< that have reached the plant

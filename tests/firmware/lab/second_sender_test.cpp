@@ -16,10 +16,51 @@ using test_lab::LabOnWire;
 constexpr double kTrue = 0.14;       ///< where the piston is: beyond its limit of 0.06 m
 constexpr double kPretended = 0.01;  ///< what the other node says
 
+/// Of a lab: the shortest, the longest, and others.
+constexpr std::array<std::int64_t, 6> kPeriodsNs{250'000, 500'000, 1'000'000, 2'000'000, 5'000'000, 10'000'000};
+
+/// How often a node sends each of its messages: so many frames in every so many cycles.
+struct Rate {
+  int frames = 1;
+  int cycles = 1;
+  bool answers_sync = false;
+};
+
+/// A lab of as many actuators as a layout has room for, with a period of its own.
+LabSettings settings_of(can::Layout frames, std::int64_t period_ns, const Rate& declared) {
+  LabSettings made = test_lab::full_settings(frames);
+  made.profile = Profile({test_lab::segment(100.0, 0.02, 0.02)});
+  made.limits.command_age_ns = 5 * period_ns;
+  made.limits.actuators.fill({5 * declared.cycles * period_ns, -0.06, 0.06, 100.0, 2e7});
+  // One frame a cycle need not be declared.
+  made.limits.reading_period_ns = declared.frames == declared.cycles ? 0 : declared.cycles * period_ns / declared.frames;
+  made.limits.readings_answer_sync = declared.answers_sync;
+  return made;
+}
+
 /// A lab that runs in a layout, and another node, which may send what its plant and itself send.
 class Rivals : public LabOnWire {
  public:
+  static constexpr std::size_t kNone = 99;  ///< of the messages
+
   explicit Rivals(can::Layout frames) : LabOnWire(test_lab::full_settings(frames), frames) { run(); }
+
+  /// With a plant that sends at a rate, which may be another one than was declared.
+  Rivals(can::Layout frames, std::int64_t cycle_ns, const Rate& rate, const Rate& declared)
+      : LabOnWire(settings_of(frames, cycle_ns, declared), frames, usual_lines(), cycle_ns) {
+    sends = false;
+    before_lab = [this, rate, cycle = 0]() mutable {
+      for (int i = 0; i < rate.frames && cycle % rate.cycles == 0; ++i) {
+        send_every_message();
+      }
+      ++cycle;
+    };
+    cycles(rate.cycles);  // until a frame has come after time 0, which is none
+    run();
+  }
+
+  /// From now on the other node sends this message as often as the plant, with counters that fit.
+  void double_message(std::size_t which) { doubled_ = which; }
 
   void other_sends(const hal::CanFrame& frame) {
     other_.receive(clock.now_ns());
@@ -40,8 +81,34 @@ class Rivals : public LabOnWire {
     return ids;
   }
 
+  void send_every_message() {
+    for (std::size_t which = 0; which < messages(); ++which) {
+      CHECK(plant.try_send(reading(which, next_[which]++)) == hal::CanSend::taken);
+      plant.receive(clock.now_ns());
+      if (which == doubled_) {
+        other_sends(reading(which, next_[which]++));
+      }
+    }
+  }
+
   Wire::Node other_{wire, {}, all_ids()};
+  std::size_t doubled_ = kNone;
+  std::array<std::uint8_t, can::kMostReadingMessages + 1> next_{};  ///< counter of the next frame of each message
 };
+
+/// Runs `act(layout, which, period_ns)` for every message of every layout that a lab listens to, at every period.
+template <class Act>
+void at_every_period(Act&& act) {
+  for (const std::int64_t period_ns : kPeriodsNs) {
+    for (std::size_t layout = 0; layout < can::kLayouts.size(); ++layout) {
+      const auto frames = static_cast<can::Layout>(layout);
+      const std::size_t messages = can::reading_messages(frames, can::most_actuators(frames)) + 1;
+      for (std::size_t which = 0; which < messages; ++which) {
+        act(frames, which, period_ns);
+      }
+    }
+  }
+}
 
 /// Runs `act(rivals, which)` on a lab of its own for every message of every layout that it listens to.
 template <class Act>
@@ -134,18 +201,44 @@ TEST(SecondSender, CounterThatRunsAheadOfTheTrueOneIsFoundOut) {
   for_every_message([](Rivals& rivals, std::size_t which) { expect_found_out(rivals, which, 1); });
 }
 
-TEST(SecondSender, MoreFramesThanAreDueAreFoundOutThoughTheirCountersFit) {
-  for_every_message([](Rivals& rivals, std::size_t which) {
-    rivals.before_lab = [&] {
-      for (std::size_t i = 0; i < rivals.messages(); ++i) {
-        rivals.other_sends(rivals.reading(i, rivals.counter));
-      }
-      ++rivals.counter;
-    };
-    rivals.cycles(20);
+TEST(SecondSender, MoreFramesThanAreDueAreFoundOutInTwoCyclesAtEveryPeriodThoughTheirCountersFit) {
+  at_every_period([](can::Layout layout, std::size_t which, std::int64_t period_ns) {
+    Rivals rivals(layout, period_ns, {}, {});
+    rivals.cycles(300);
+    CHECK(rivals.drives());
+    rivals.double_message(which);
+    rivals.cycles(2);
     CHECK(!rivals.drives());
-    CHECK(rivals.lab.outputs().interlock.first == Fault::second_sender);
-    CHECK(rivals.rig.readings(which).too_many > 0);
+    CHECK(!rivals.on(kSupply));
+    CHECK(rivals.faults() == FaultSet(Fault::second_sender));
+    UNSIGNED_LONGS_EQUAL(1, rivals.rig.readings(which).too_many);
+  });
+}
+
+TEST(SecondSender, NodeThatDoesNotSendOnceAPeriodIsDeclaredAndHeldToThatAtEveryPeriod) {
+  for (const Rate& rate : {Rate{4, 1}, Rate{1, 4}, Rate{3, 2}}) {
+    at_every_period([&rate](can::Layout layout, std::size_t which, std::int64_t period_ns) {
+      Rivals rivals(layout, period_ns, rate, rate);
+      rivals.cycles(300);
+      CHECK(rivals.drives());
+      rivals.double_message(which);
+      rivals.cycles(2 * rate.cycles);
+      CHECK(!rivals.drives());
+      CHECK(rivals.faults() == FaultSet(Fault::second_sender));
+    });
+  }
+}
+
+TEST(SecondSender, NodesThatAnswerSyncAreHeldToOneFrameForEachHoweverLateTheCyclesAre) {
+  at_every_period([](can::Layout layout, std::size_t which, std::int64_t period_ns) {
+    Rivals rivals(layout, period_ns, {}, {.answers_sync = true});
+    rivals.after_cycle = [&] { rivals.clock.advance_ns(2 * period_ns); };
+    rivals.cycles(300);
+    CHECK(rivals.drives());
+    rivals.double_message(which);
+    rivals.cycles(2);
+    CHECK(!rivals.drives());
+    CHECK(rivals.faults() == FaultSet(Fault::second_sender));
   });
 }
 

@@ -146,7 +146,7 @@ TEST(Options, AnOptionOfAnotherModeIsRefusedWithTheModesThatTakeIt) {
       {"plant, timing, controller", {"--actuators", "--command", "--amplitude", "--frequency"}},
       {"plant, timing", {"--sync", "--max-missed-syncs", "--sync-patience-ms"}},
       {"plant, controller", {"--command-per-current"}},
-      {"plant", {"--command-age-ms", "--heartbeat-age-ms", "--strings", "--load-pressure"}},
+      {"plant", {"--command-age-ms", "--heartbeat-age-ms", "--heartbeat-optional", "--strings", "--load-pressure"}},
       {"controller", {"--lockstep"}},
       {"lab", {"--gpio", "--confirm", "--rehearsal"}}};
   std::size_t limited = 0;

@@ -45,6 +45,9 @@ constexpr std::array<ProfileNumber, 4> kActuatorLimits{{{"reading_age", "s", 0.0
                                                         {"speed", "m/s", kAboveZero, kAny}}};
 /// As those, but need not be said: load pressures are then not measured. Bounded by what a frame can say.
 constexpr ProfileNumber kLoadPressureLimit{"load_pressure", "Pa", kAboveZero, 50e6};
+/// How often a node sends each of its messages, or kSync; need not be said: once in a period of the lab.
+constexpr std::string_view kSync = "sync";
+constexpr ProfileNumber kReadingPeriod{"reading_period", "s", 1e-4, 600.0};
 /// A number that need not be said, and what it then is.
 struct Default {
   ProfileNumber number;
@@ -134,8 +137,8 @@ class Reader {
   void read_limits() {
     const toml::table& limits = table("limits");
     Words known = names_of_numbers(kLimitNumbers);
-    for (const Words& more :
-         {names_of_numbers(kActuatorLimits), names_of_numbers(kLimitDefaults), Words{kLoadPressureLimit.key, "overruns"}}) {
+    for (const Words& more : {names_of_numbers(kActuatorLimits), names_of_numbers(kLimitDefaults),
+                              Words{kLoadPressureLimit.key, kReadingPeriod.key, "overruns"}}) {
       known.insert(known.end(), more.begin(), more.end());
     }
     refuse_unknown_keys(source_, limits, "limits.", known);
@@ -153,9 +156,26 @@ class Reader {
     if (limits.contains(kLoadPressureLimit.key)) {
       read_actuator_limit(limits, kLoadPressureLimit, command_rate);
     }
+    if (limits.contains(kReadingPeriod.key)) {
+      read_reading_period(limits);
+    }
     const toml::node* overruns = limits.get("overruns");
     line("limits.overruns",
          std::to_string(overruns == nullptr ? 0 : numbers_.count(*overruns, "limits.overruns", 0, 1'000'000)));
+  }
+
+  void read_reading_period(const toml::table& limits) {
+    if (limits.get(kReadingPeriod.key)->value<std::string_view>() == kSync) {
+      line("limits." + std::string(kReadingPeriod.key), std::string(kSync));
+      return;
+    }
+    const double every = read(limits, "limits.", kReadingPeriod);
+    const ProfileNumber& age = kActuatorLimits[0];
+    const std::vector<double> ages = numbers_.each(*limits.get(age.key), "limits." + std::string(age.key), age);
+    if (const double least = *std::min_element(ages.begin(), ages.end()); every > least) {
+      source_.refuse(*limits.get(kReadingPeriod.key), "limits." + std::string(kReadingPeriod.key),
+                     fmt::format("allowed: up to limits.reading_age, {:g} s, beyond which a reading is stale", least));
+    }
   }
 
   void read_actuator_limit(const toml::table& limits, const ProfileNumber& wanted, double command_rate) {
