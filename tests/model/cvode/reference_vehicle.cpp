@@ -27,8 +27,53 @@ std::size_t engine_states(const ReferenceVehicle& vehicle) { return kHalves + (h
 
 struct Problem {
   const ReferenceVehicle* vehicle = nullptr;
-  const double* commands = nullptr;
+  const ReferenceVehicle::Inputs* inputs = nullptr;
+  std::vector<std::array<ReferenceAxis, 2>>
+      springs{};  ///< the axes with attach points as stiff as the inputs' thrust makes them
 };
+
+double thrust_of(const Problem& problem, std::size_t e) {
+  const std::vector<double>& thrust = problem.inputs->thrust;
+  return problem.vehicle->engines[e].thrust + (thrust.empty() ? 0.0 : thrust[e]);
+}
+
+/// Takes what drives the next sample: attach points are softer under less than rated thrust, their flexibility linear in it.
+void drive(Problem& problem, const ReferenceVehicle::Inputs& inputs) {
+  problem.inputs = &inputs;
+  for (std::size_t e = 0; e < problem.springs.size(); ++e) {
+    const ReferenceVehicle::Engine& engine = problem.vehicle->engines[e];
+    const double rated = engine.rated_thrust;
+    const double missing = rated > 0.0 ? std::max(0.0, 1.0 - thrust_of(problem, e) / rated) : 0.0;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      problem.springs[e][axis].load_stiffness =
+          engine.axes[axis].load_stiffness / (1.0 + (1.0 / engine.unloaded_structure - 1.0) * missing);
+    }
+  }
+}
+
+/// What drives one engine over a sample.
+struct OnEngine {
+  const double* commands = nullptr;
+  const std::array<ReferenceAxis, 2>* springs = nullptr;
+  double thrust = 0.0;
+  Vector force = Vector::Zero();
+  Pair torque = Pair::Zero();
+};
+
+OnEngine on_engine(const Problem& problem, std::size_t e) {
+  const ReferenceVehicle::Inputs& inputs = *problem.inputs;
+  OnEngine on;
+  on.commands = &inputs.commands[2 * e];
+  on.springs = &problem.springs[e];
+  on.thrust = thrust_of(problem, e);
+  if (!inputs.force.empty()) {
+    on.force = inputs.force[e];
+  }
+  if (!inputs.torque.empty()) {
+    on.torque = Pair(inputs.torque[2 * e], inputs.torque[2 * e + 1]);
+  }
+  return on;
+}
 
 /// The engine turned: first by yaw about its own z, then with it by pitch about the vehicle's y.
 struct Turned {
@@ -67,29 +112,58 @@ struct Friction {
   Pair bristle_rate;
 };
 
-Friction lugre(const ReferenceVehicle::Engine& engine, const Pair& slip, const Pair& z) {
-  const auto& law = engine.friction;
-  if (law.level == 0.0) {
+/// What the level of a bearing's friction follows.
+struct Load {
+  double size = 0.0;   ///< |N| [N]
+  double rated = 1.0;  ///< thrust over the rated one
+};
+
+Load load_of(const ReferenceVehicle::Engine& engine, double thrust, const Vector& on_bearing) {
+  return {on_bearing.norm(), engine.rated_thrust > 0.0 ? thrust / engine.rated_thrust : 1.0};
+}
+
+Friction bristle(const ReferenceVehicle::Friction& law, const Load& load, const Pair& slip, const Pair& z) {
+  const double sliding = law.level + law.coefficient * law.radius * load.size;
+  if (sliding == 0.0) {
     return {Pair::Zero(), Pair::Zero()};
   }
   const double speed = slip.norm();
-  const double sliding = law.level * (1.0 + (engine.vibration_ratio - 1.0) * std::exp(-speed / engine.vibration_velocity));
-  const double level = study::stribeck(sliding, law.static_ratio, law.stribeck, speed);
-  const Pair rate = slip - law.stiffness * speed / level * z;
-  const double fading = std::exp(-(speed / law.damping_dies_at) * (speed / law.damping_dies_at));
-  return {law.stiffness * z + law.damping * fading * rate, rate};
+  const double gamma2 = 1.0 - (1.0 - law.vibration_ratio) * load.rated;
+  const double vibrated = sliding * (1.0 + (gamma2 - 1.0) * std::exp(-speed / law.vibration_velocity));
+  const double level = study::stribeck(vibrated, law.static_ratio, law.stribeck, speed);
+  Pair rate = slip - law.stiffness * speed / level * z;
+  if (speed > 0.0 && law.exponent != 1.0) {
+    rate *= std::pow(rate.norm() / speed, law.exponent - 1.0);
+  }
+  // Half of the bound of physics.md section 4, for the least level.
+  const double dies_at = law.damping > 0.0 ? 2.0 * std::sqrt(2.0 * std::numbers::e) * sliding * gamma2 / law.damping : 1.0;
+  const double fading = std::exp(-(speed / dies_at) * (speed / dies_at));
+  return {law.stiffness * z + law.damping * fading * rate + law.viscous * slip, rate};
+}
+
+/// Where force and torque would bring the bearing: softer in translation while the force does not seat it.
+Six seat(const ReferenceVehicle::Engine& engine, const Vector& force, const Pair& torque) {
+  const auto& compliance = engine.bearing_compliance;
+  Six wrench;
+  wrench << force, 0.0, torque;
+  Six moved = compliance * wrench;
+  if (engine.unloaded_stiffness < 1.0) {
+    const Vector under_load = compliance.topLeftCorner<3, 3>() * force;
+    const double squared = force.dot(under_load) / compliance(0, 0);
+    const double fading = std::exp(-squared / (engine.seat_scale * engine.seat_scale));
+    moved.head<3>() += (1.0 / engine.unloaded_stiffness - 1.0) * fading * under_load;
+  }
+  return moved;
 }
 
 /// Friction and the rate of the bearing, which depend on each other: the torque turns the bearing, whose rate is part of the
 /// slip. The bristle's damping is weak against the bearing's, so that the repetition contracts.
-Friction friction_on_bearing(const ReferenceVehicle::Engine& engine, const Pair& rate_of_engine, const Pair& z,
-                             const Six& bearing, const Vector& force, Six& bearing_rate) {
+Friction friction_on_bearing(const ReferenceVehicle::Engine& engine, const Load& load, const Pair& rate_of_engine,
+                             const Pair& z, const Six& bearing, const Vector& force, Six& bearing_rate) {
   Friction friction{Pair::Zero(), Pair::Zero()};
   for (int i = 0; i < 60; ++i) {
-    Six wrench;
-    wrench << force, 0.0, friction.torque;
-    bearing_rate = (engine.bearing_compliance * wrench - bearing) / engine.loss_time;
-    const Friction next = lugre(engine, rate_of_engine - bearing_rate.tail<2>(), z);
+    bearing_rate = (seat(engine, force, friction.torque) - bearing) / engine.loss_time;
+    const Friction next = bristle(engine.friction, load, rate_of_engine - bearing_rate.tail<2>(), z);
     const double change = (next.torque - friction.torque).norm();
     friction = next;
     if (change <= 1e-15 * friction.torque.norm()) {
@@ -101,10 +175,10 @@ Friction friction_on_bearing(const ReferenceVehicle::Engine& engine, const Pair&
 
 /// Friction between two halves of a bearing that have inertia, each on half of its torsion: what the engine's half passes
 /// on, and the rate of the bristle.
-Friction friction_between_halves(const ReferenceVehicle::Engine& engine, const Pair& angles, const Pair& rates,
-                                 const Pair& z, const double* y, double* d) {
+Friction friction_between_halves(const ReferenceVehicle::Engine& engine, const Load& load, const Pair& angles,
+                                 const Pair& rates, const Pair& z, const double* y, double* d) {
   const Pair slip(y[3] - y[1], y[7] - y[5]);
-  const Friction friction = lugre(engine, slip, z);
+  const Friction friction = bristle(engine.friction, load, slip, z);
   Friction passed{Pair::Zero(), friction.bristle_rate};
   for (int axis = 0; axis < 2; ++axis) {
     const double* own = y + 4 * axis;
@@ -133,19 +207,19 @@ struct OnStructure {
 };
 
 /// The equations of one engine, its states and their rates from `y` and `d` on.
-OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const double* commands, const Base& base,
-                              const double* y, double* d) {
+OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const OnEngine& on, const Base& base, const double* y,
+                              double* d) {
   const auto of = [&](int axis, int i) { return y[axis * kAxisStates + i]; };
   const Turned turned(of(0, kReferenceAngle), of(1, kReferenceAngle));
   const Eigen::Map<const Six> bearing(y + kBearing);
   OnStructure result;
-  Pair torque = Pair::Zero();
-  Vector on_bearing = engine.thrust * (turned.rotation * Vector::UnitX());
+  Pair torque = on.torque - on.thrust * engine.misalignment;
+  Vector on_bearing = (on.thrust + engine.dead_load) * (turned.rotation * Vector::UnitX()) + on.force;
   for (int axis = 0; axis < 2; ++axis) {
     const Actuator actuator = actuator_of(engine, axis, turned, of(axis, kReferenceAngle));
     const double deflection =
         of(axis, kReferencePiston) - actuator.stroke - base.moved(axis) - actuator.direction.dot(bearing.head<3>());
-    const double force = study::spring_force(engine.axes[static_cast<std::size_t>(axis)], deflection);
+    const double force = study::spring_force((*on.springs)[static_cast<std::size_t>(axis)], deflection);
     result.forces(axis) = force;
     on_bearing += force * actuator.direction;
     torque += force * actuator.arms;
@@ -153,11 +227,12 @@ OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const doub
 
   const Pair rates(of(0, kReferenceAngleRate), of(1, kReferenceAngleRate));
   Six bearing_rate;
-  const Pair bristle(y[kBristle], y[kBristle + 1]);
-  Friction friction = friction_on_bearing(engine, rates - base.turned_rate, bristle, bearing, on_bearing, bearing_rate);
+  const Pair z(y[kBristle], y[kBristle + 1]);
+  const Load load = load_of(engine, on.thrust, on_bearing);
+  Friction friction = friction_on_bearing(engine, load, rates - base.turned_rate, z, bearing, on_bearing, bearing_rate);
   if (engine.half_inertia > 0.0) {
     const Pair angles(of(0, kReferenceAngle), of(1, kReferenceAngle));
-    friction = friction_between_halves(engine, angles, rates, bristle, y + kHalves, d + kHalves);
+    friction = friction_between_halves(engine, load, angles, rates, z, y + kHalves, d + kHalves);
   }
   Eigen::Map<Six>(d + kBearing) = bearing_rate;
   d[kBristle] = friction.bristle_rate(0);
@@ -167,7 +242,7 @@ OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const doub
     const ReferenceAxis& a = engine.axes[static_cast<std::size_t>(axis)];
     const double* own = y + axis * kAxisStates;
     double* own_rate = d + axis * kAxisStates;
-    const double torque_motor = a.position_gain * (a.arm * commands[axis] - own[kReferencePiston]) -
+    const double torque_motor = a.position_gain * (a.arm * on.commands[axis] - own[kReferencePiston]) -
                                 a.pressure_gain * (own[kReferencePressure] - own[kReferenceWashout]);
     reference_hydraulics(a, study::clamp_to(torque_motor, 1.0), own, own_rate);
     own_rate[kReferencePiston] = own[kReferencePistonRate];
@@ -209,7 +284,7 @@ int derivative(double, N_Vector state, N_Vector result, void* user) {
       base.turned += rotation * modes[2 * k];
       base.turned_rate += rotation * modes[2 * k + 1];
     }
-    const OnStructure on = engine_derivative(vehicle.engines[e], problem.commands + 2 * e, base, y + e * own, d + e * own);
+    const OnStructure on = engine_derivative(vehicle.engines[e], on_engine(problem, e), base, y + e * own, d + e * own);
     for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
       const Eigen::Map<const Pair> attach(&vehicle.modes[k].attach[2 * e]);
       const Eigen::Map<const Pair> rotation(&vehicle.modes[k].rotation[2 * e]);
@@ -239,9 +314,12 @@ std::vector<double> scales(const ReferenceVehicle& vehicle) {
 }  // namespace
 
 std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& vehicle, const ReferenceVehicle::Start& start,
-                                                     const std::vector<std::vector<double>>& commands, double sample,
+                                                     const std::vector<ReferenceVehicle::Inputs>& inputs, double sample,
                                                      double tolerance, long* evaluations) {
-  Problem problem{&vehicle, nullptr};
+  Problem problem{&vehicle};
+  for (const ReferenceVehicle::Engine& engine : vehicle.engines) {
+    problem.springs.push_back(engine.axes);
+  }
   study::CvodeIntegrator integrator(derivative, &problem, scales(vehicle), tolerance);
   double* y = integrator.state();
   for (const ReferenceVehicle::Start::Engine& engine : start.engines) {
@@ -259,9 +337,9 @@ std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& veh
     y[2 * k] = start.modes[k];
   }
   std::vector<std::vector<double>> rows;
-  rows.reserve(commands.size());
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    problem.commands = commands[i].data();
+  rows.reserve(inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    drive(problem, inputs[i]);
     integrator.advance(static_cast<double>(i + 1) * sample);
     std::vector<double> row;
     for (std::size_t e = 0; e < vehicle.engines.size(); ++e) {

@@ -15,6 +15,22 @@ using study::ReferenceAxis;
 /// 3 alone, by vector mechanics: what the model is judged by. Nothing of model/ is used here.
 struct ReferenceVehicle {
   using Vector = Eigen::Vector3d;
+  using Pair = Eigen::Vector2d;
+
+  /// One bristle vector over both angles. Its sliding level is level + coefficient radius |N|.
+  struct Friction {
+    double level = 0.0;  ///< [N m]
+    double coefficient = 0.0;
+    double radius = 0.13;  ///< [m]
+    double stiffness = 0.0;
+    double static_ratio = 1.0;
+    double stribeck = 1.0;
+    double damping = 0.0;
+    double vibration_ratio = 1.0;     ///< gamma2 at rated thrust
+    double vibration_velocity = 1.0;  ///< v_s2 [rad/s]
+    double viscous = 0.0;             ///< sigma2 [N m s/rad]
+    double exponent = 1.0;            ///< of Dahl's law, without a static ratio and damping
+  };
 
   struct Engine {
     std::array<ReferenceAxis, 2> axes;  ///< pitch, yaw: declared values, dead band, softness and torque from the
@@ -22,12 +38,16 @@ struct ReferenceVehicle {
     bool declared_arms = false;         ///< `arm` of the axes at any angle: the attach points are not read
     std::array<Vector, 2> on_engine;    ///< attach points at zero angles, from the gimbal's centre
     std::array<Vector, 2> on_vehicle;
-    double thrust = 0.0;
+    double thrust = 0.0;               ///< declared [N]
+    double rated_thrust = 0.0;         ///< at which gamma2 and the attach points are as declared; 0: at any
+    double dead_load = 0.0;            ///< along the thrust [N]
+    Pair misalignment = Pair::Zero();  ///< arms of the thrust against positive angles [m]
+    double unloaded_structure = 1.0;   ///< stiffness of the attach points without thrust, over that under rated thrust
     double loss_time = 1e-3;
     Eigen::Matrix<double, 6, 6> bearing_compliance = Eigen::Matrix<double, 6, 6>::Zero();
-    ReferenceAxis::Bristle friction;  ///< one bristle vector over both angles; level zero: none
-    double vibration_ratio = 1.0;
-    double vibration_velocity = 1.0;
+    double unloaded_stiffness = 1.0;  ///< of the bearing in translation without load, over that under load
+    double seat_scale = 1e5;          ///< load over which it rises [N]
+    Friction friction;
     /// Of each half of the bearing about pitch and yaw, with half of its torsion on either side of the friction [kg m^2];
     /// zero: the halves have none. Only on a base at rest and for a torsion of its own about either axis.
     double half_inertia = 0.0;
@@ -43,6 +63,14 @@ struct ReferenceVehicle {
   };
   std::vector<Mode> modes;
 
+  /// What drives a vehicle over one sample.
+  struct Inputs {
+    std::vector<double> commands;  ///< of all axes [rad]
+    std::vector<double> thrust{};  ///< of all engines, beyond the declared one [N]; empty: none
+    std::vector<Vector> force{};   ///< on all engines, at their gimbals' centres [N]; empty: none
+    std::vector<double> torque{};  ///< on the engines, towards positive angles of all axes [N m]; empty: none
+  };
+
   /// Where a run starts: of every engine the eight states of both axes and six displacements of the bearing; the modes.
   struct Start {
     struct Engine {
@@ -54,11 +82,11 @@ struct ReferenceVehicle {
   };
 };
 
-/// Piston and engine of every axis at the end of each sample of `sample` seconds, the commands [rad] of all axes held
-/// between samples. As `study::integrate_reference`. What it took is added to `evaluations`: evaluations of the equations,
-/// without those for CVODE's Jacobian.
+/// Piston and engine of every axis at the end of each sample of `sample` seconds, the inputs held between samples. As
+/// `study::integrate_reference`. What it took is added to `evaluations`: evaluations of the equations, without those for
+/// CVODE's Jacobian.
 std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& vehicle, const ReferenceVehicle::Start& start,
-                                                     const std::vector<std::vector<double>>& commands, double sample,
+                                                     const std::vector<ReferenceVehicle::Inputs>& inputs, double sample,
                                                      double tolerance = 1e-10, long* evaluations = nullptr);
 
 }  // namespace hotfire::test

@@ -15,6 +15,7 @@ namespace hotfire::test {
 // Engines on a structure and the independent reference, told the same and run on the same commands.
 
 using VehicleRows = std::vector<std::vector<double>>;
+using Drive = std::vector<ReferenceVehicle::Inputs>;
 
 inline constexpr double kSample = 1e-3;
 inline constexpr int kSamples = 1200;
@@ -22,10 +23,10 @@ inline constexpr int kSamples = 1200;
 /// Sines from 1 to 9 Hz about both angles, a step up in pitch and one down in yaw, 0.3 deg each. Every further engine is
 /// commanded the same a little later and the other way round. All of it times `size_of_all`.
 template <class Vehicle>
-std::vector<std::vector<double>> command_profile(double size_of_all = 1.0) {
+Drive command_profile(double size_of_all = 1.0) {
   const double degree = size_of_all * std::numbers::pi / 180.0;
   const auto sine = [](double frequency, double t) { return std::sin(2.0 * std::numbers::pi * frequency * t); };
-  std::vector<std::vector<double>> commands;
+  Drive drive;
   for (int i = 0; i < kSamples; ++i) {
     std::vector<double> row;
     for (int engine = 0; engine < Vehicle::kEngines; ++engine) {
@@ -34,9 +35,9 @@ std::vector<std::vector<double>> command_profile(double size_of_all = 1.0) {
       row.push_back(size * (0.5 * sine(1.0, t) + 0.25 * sine(4.0, t) + 0.15 * sine(9.0, t) + (t >= 0.5 ? 0.3 : 0.0)));
       row.push_back(size * (0.4 * sine(1.3, t) + 0.2 * sine(6.0, t) - (t >= 0.8 ? 0.3 : 0.0)));
     }
-    commands.push_back(row);
+    drive.push_back({row});
   }
-  return commands;
+  return drive;
 }
 
 /// Three modes around the loaded resonance and one above, that turn the gimbal as well.
@@ -81,20 +82,32 @@ ReferenceAxis reference_axis_of(const typename Vehicle::AxisModel::Parameters& a
 }
 
 inline void tell_gimbal(const model::GimbalParameters<double>& gimbal, ReferenceVehicle::Engine& engine) {
-  engine.thrust = gimbal.bearing.thrust;
-  engine.loss_time = gimbal.bearing.loss_time;
+  using Law = model::BearingFriction<double>::Law;
+  const auto& bearing = gimbal.bearing;
+  engine.thrust = bearing.thrust;
+  engine.rated_thrust = bearing.rated_thrust;
+  engine.dead_load = bearing.dead_load;
+  engine.misalignment = {bearing.pitch_misalignment, bearing.yaw_misalignment};
+  engine.unloaded_structure = bearing.unloaded_structure;
+  engine.loss_time = bearing.loss_time;
+  engine.unloaded_stiffness = bearing.unloaded_stiffness;
+  engine.seat_scale = bearing.load_scale;
   if (gimbal.compliant) {
     engine.bearing_compliance = gimbal.stiffness.inverse();
   }
   const auto& law = gimbal.friction;
-  if (law.coulomb_torque > 0.0) {
-    const bool vibrated = law.law() == model::BearingFriction<double>::Law::vibrated_lugre;
-    const double least = vibrated ? law.coulomb_torque * law.vibration_ratio : law.coulomb_torque;
-    engine.friction = {law.coulomb_torque,    law.stiffness, law.static_ratio,
-                       law.stribeck_velocity, law.damping,   2.0 * std::sqrt(2.0 * std::numbers::e) * least / law.damping};
-    engine.vibration_ratio = vibrated ? law.vibration_ratio : 1.0;
-    engine.vibration_velocity = law.vibration_velocity;
-  }
+  const bool dahl = law.law() == Law::dahl;
+  engine.friction = {law.coulomb_torque,
+                     law.coefficient,
+                     law.radius,
+                     law.stiffness,
+                     dahl ? 1.0 : law.static_ratio,
+                     law.stribeck_velocity,
+                     dahl ? 0.0 : law.damping,
+                     law.law() == Law::vibrated_lugre ? law.vibration_ratio : 1.0,
+                     law.vibration_velocity,
+                     law.viscous,
+                     dahl ? law.exponent : 1.0};
 }
 
 /// The same vehicle, told to the reference.
@@ -143,13 +156,30 @@ ReferenceVehicle::Start start_of(const State& state, int modes) {
   return start;
 }
 
-/// The model from a start on the commands, `parts` steps a sample.
+/// What drives the reference over a sample, told to the model.
 template <class Vehicle>
-VehicleRows run_model(const Vehicle& plant, typename Vehicle::State state, int parts, double size = 1.0) {
-  VehicleRows rows;
+typename Vehicle::Inputs inputs_of(const ReferenceVehicle::Inputs& drive) {
   typename Vehicle::Inputs inputs;
-  for (const auto& commands : command_profile<Vehicle>(size)) {
-    std::copy(commands.begin(), commands.end(), inputs.commands.begin());
+  std::copy(drive.commands.begin(), drive.commands.end(), inputs.commands.begin());
+  std::copy(drive.thrust.begin(), drive.thrust.end(), inputs.thrust.begin());
+  std::copy(drive.force.begin(), drive.force.end(), inputs.force.begin());
+  std::copy(drive.torque.begin(), drive.torque.end(), inputs.torque.begin());
+  return inputs;
+}
+
+/// The steady state under the thrust of the first sample, uncommanded.
+template <class Vehicle>
+typename Vehicle::State start_of_drive(const Vehicle& plant, const Drive& drive) {
+  return plant.steady({}, inputs_of<Vehicle>(drive.front()).thrust);
+}
+
+/// The model from a start, `parts` steps a sample.
+template <class Vehicle>
+VehicleRows run_model(const Vehicle& plant, typename Vehicle::State state, int parts,
+                      const Drive& drive = command_profile<Vehicle>()) {
+  VehicleRows rows;
+  for (const ReferenceVehicle::Inputs& sample : drive) {
+    const auto inputs = inputs_of<Vehicle>(sample);
     for (int part = 0; part < parts; ++part) {
       plant.step(state, inputs);
     }
@@ -164,17 +194,19 @@ VehicleRows run_model(const Vehicle& plant, typename Vehicle::State state, int p
 }
 
 template <class Vehicle>
-VehicleRows run_model(const typename Vehicle::Parameters& parameters, int parts, double size = 1.0) {
+VehicleRows run_model(const typename Vehicle::Parameters& parameters, int parts,
+                      const Drive& drive = command_profile<Vehicle>()) {
   const Vehicle plant(parameters, kSample / parts);
-  return run_model(plant, plant.steady({}), parts, size);
+  return run_model(plant, start_of_drive(plant, drive), parts, drive);
 }
 
 /// The reference from the model's steady state.
 template <class Vehicle>
-VehicleRows run_reference(const typename Vehicle::Parameters& parameters, double tolerance = 1e-10, double size = 1.0) {
+VehicleRows run_reference(const typename Vehicle::Parameters& parameters, double tolerance = 1e-10,
+                          const Drive& drive = command_profile<Vehicle>()) {
   const Vehicle plant(parameters, kSample);
-  return integrate_reference(reference_of(parameters, plant), start_of(plant.steady({}), parameters.modes.modes),
-                             command_profile<Vehicle>(size), kSample, tolerance);
+  return integrate_reference(reference_of(parameters, plant), start_of(start_of_drive(plant, drive), parameters.modes.modes),
+                             drive, kSample, tolerance);
 }
 
 /// The largest error of any piston or engine, rms over the signal's rms.

@@ -11,12 +11,14 @@ namespace {
 // The figure asked for: half a percent of the signal's rms, in piston and engine of both axes.
 constexpr double kLimit = 5e-3;
 
-/// Checks the error at the two steps a sample that the tools take, and prints it beside that of one step a sample.
-void check_agreement(const char* name, const Taos::Parameters& parameters) {
-  const VehicleRows reference = run_reference<Taos>(parameters);
+/// Checks the error at the two steps a sample that the tools take, and prints it beside that of one step a sample. Returns
+/// the reference.
+VehicleRows check_agreement(const char* name, const Taos::Parameters& parameters,
+                            const Drive& drive = command_profile<Taos>()) {
+  const VehicleRows reference = run_reference<Taos>(parameters, 1e-10, drive);
   constexpr std::array<const char*, 4> kNames{"pitch piston", "pitch engine", "yaw piston", "yaw engine"};
-  const VehicleRows fine = run_model<Taos>(parameters, 2);
-  const VehicleRows coarse = run_model<Taos>(parameters, 1);
+  const VehicleRows fine = run_model<Taos>(parameters, 2, drive);
+  const VehicleRows coarse = run_model<Taos>(parameters, 1, drive);
   std::printf("\n%-34s", name);
   for (std::size_t channel = 0; channel < kNames.size(); ++channel) {
     const double error = relative_rms(fine, reference, channel);
@@ -24,6 +26,7 @@ void check_agreement(const char* name, const Taos::Parameters& parameters) {
                 100.0 * relative_rms(coarse, reference, channel));
     CHECK_TRUE_TEXT(error < kLimit, kNames[channel]);
   }
+  return reference;
 }
 
 /// Checks the order of convergence towards the reference of every piston and engine, mean over three halvings of a step of
@@ -37,6 +40,41 @@ void check_order(const char* name, const Taos::Parameters& parameters, double le
     std::printf("\norder %s: %.2f", name, order);
     CHECK_TRUE(order > least);
   }
+}
+
+/// Checks that the model without the physics in question parts from the reference that has it by at least twice the limit:
+/// the agreement is not one that they reach without.
+void check_difference(const char* name, const Taos::Parameters& without, const VehicleRows& reference,
+                      const Drive& drive = command_profile<Taos>()) {
+  const double difference = largest_error(run_model<Taos>(without, 2, drive), reference);
+  std::printf("\n%-34s %.2f %%", name, 100.0 * difference);
+  CHECK_TRUE_TEXT(difference > 2.0 * kLimit, name);
+}
+
+/// Thrust from zero to full and halfway back, the friction of the bearing mu N r: what follows the thrust follows it.
+Taos::Parameters follows_thrust() {
+  Taos::Parameters parameters = hot_fire<Taos>();
+  auto& gimbal = parameters.gimbals[0];
+  gimbal.bearing.rated_thrust = gimbal.bearing.thrust;
+  gimbal.bearing.dead_load = -3.4e4;
+  gimbal.bearing.unloaded_structure = 0.4;
+  gimbal.bearing.pitch_misalignment = 3e-3;
+  gimbal.bearing.yaw_misalignment = -2e-3;
+  gimbal.friction.coulomb_torque = 0.0;
+  gimbal.friction.coefficient = 0.08;
+  return parameters;
+}
+
+/// The profile, with thrust from zero at 0.2 s to full at 0.5 s and to half of it from 0.8 to 1 s.
+Drive thrust_profile(double full) {
+  Drive drive = command_profile<Taos>();
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const double t = static_cast<double>(i) * kSample;
+    const double up = std::clamp((t - 0.2) / 0.3, 0.0, 1.0);
+    const double down = std::clamp((t - 0.8) / 0.2, 0.0, 1.0);
+    drive[i].thrust = {full * (up - 0.5 * down - 1.0)};
+  }
+  return drive;
 }
 
 /// Hot fire without what is not smooth: no friction, no lap of the valve.
@@ -144,6 +182,77 @@ TEST(VehicleAgreesWithCvode, WithAtLeastTheFirstOrderUnderFriction) {
   check_order("with friction", parameters, 1.0);
 }
 
+TEST(VehicleAgreesWithCvode, WithFrictionThatFollowsTheLoadOnTheBearing) {
+  Taos::Parameters parameters = follows_thrust();
+  parameters.modes = four_modes();
+  const VehicleRows reference = check_agreement("mu N r, four modes", parameters);
+  parameters.gimbals[0].friction.coefficient = 0.0;
+  check_difference("without friction", parameters, reference);
+}
+
+TEST(VehicleAgreesWithCvode, FromAmbientToHotFireAndBackInOneRun) {
+  const Taos::Parameters parameters = follows_thrust();
+  const Drive drive = thrust_profile(parameters.gimbals[0].bearing.thrust);
+  const VehicleRows reference = check_agreement("thrust rises and falls", parameters, drive);
+  Taos::Parameters without = parameters;
+  auto& friction = without.gimbals[0].friction;
+  friction.coulomb_torque = friction.sliding_torque(parameters.gimbals[0].bearing.thrust);
+  friction.coefficient = 0.0;
+  check_difference("friction of full thrust", without, reference, drive);
+  without = parameters;
+  without.gimbals[0].bearing.unloaded_structure = 1.0;
+  check_difference("structure of full tanks", without, reference, drive);
+  without = parameters;
+  without.gimbals[0].bearing.pitch_misalignment = without.gimbals[0].bearing.yaw_misalignment = 0.0;
+  check_difference("thrust through the centre", without, reference, drive);
+}
+
+// The actuators and a disturbance seat the bearing and unseat it, without thrust to hold it down.
+TEST(VehicleAgreesWithCvode, OnABearingThatIsSofterWithoutLoad) {
+  Taos::Parameters parameters = smooth();
+  auto& bearing = parameters.gimbals[0].bearing;
+  bearing.thrust = 0.0;
+  bearing.unloaded_stiffness = 0.02;
+  bearing.load_scale = 4e4;
+  Drive drive = command_profile<Taos>();
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const double angle = 2.0 * std::numbers::pi * 5.0 * static_cast<double>(i) * kSample;
+    drive[i].force = {{3e4 * std::sin(angle), 1e4 * std::sin(0.7 * angle), -1e4 * std::sin(1.3 * angle)}};
+    drive[i].torque = {2e3 * std::sin(0.6 * angle), -2e3 * std::sin(0.8 * angle)};
+  }
+  const VehicleRows reference = check_agreement("softer without load", parameters, drive);
+  parameters.gimbals[0].bearing.unloaded_stiffness = 1.0;
+  check_difference("as stiff without load", parameters, reference, drive);
+}
+
+TEST(VehicleAgreesWithCvode, WithDahlsExponentAndTheViscousFrictionOfTheSlip) {
+  Taos::Parameters parameters = follows_thrust();
+  auto& friction = parameters.gimbals[0].friction;
+  friction.choose(model::BearingFriction<double>::Law::dahl);
+  friction.coefficient = 0.035;
+  friction.stiffness = 1e7;
+  friction.exponent = 2.0;
+  friction.viscous = 8e3;
+  const VehicleRows reference = check_agreement("Dahl's exponent 2, sigma2", parameters);
+  friction.exponent = 1.0;
+  check_difference("exponent 1", parameters, reference);
+  friction.exponent = 2.0;
+  friction.viscous = 0.0;
+  check_difference("without sigma2", parameters, reference);
+}
+
+TEST(VehicleAgreesWithCvode, WithVibrationThatFollowsTheThrust) {
+  Taos::Parameters parameters = follows_thrust();
+  auto& gimbal = parameters.gimbals[0];
+  gimbal.friction.choose(model::BearingFriction<double>::Law::vibrated_lugre);
+  gimbal.friction.vibration_ratio = 0.4;
+  gimbal.friction.vibration_velocity = 0.02;
+  const Drive drive = thrust_profile(gimbal.bearing.thrust);
+  const VehicleRows reference = check_agreement("vibrated_lugre, thrust rises", parameters, drive);
+  gimbal.friction.vibration_ratio = 1.0;
+  check_difference("without vibration", parameters, reference, drive);
+}
+
 // A block of 50 kg within 0.14 m of the gimbal's centre has less than 1 kg m^2. Given to each half, on half of the bearing's
 // torsion, it changes what engine and pistons do by less than a thousandth of what the halves' torsion does itself, which a
 // hundred times as much inertia does not.
@@ -187,9 +296,10 @@ TEST(VehicleAgreesWithCvode, WithFourEnginesInTheLinearLimit) {
   for (auto& axis : parameters.axes) {
     axis.structure.stiffness = 1.05e8 / 0.7;
   }
-  const VehicleRows reference = run_reference<Masv>(parameters, 1e-8, 0.01);
-  const double coarse = largest_error(run_model<Masv>(parameters, 2, 0.01), reference);
-  const double fine = largest_error(run_model<Masv>(parameters, 8, 0.01), reference);
+  const Drive drive = command_profile<Masv>(0.01);
+  const VehicleRows reference = run_reference<Masv>(parameters, 1e-8, drive);
+  const double coarse = largest_error(run_model<Masv>(parameters, 2, drive), reference);
+  const double fine = largest_error(run_model<Masv>(parameters, 8, drive), reference);
   std::printf("\nfour engines, linear limit: %.5f %% at 0.5 ms, %.5f %% at 0.125 ms", 100.0 * coarse, 100.0 * fine);
   CHECK_TRUE(fine < 1e-4);
 }
