@@ -149,9 +149,9 @@ TEST(TwoAxes, WhatExplainDoesNotTakeIsRefusedWithTheRemedy) {
     return test::refusal([&] { static_cast<void>(explain::explain(model, {none}, {})); });
   };
   const std::string taos = "schema = 1\ntopology = \"taos\"\n";
-  test::expect_message(refused("schema = 1\ntopology = \"masv\"\n"), {"masv", "one engine of it as \"taos\""});
-  test::expect_message(refused(taos + "[gimbal.friction]\nlaw = \"coulomb\"\ncoulomb_torque = 1e4\n"),
-                       {"gimbal", "effects.gimbal_friction.pitch"});
+  test::expect_message(
+      refused(taos + "[gimbal.friction]\ncoulomb_torque = 1e4\n[gimbal.vibration]\npitch_velocity = 0.05\n"),
+      {"gimbal.vibration", "vibrated_lugre"});
   test::expect_message(refused(taos + "[attach.pitch]\nengine_z = -0.7\n[tolerance]\nactuator.moment_arm = 0.01\n"),
                        {"actuator.moment_arm", "[attach]"});
   test::expect_message(refused(taos + "[sensors.piston]\nlag = 2e-3\n"), {"sensors.piston.lag", "effects.sensor_lag"});

@@ -38,18 +38,19 @@ struct ExplainOptions {
 /// support, and judges all of it on data that no fit has seen. Throws FileError if a record does not suit the model.
 Explanation explain(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options);
 
-/// What the finder hands out for a model of one engine with two axes.
-struct TaosExplanation {
+/// What the finder hands out for a model of several axes.
+struct VehicleExplanation {
   Result result;
   ReportSeries series;
   VehicleFile model;
 };
 
-/// The same for a `taos` model and records with channels of its axes, `command.pitch`, `piston.yaw`. Each axis is explained
-/// beside the measured motion of the other, which enters where the two are coupled: the geometry of the attach points and
-/// `cross_axis`. What is reported is what the model of both axes together leaves. An axis of which nothing is measured is
-/// simulated and not explained. Throws FileError for what cannot be explained: topology "masv", a bearing with friction,
-/// vibration or compliance, modes.
-TaosExplanation explain(const VehicleFile& model, const std::vector<Record>& records, const ExplainOptions& options);
+/// The same for a `taos` or `masv` model and records with channels of its axes, `command.pitch`, `piston.yaw3`. Each axis is
+/// explained beside the motion of all others. The measured motion of the other axis of its engine enters where the two are
+/// coupled: the geometry of the attach points and `cross_axis`. The motion of structure and bearings is that of the whole
+/// model. What is reported is what the model of all axes together leaves. An axis of which nothing is measured is simulated
+/// and not explained. Throws FileError for what cannot be explained: a bearing with friction or vibration, the lag of the
+/// pistons' potentiometers.
+VehicleExplanation explain(const VehicleFile& model, const std::vector<Record>& records, const ExplainOptions& options);
 
 }  // namespace hotfire::explain

@@ -34,7 +34,7 @@ struct Found {
 
 Found find(const Model& model, const std::vector<Record>& records, const explain::ExplainOptions& options) {
   if (const auto* vehicle = std::get_if<VehicleFile>(&model.file)) {
-    explain::TaosExplanation found = explain::explain(*vehicle, records, options);
+    explain::VehicleExplanation found = explain::explain(*vehicle, records, options);
     return {std::move(found.result), std::move(found.series), {std::move(found.model)}, std::nullopt};
   }
   explain::Explanation found = explain::explain(std::get<ModelFile>(model.file), records, options);

@@ -11,9 +11,8 @@
 
 #include "model/numerics/step_size.hpp"
 #include "tools/files/text/error.hpp"
-#include "tools/simulate/disturbances.hpp"
-#include "tools/simulate/excitation.hpp"
 #include "tools/simulate/run.hpp"
+#include "tools/simulate/vehicle_disturbances.hpp"
 #include "tools/simulate/vehicle_readings.hpp"
 
 namespace hotfire {
@@ -30,50 +29,6 @@ std::vector<const Channel*> command_channels(const Record& inputs, const std::ve
   }
   return channels;
 }
-
-/// Everything that acts on the engines of a vehicle beside its commands, as sampled signals: interpolated between rows, but
-/// for a thrust, which is held like a command.
-template <class Plant>
-class Disturbances {
- public:
-  Disturbances(const Record& inputs, const typename Plant::Parameters& parameters, int steps) : parameters_(parameters) {
-    for (const Disturbance& one : disturbances_of(inputs, parameters.gimbals)) {
-      const auto between =
-          one.kind == DisturbanceKind::thrust ? Excitation::Between::held : Excitation::Between::interpolated;
-      signals_.push_back({one.kind, one.place, Excitation(one.channel->values, steps, between)});
-    }
-  }
-
-  void put(std::size_t row, int step, typename Plant::Inputs& inputs) const {
-    for (const Signal& signal : signals_) {
-      const double value = signal.mean(row, step);
-      switch (signal.kind) {
-        case DisturbanceKind::torque:
-          inputs.torque[signal.place] = value;
-          break;
-        case DisturbanceKind::force:
-          inputs.force[signal.place / 3](static_cast<Eigen::Index>(signal.place % 3)) = value;
-          break;
-        case DisturbanceKind::vibration:
-          inputs.vibration[signal.place] = value;
-          break;
-        case DisturbanceKind::thrust:
-          inputs.thrust[signal.place] = value - parameters_.gimbals[signal.place].bearing.thrust;
-          break;
-      }
-    }
-  }
-
- private:
-  struct Signal {
-    DisturbanceKind kind{};
-    std::size_t place = 0;
-    Excitation mean;  ///< over plant step `step` of a row
-  };
-
-  const typename Plant::Parameters& parameters_;
-  std::vector<Signal> signals_;
-};
 
 /// A record with a channel for all that a run gives, and the commands filled in.
 template <class Plant>
@@ -113,7 +68,7 @@ Record simulate_on(const typename Plant::Parameters& parameters, const VehicleFi
   for (std::size_t i = 0; i < held.size(); ++i) {
     held[i] = outputs.channels[i * kColumns].values;
   }
-  const Disturbances<Plant> disturbances(inputs, parameters, steps);
+  const VehicleDisturbances<Plant> disturbances(inputs, parameters, steps);
   typename Plant::Inputs first;
   disturbances.put(0, 0, first);
   const auto disturb = [&](std::size_t row, int step, auto& state, auto& driven) {

@@ -122,7 +122,7 @@ AnyModel load_any(const std::filesystem::path& path) {
 
 Outcome outcome_of(const AnyModel& model, const std::vector<Record>& records, const explain::ExplainOptions& options) {
   if (const auto* vehicle = std::get_if<VehicleFile>(&model)) {
-    explain::TaosExplanation found = explain::explain(*vehicle, records, options);
+    explain::VehicleExplanation found = explain::explain(*vehicle, records, options);
     return {std::move(found.result), std::move(found.series), vehicle_text(found.model), std::nullopt};
   }
   explain::Explanation found = explain::explain(std::get<ModelFile>(model), records, options);

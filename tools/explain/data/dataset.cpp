@@ -66,7 +66,8 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
   experiment.input = held_where_missing(*record.find(input), record);
   const bool is_hydraulic = data.channels.size() > 1;
   if (is_hydraulic) {
-    experiment.torque = torque_of(record, exclusions);
+    const Channel* torque = record.find("torque");
+    experiment.torque = torque != nullptr ? load_of(*torque, record, exclusions) : std::vector<double>{};
   }
   for (const Channel& channel : record.channels) {
     const bool is_input = channel.name == input || (channel.name == "torque" && is_hydraulic);
@@ -206,9 +207,8 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   return data;
 }
 
-std::vector<double> torque_of(const Record& record, const std::vector<Exclusion>& exclusions) {
-  const Channel* torque = record.find("torque");
-  return torque != nullptr ? values_of(*torque, record, excluded_rows(record, exclusions)) : std::vector<double>{};
+std::vector<double> load_of(const Channel& channel, const Record& record, const std::vector<Exclusion>& exclusions) {
+  return values_of(channel, record, excluded_rows(record, exclusions));
 }
 
 void fit_every_row(Dataset& data) {
@@ -252,6 +252,7 @@ Dataset thinned(const Dataset& data, double period) {
          {&experiment.torque, &experiment.other.angle, &experiment.other.rate, &experiment.other.force}) {
       thin_rows(*motion);
     }
+    experiment.vehicle.for_each_series(thin_rows);
     experiment.period *= static_cast<double>(every);
     experiment.first_scored = kept(experiment.first_scored);
     thin_blocks(experiment.fitted);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/explain/data/block.hpp"
@@ -32,6 +34,7 @@ struct Experiment {
   StartState start_state;                     ///< of a force-driven mass
   std::size_t first_scored = 0;               ///< rows before it are simulated, not compared: the start is not at rest
   OtherAxis other;                            ///< of a hydraulic axis that is one of two
+  RestOfVehicle vehicle;                      ///< of such an axis
 
   std::size_t rows() const { return input.size(); }
   double time_of(std::size_t row) const { return start + static_cast<double>(row) * period; }
@@ -51,10 +54,18 @@ struct Dataset {
   std::vector<NoiseSource> noise_source;
   std::vector<Experiment> experiments;
   AxisGeometry geometry;  ///< read where experiments have another axis
+  /// Names of the effects that the plant of the axis knows; empty: all.
+  std::vector<std::string> known_effects;
 
   bool noise_declared(std::size_t channel) const { return noise_source[channel] == NoiseSource::declared; }
   /// True if the noise of a channel is a size of the sensor, so that an error may be said in times of it.
   bool noise_is_known(std::size_t channel) const { return noise_source[channel] != NoiseSource::floor; }
+  /// True if the plant of the axis knows the effect of that name.
+  bool knows(std::string_view effect) const {
+    return known_effects.empty() || std::ranges::find(known_effects, effect) != known_effects.end();
+  }
+  /// True if the plant of the axis knows terms of unknown law.
+  bool knows_unlisted() const { return known_effects.empty(); }
   /// True if the axis is one of two.
   bool has_other_axis() const { return !experiments.empty() && experiments.front().other.is_there(); }
 };
@@ -66,9 +77,9 @@ struct Dataset {
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
 
-/// The measured torque on the engine of a hydraulic axis [N m], `bridged` over excluded rows; empty: the record has none.
-/// Throws UsageError for a value that is missing in a row that is not excluded.
-std::vector<double> torque_of(const Record& record, const std::vector<Exclusion>& exclusions);
+/// A measured load, `bridged` over excluded rows. Throws UsageError for a value that is missing in a row that is not
+/// excluded.
+std::vector<double> load_of(const Channel& channel, const Record& record, const std::vector<Exclusion>& exclusions);
 
 /// Gives a fit every row that is scored: nothing is held out any more.
 void fit_every_row(Dataset& data);

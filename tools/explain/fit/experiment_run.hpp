@@ -7,6 +7,7 @@
 #include <span>
 
 #include "tools/explain/data/dataset.hpp"
+#include "tools/explain/fit/axis_in_vehicle.hpp"
 #include "tools/explain/fit/parameter_space.hpp"
 #include "tools/simulate/run.hpp"
 
@@ -27,8 +28,15 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
     } else if (experiment.other.is_there()) {
       const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
       const OtherAxis& other = experiment.other;
-      return plant.steady(S(experiment.input.front()),
-                          [&](const S& angle) { return beside(angle, other.angle.front(), 0.0, other.force.front()); });
+      const RestOfVehicle& vehicle = experiment.vehicle;
+      return plant.steady(S(experiment.input.front()), [&](const S& angle) {
+        auto coupling = beside(angle, other.angle.front(), 0.0, other.force.front());
+        if (vehicle.is_there()) {
+          coupling.motion += vehicle.motion.front();
+          coupling.torque += vehicle.torque.front();
+        }
+        return coupling;
+      });
     } else {
       return plant.steady(S(experiment.input.front()));
     }
@@ -37,30 +45,16 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
   return state;
 }
 
-/// Steps a plant through an experiment: a hydraulic axis under the torque that was measured, and if it is one of two, beside
-/// the motion of the other.
+/// Steps a plant through an experiment: a hydraulic axis under the torque that was measured, and if it is one of a vehicle,
+/// beside the motion of everything else.
 template <class Plant, class Sink>
 bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& experiment, typename Plant::State& state,
                     int steps, Sink&& sink) {
   if constexpr (Plant::topology != "direct") {
     if (experiment.other.is_there()) {
-      using S = typename Plant::Scalar;
-      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
-      const Excitation angle(experiment.other.angle, steps, Excitation::Between::interpolated);
-      const Excitation rate(experiment.other.rate, steps, Excitation::Between::interpolated);
-      const Excitation force(experiment.other.force, steps, Excitation::Between::interpolated);
-      const bool is_loaded = !experiment.torque.empty();
-      const Excitation torque(experiment.torque, steps, Excitation::Between::interpolated);
+      AxisInVehicle<Plant> axis(plant, data, experiment, state, steps);
       const auto advance = [&](std::size_t row, int k) {
-        const double other_angle = angle(row, k);
-        const double other_rate = rate(row, k);
-        const double other_force = force(row, k);
-        const double measured_torque = is_loaded ? torque(row, k) : 0.0;
-        plant.step(state, S(experiment.input[row]), [&](const S& own) {
-          auto coupling = beside(own, other_angle, other_rate, other_force);
-          coupling.torque -= measured_torque;
-          return coupling;
-        });
+        axis.step(state, typename Plant::Scalar(experiment.input[row]), row, k);
       };
       return run_rows<Plant>(experiment.rows(), state, steps, advance, sink);
     }

@@ -37,12 +37,22 @@ class PortedPlant : public DualPlant {
   template <class... Around>
   void step(State& state, const FlowDual& command, const Around&... around) const noexcept {
     DualPlant::step(state, command, around...);
+    respond(state);
+  }
+
+  /// Of a step that is taken pass by pass.
+  void finish(State& state, const Advance& advance) const noexcept {
+    DualPlant::finish(state, advance);
+    respond(state);
+  }
+
+ private:
+  void respond(State& state) const noexcept {
     for (int i = 0; i < kFlowStates; ++i) {
       state.y(i).v.template tail<kPorts>() += response_.row(i).transpose();
     }
   }
 
- private:
   Eigen::Matrix<double, kFlowStates, kPorts> response_;
 };
 

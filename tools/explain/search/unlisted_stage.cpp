@@ -60,7 +60,7 @@ void UnlistedStage<Family>::finish() {
 /// True if more than noise is left, or less by declared parameters far from their declaration.
 template <class Family>
 bool UnlistedStage<Family>::is_worth_a_table() const {
-  return !reaches_noise(data_, result_.explained) &&
+  return data_.knows_unlisted() && !reaches_noise(data_, result_.explained) &&
          (excess_over_noise(data_, result_.explained.prediction) > policy().visible ||
           !is_within_tolerances(result_.explained.model));
 }

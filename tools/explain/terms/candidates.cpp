@@ -104,6 +104,9 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
     if constexpr (requires { E::is_unlisted; }) {
       return;
     }
+    if (!data.knows(E::name)) {
+      return;
+    }
     const int variants = std::max<int>(1, static_cast<int>(E::options.size()));
     for (int option = 0; option < variants; ++option) {
       if (model::needs_other_axis<E>(option) && !data.has_other_axis()) {

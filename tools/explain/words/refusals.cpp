@@ -73,21 +73,20 @@ std::string missing_start(const std::string& record, const std::string& channel)
 }
 
 std::string drives_the_model() { return "it drives the model"; }
-std::string drives_both_axes() { return "it drives a model of two axes, with command.yaw"; }
+std::string drives_axes(const std::vector<std::string>& axes) {
+  return fmt::format("the model is driven by the commands of its axes: {}", fmt::join(axes, ", "));
+}
 std::string nothing_to_explain() { return "without a measured channel there is nothing to explain"; }
 
 std::string unsupported(const std::string& model, Unsupported part) {
   constexpr std::array<std::string_view, kUnsupported> texts{
-      "topology = \"masv\": 'explain' takes \"simplex\", \"direct\" and \"taos\". Give one engine of it as \"taos\", with "
-      "records of its two axes",
-      "gimbal: 'explain' does not take a bearing with friction over both axes, vibration or stiffness. Remove the table. "
-      "Declare friction of one axis as [effects.gimbal_friction.pitch]",
-      "gimbal: 'explain' does not take pitch_misalignment, yaw_misalignment or unloaded_structure. Remove them. Declare the "
-      "torque of a constant thrust as [effects.torque_offset.pitch], and give [structure] the stiffness under that thrust",
-      "modes: 'explain' does not take a structure with modes. Remove the table, and give [structure] the stiffness at the "
-      "attach points. Its inverse is the sum of shape^2 / (2 pi frequency)^2 over the modes",
+      "gimbal.vibration: 'explain' does not take a simulated vibration, whose phase in a record is unknown. Remove it. Give "
+      "the measured vibration as a channel, or declare [gimbal.friction] with law = \"vibrated_lugre\"",
       "sensors.piston.lag: 'explain' does not simulate the pistons' potentiometers. Remove it, and declare a lag that the "
       "records have as [effects.sensor_lag] with channel = \"piston\"",
+      "strings.lag: 'explain' does not simulate the strings' potentiometers. Remove it, and declare a lag that the records "
+      "have "
+      "as [effects.sensor_lag] with channel = \"engine\"",
       "tolerance of actuator.moment_arm: has no meaning with [attach], which determines the arms. Remove it, or remove "
       "[attach]"};
   return fmt::format("{}: {}", model, texts[static_cast<std::size_t>(part)]);

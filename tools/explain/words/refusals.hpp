@@ -24,12 +24,13 @@ std::string missing_value(const std::string& record, const std::string& channel,
 std::string missing_start(const std::string& record, const std::string& channel);
 /// Parts of the message for a missing column.
 std::string drives_the_model();
-std::string drives_both_axes();
+/// `axes` as their names end channels.
+std::string drives_axes(const std::vector<std::string>& axes);
 std::string nothing_to_explain();
 
 /// Parts of a model of several axes that `explain` does not take.
-enum class Unsupported { masv, gimbal, thrust, modes, piston_lag, arm_tolerance };
-inline constexpr std::size_t kUnsupported = 6;
+enum class Unsupported { vibration, piston_lag, string_lag, arm_tolerance };
+inline constexpr std::size_t kUnsupported = 4;
 std::string unsupported(const std::string& model, Unsupported part);
 std::string axis_not_measured(const std::string& record, const std::string& axis);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/result/two_axes_result.hpp"
+#include "tools/explain/result/axes_result.hpp"
 
 #include <fmt/format.h>
 
