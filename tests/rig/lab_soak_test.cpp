@@ -230,6 +230,13 @@ TEST_GROUP(LabSoak) {
     return std::ranges::count_if(happened, [](const auto& one) { return one.first.starts_with("first fault"); });
   }
 
+  void print_account(std::uint64_t runs, double seconds) const {
+    std::printf("%.0f s: %llu runs of the lab, %llu cycles, %llu of them drove, %llu profiles started\n", seconds,
+                static_cast<unsigned long long>(runs), static_cast<unsigned long long>(cycles),
+                static_cast<unsigned long long>(drove), static_cast<unsigned long long>(profiles));
+    std::fflush(stdout);
+  }
+
   /// A press as contacts give it: on and off for some milliseconds, then on, and the same at its end.
   void press_with_bounce(Line button) {
     for (const bool on : {true, false}) {
@@ -296,17 +303,22 @@ TEST(LabSoak, WhateverGoesWrongTogetherEveryCycleKeepsTheLaws) {
   const double seconds = number_of("HOTFIRE_SOAK_SECONDS", 20.0);
   const Clock::time_point begun = Clock::now();
   std::uint64_t runs = 0;
+  double reported = 0.0;
   const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begun).count(); };
   // On a slow machine little happens in a short time.
   constexpr double kMostExtraSeconds = 100.0;
   while (passed() < seconds || ((drove == 0 || faults() == 0) && passed() < seconds + kMostExtraSeconds)) {
     run_a_lab();
     ++runs;
+    // A long soak that its host ends has said how far it came.
+    constexpr double kReportEverySeconds = 300.0;
+    if (passed() > reported + kReportEverySeconds) {
+      reported = passed();
+      print_account(runs, reported);
+    }
   }
   end_plant(SIGTERM);
-  std::printf("%llu runs of the lab, %llu cycles, %llu of them drove, %llu profiles started:\n",
-              static_cast<unsigned long long>(runs), static_cast<unsigned long long>(cycles),
-              static_cast<unsigned long long>(drove), static_cast<unsigned long long>(profiles));
+  print_account(runs, passed());
   for (const auto& [what, count] : happened) {
     std::printf("  %-40s %d\n", what.c_str(), count);
   }
