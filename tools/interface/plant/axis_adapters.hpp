@@ -66,6 +66,19 @@ struct ModelAdapter {
   }
 };
 
+/// What a torque on the engine [N m], held over a step, does to an axis, as `model::Simplex::step` asks for it.
+template <class S>
+auto under_torque(const model::Simplex<S>& model, const S& torque) {
+  return [&model, &torque](const S&) {
+    return model::Coupling<S>{S(0.0), model.parameters().actuator.moment_arm, S(-torque)};
+  };
+}
+
+/// Advances an axis by one step with a command [rad] and a torque on its engine [N m], both held. The binary of an FMU is
+/// for any x86_64: this step is compiled twice, and the processor that runs it chooses. Both give the same bits.
+void step_axis(const model::Simplex<double>& model, model::Simplex<double>::State& state, const double& command,
+               const double& torque) noexcept;
+
 /// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
 template <class S>
 struct SimplexAdapter : ModelAdapter<S, model::Simplex<S>> {
@@ -89,15 +102,12 @@ struct SimplexAdapter : ModelAdapter<S, model::Simplex<S>> {
   }
 
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
-    // Without a torque the step is cheaper and gives the same bits. Dual numbers carry the slope by the torque.
     if constexpr (std::same_as<S, double>) {
-      if (inputs[1] == 0.0) {
-        model.step(state.plant, inputs[0]);
-        return;
-      }
+      step_axis(model, state.plant, inputs[0], inputs[1]);
+    } else {
+      // Dual numbers carry the slope by the torque, also where it is zero.
+      model.step(state.plant, inputs[0], under_torque(model, inputs[1]));
     }
-    const S& arm = model.parameters().actuator.moment_arm;
-    model.step(state.plant, inputs[0], [&](const S&) { return model::Coupling<S>{S(0.0), arm, S(-inputs[1])}; });
   }
 };
 
