@@ -4,6 +4,7 @@
 #include <complex>
 #include <numbers>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "tools/analysis/chart.hpp"
@@ -81,6 +82,28 @@ TEST(FrequencyResponse, WelchFindsALagInNoiseThatPassesIt) {
     CHECK_TRUE(std::abs(point.gain - lag_response(point.frequency)) < 0.02 * std::abs(lag_response(point.frequency)));
     CHECK_TRUE(point.coherence > 0.99);
   }
+}
+
+// Lines 0.25 Hz apart beside a lag of 32 ms, which one repeat of 4 s settles: only rounding is left.
+TEST(FrequencyResponse, OneRepeatOfAPeriodicInputGivesItsResponseExactlyAtEveryLineAndNowhereElse) {
+  constexpr std::size_t kRows = 4000;
+  std::vector<double> input;
+  for (std::size_t k = 0; k < 2 * kRows; ++k) {
+    double value = 0.3;
+    for (const int line : {9, 12, 40}) {
+      value += std::sin(kTurn * 0.25 * line * kPeriod * static_cast<double>(k) + line);
+    }
+    input.push_back(value);
+  }
+  const std::vector<double> output = lagged(input);
+  const FrequencyResponse response =
+      periodic_response(std::span(input).last(kRows), std::span(output).last(kRows), kPeriod, 2.5, 20.0);
+  CHECK_EQUAL(2, response.size());
+  for (const ResponsePoint& point : response) {
+    CHECK_TRUE(std::abs(point.gain - lag_response(point.frequency)) < 1e-9);
+  }
+  DOUBLES_EQUAL(3.0, response.front().frequency, 1e-9);
+  DOUBLES_EQUAL(10.0, response.back().frequency, 1e-9);
 }
 
 // As much independent noise as signal leaves half of the output's power to the input.

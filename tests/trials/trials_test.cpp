@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -287,6 +288,19 @@ TEST(Trials, AFineGridThatIsHeldUntilItSettlesFindsANotchToATenthOfAPercent) {
   const auto coarse = analyse_sweep(simulate(model, command_record(stepped_sines(bands))), goal);
   CHECK_TRUE(std::abs(coarse.front().notch->frequency - zero) > 2e-3 * zero);
   DOUBLES_EQUAL(zero, notch(fine_sines(bands, coarse, settling_time(model))), 1e-3 * zero);
+}
+
+TEST(Trials, EveryFrequencyOfAFineSweepIsHeldForTwiceTheSettlingTime) {
+  const std::vector<SineBand> bands{{1e-3, spaced(1.0, 8.0, 5)}};
+  const std::vector<ChannelSweep> coarse{{"piston", 1e-3, {}, analysis::Notch{4.0, -20.0, 10.0}, {}}};
+  for (const double settling : {0.1, 3.0, 500.0}) {
+    const double dwell = std::clamp(2.0 * settling, 2.0, kLongestDwell);
+    const auto dwells = analysis::find_dwells(fine_sines(bands, coarse, settling), kPeriod);
+    CHECK_TRUE(dwells.size() > 50);
+    for (const analysis::Dwell& own : dwells) {
+      CHECK_TRUE(static_cast<double>(own.rows) * kPeriod > 0.99 * dwell);
+    }
+  }
 }
 
 TEST(Trials, TheSettlingTimeIsThatOfTheLeastDampedModeInTheBand) {

@@ -82,4 +82,29 @@ FrequencyResponse welch_response(std::span<const double> input, std::span<const 
   return response;
 }
 
+FrequencyResponse periodic_response(std::span<const double> input, std::span<const double> output, double period,
+                                    double lowest, double highest) {
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  const auto transformed = [&fft](std::span<const double> signal) {
+    Transform transform;
+    fft.fwd(transform, std::vector<double>(signal.begin(), signal.end()));
+    return transform;
+  };
+  const Transform of_input = transformed(input);
+  const Transform of_output = transformed(output);
+  double largest = 0.0;
+  for (std::size_t k = 1; k < of_input.size(); ++k) {
+    largest = std::max(largest, std::abs(of_input[k]));
+  }
+  FrequencyResponse response;
+  for (std::size_t k = 1; k < of_input.size(); ++k) {
+    const double frequency = static_cast<double>(k) / (static_cast<double>(input.size()) * period);
+    if (frequency >= lowest && frequency <= highest && std::abs(of_input[k]) > 1e-4 * largest) {
+      response.push_back({frequency, of_output[k] / of_input[k], 1.0});
+    }
+  }
+  return response;
+}
+
 }  // namespace hotfire::analysis

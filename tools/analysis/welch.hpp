@@ -28,4 +28,10 @@ Spectrum welch_spectrum(std::span<const double> signal, double period, Segments 
 FrequencyResponse welch_response(std::span<const double> input, std::span<const double> output, double period,
                                  Segments segments, double lowest, double highest);
 
+/// Frequency response of output to input over exactly one repeat of an input that repeats, both in their steady state: the
+/// ratio of their transforms, without a window, so that no line leaks into another. Between `lowest` and `highest` [Hz], at
+/// the lines in which the input has at least 1e-4 of its largest amplitude.
+FrequencyResponse periodic_response(std::span<const double> input, std::span<const double> output, double period,
+                                    double lowest, double highest);
+
 }  // namespace hotfire::analysis

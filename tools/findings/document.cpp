@@ -27,7 +27,7 @@ Four numbers are tuned. Each is tuned to one published figure, and no figure is 
 | number | tuned to |
 |---|---|
 | `structure.stiffness` of the stage | the piston's notch of 9.5 Hz at hot fire [GF] |
-| `gimbal.unloaded_structure` | the piston's notch of 6.5 Hz in the ambient sweep [SD 2.3] |
+| `gimbal.unloaded_structure` | the piston's notch of 6.5 Hz in the ambient sweep [GF slide Results] |
 | impulse of the blow in F3 | the pendulum of 6.75 Hz [SD 2.2]; the real blow is not published |
 | `servovalve.pressure_feedback_gain` | an ambient step that is underdamped [SD fig. 9] |
 

@@ -135,7 +135,8 @@ Outcome string_potentiometers(const Bench& bench) {
                      {{"error [mdeg rms]", {moved, carried}}}};
   outcome.note =
       "The affine fit uses nine settled poses of up to 2 deg about both axes. It uses the reached angles; row 2 uses the "
-      "commanded ones. The test is a motion of 1 deg, 0.5 to 4 Hz, about both axes. Both run in the plant. Lag 2 ms, noise "
+      "commanded ones, as [SD 2.3] does. The test is a motion of 1 deg, 0.5 to 4 Hz, about both axes. Both run in the "
+      "plant. Lag 2 ms, noise "
       "20 um, quantisation 10 um. An anchor that is misplaced "
       "from the start is taken up by the fit; one that moves after it is not, and nor is a floor that the vehicle's modes "
       "move.";

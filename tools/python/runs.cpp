@@ -120,10 +120,11 @@ Sweep sweep(const Model& model, const Sines& sines, trials::SweepGoal goal) {
     bands.push_back({amplitude, trials::spaced(sines.from, sines.to, sines.count)});
   }
   goal.moment_arm = moment_arm(model, goal.axis);
-  Record record = run_command(model, goal.axis, trials::stepped_sines(bands));
+  const double settling = settling_of(model, sines);
+  const double dwell = sines.coarse ? trials::kShortestDwell : trials::settled_dwell(settling);
+  Record record = run_command(model, goal.axis, trials::stepped_sines(bands, dwell));
   if (!sines.coarse) {
-    record = run_command(model, goal.axis,
-                         trials::fine_sines(bands, trials::analyse_sweep(record, goal), settling_of(model, sines)));
+    record = run_command(model, goal.axis, trials::fine_sines(bands, trials::analyse_sweep(record, goal), settling));
   }
   std::string results = trials::to_json(trials::analyse_sweep(record, goal)).dump();
   return {std::move(record), std::move(results)};

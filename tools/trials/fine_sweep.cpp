@@ -45,11 +45,13 @@ double settling_time(const VehicleFile& model, double lowest, double highest) {
       model.parameters);
 }
 
+double settled_dwell(double settling) { return std::clamp(2.0 * settling, kShortestDwell, kLongestDwell); }
+
 std::vector<double> fine_sines(const std::vector<SineBand>& bands, const std::vector<ChannelSweep>& coarse,
                                double settling) {
   constexpr double kReach = 1.0 + 25 * 0.0025;
   constexpr int kFrequencies = 51;
-  const double dwell = std::clamp(2.0 * settling, 2.0, kLongestDwell);
+  const double dwell = settled_dwell(settling);
   std::vector<double> command;
   const auto append = [&command](const std::vector<double>& more) {
     // A sweep ends in a row at rest, where the next begins.
@@ -64,7 +66,7 @@ std::vector<double> fine_sines(const std::vector<SineBand>& bands, const std::ve
     SineBand rest{band.amplitude, {}};
     std::copy_if(band.frequencies.begin(), band.frequencies.end(), std::back_inserter(rest.frequencies),
                  [&](double frequency) { return frequency < notch / kReach || frequency > notch * kReach; });
-    append(stepped_sines({rest}));
+    append(stepped_sines({rest}, dwell));
     if (notch > 0.0) {
       append(stepped_sines({{band.amplitude, spaced(notch / kReach, notch * kReach, kFrequencies)}}, dwell));
     }

@@ -16,12 +16,16 @@ namespace hotfire::trials {
 double settling_time(const ModelFile& model);
 double settling_time(const VehicleFile& model, double lowest, double highest);
 
-/// The longest that a frequency of a fine sweep is held for, whatever the damping [s].
+/// The longest that a frequency is held for, whatever the damping [s].
 inline constexpr double kLongestDwell = 40.0;
 
+/// How long a sine is held: twice the settling time, as the analysis uses the second half, at least
+/// `kShortestDwell` and no more than `kLongestDwell` [s].
+double settled_dwell(double settling);
+
 /// The sines of `bands`, and around every notch that a first sweep of them has found in the piston, 25 frequencies 0.25 %
-/// apart to either side: fine enough for its vertex to lie within 0.1 % beside light damping. Each of these is held for
-/// twice the settling time (the analysis uses the second half), at least two seconds and no more than `kLongestDwell`.
+/// apart to either side: fine enough for its vertex to lie within 0.1 % beside light damping. Each is held for
+/// `settled_dwell(settling)`.
 std::vector<double> fine_sines(const std::vector<SineBand>& bands, const std::vector<ChannelSweep>& coarse, double settling);
 
 }  // namespace hotfire::trials

@@ -20,8 +20,11 @@ struct SineBand {
 /// `count` frequencies from `lowest` to `highest`, at equal ratios.
 std::vector<double> spaced(double lowest, double highest, int count);
 
+/// How long a sine is held for at the least, whatever the damping [s].
+inline constexpr double kShortestDwell = 2.0;
+
 /// A stepped sine: each frequency for at least eight whole periods and `least_seconds`, from zero phase to zero phase.
-std::vector<double> stepped_sines(const std::vector<SineBand>& bands, double least_seconds = 2.0);
+std::vector<double> stepped_sines(const std::vector<SineBand>& bands, double least_seconds = kShortestDwell);
 
 /// The frequencies and amplitudes of the Green Run hot-fire test [GF slide Green Run Hot Fire]: 7 to 14 Hz at 0.8 deg and
 /// 0.40 to 6.25 Hz at 0.4 deg. The paper does not say which frequencies lie between: here steps of 0.25 Hz above, and 16 at

@@ -53,15 +53,16 @@ std::vector<double> command_of(const SweepOptions& options) {
   return trials::stepped_sines(bands_of(options));
 }
 
-/// A sweep by sines, and once more with a fine grid around the notches that it found, held until they have settled.
-Record simulate_finely(const SweepOptions& options, const Record& coarse) {
+/// A sweep by sines that are held until they have settled, and once more with a fine grid around the notches that it found.
+Record simulate_finely(const SweepOptions& options) {
   trials::SweepGoal goal = options.goal;
   goal.moment_arm = moment_arm_of_trial(options.trial);
   const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
   const double settling = vehicle ? trials::settling_time(*vehicle, options.from, options.to)
                                   : trials::settling_time(load_model(options.trial.model));
-  return simulate_command(options.trial,
-                          trials::fine_sines(bands_of(options), trials::analyse_sweep(coarse, goal), settling));
+  const std::vector<trials::SineBand> bands = bands_of(options);
+  const Record coarse = simulate_command(options.trial, trials::stepped_sines(bands, trials::settled_dwell(settling)));
+  return simulate_command(options.trial, trials::fine_sines(bands, trials::analyse_sweep(coarse, goal), settling));
 }
 
 Record simulate_both(const TrialOptions& options) {
@@ -93,11 +94,9 @@ void run_sweep(SweepOptions& options) {
   options.goal.axis = options.trial.axis;
   options.goal.moment_arm = options.moment_arm > 0.0 ? options.moment_arm : 1.0;
   const Record record = record_of_trial(options.trial, [&] {
-    Record run = options.profile == "green-run-both" ? simulate_both(options.trial)
-                                                     : simulate_command(options.trial, command_of(options));
-    if (options.profile == "sines" && !options.coarse) {
-      run = simulate_finely(options, run);
-    }
+    Record run = options.profile == "green-run-both"             ? simulate_both(options.trial)
+                 : options.profile == "sines" && !options.coarse ? simulate_finely(options)
+                                                                 : simulate_command(options.trial, command_of(options));
     if (options.moment_arm == 0.0) {
       options.goal.moment_arm = moment_arm_of_trial(options.trial);
     }
@@ -137,9 +136,10 @@ void add_sweep(CLI::App& program) {
   command->add_option("--count", options->count, "number of frequencies of the stepped sine")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  command->add_flag("--coarse", options->coarse,
-                    "sines: these frequencies alone, without a fine grid around the notch, each frequency of which is held "
-                    "until the modes settle");
+  command->add_flag(
+      "--coarse", options->coarse,
+      "sines: these frequencies alone, each held for 2 s; without it they are held until the modes settle, with "
+      "a fine grid around the notch");
   command->add_option("--lowest", options->goal.lowest, "lower end of the search for notch and peak [Hz]")
       ->capture_default_str();
   command->add_option("--highest", options->goal.highest, "upper end of the search for notch and peak [Hz]")

@@ -170,8 +170,8 @@ def sweep(
     """Frequency responses of piston and engine by stepped sines, as ``hotfire sweep --profile sines`` gives them.
 
     ``amplitudes`` are in rad, a sweep each. ``frequencies`` are the lowest and the highest [Hz], with ``count`` at equal
-    ratios, and ``band`` is where notch and peak are looked for [Hz]. Unless ``coarse``, the run is made again with a fine grid
-    around each notch. ``axis`` is that of a model of several: pitch, yaw2.
+    ratios, and ``band`` is where notch and peak are looked for [Hz]. Each is held until the modes settle, and the run is made
+    again with a fine grid around each notch. With ``coarse`` each is held for 2 s, once. ``axis`` is that of a model of several: pitch, yaw2.
     """
     record, text = _core.sweep(
         model._core, [float(a) for a in amplitudes], *map(float, frequencies), count, coarse, axis, *map(float, band)
