@@ -149,6 +149,26 @@ TEST(FrequencyResponse, DwellsAreFoundInTheCommandItself) {
 }
 
 // What the response has not settled to by half of its ten periods is e^-(2 pi 5 / (f / 5)) of it: nothing.
+// At 9 Hz a quarter of a percent is a quarter of a row a period. A converter's steps of an amplitude's 400th move a crossing
+// by a twentieth of a row.
+TEST(FrequencyResponse, DwellsAQuarterOfAPercentApartAreToldApartInACommandThatIsReadInSteps) {
+  for (const double step : {0.0, 1.0 / 400.0}) {
+    std::vector<double> frequencies;
+    for (int k = 0; k < 20; ++k) {
+      frequencies.push_back(9.0 * std::pow(1.0025, k));
+    }
+    std::vector<double> command = sines(frequencies, 1.0);
+    for (double& value : command) {
+      value = step > 0.0 ? step * std::round(value / step) : value;
+    }
+    const std::vector<Dwell> dwells = find_dwells(command, kPeriod);
+    CHECK_EQUAL(frequencies.size(), dwells.size());
+    for (std::size_t k = 0; k < dwells.size(); ++k) {
+      DOUBLES_EQUAL(frequencies[k], dwells[k].frequency, 1e-3 * frequencies[k]);
+    }
+  }
+}
+
 TEST(FrequencyResponse, SineBySineFindsTheLagAtEveryDwell) {
   const std::vector<double> command = sines({0.7, 2.0, 6.25, 7.0, 13.75, 14.0}, 0.01);
   const auto responses = sine_responses(command, lagged(command), kPeriod, find_dwells(command, kPeriod));

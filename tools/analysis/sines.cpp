@@ -40,10 +40,49 @@ bool alike(const Cycle& a, const Cycle& b) {
   return std::abs(a.length - b.length) < 0.004 * a.length + 0.35 && std::abs(a.amplitude - b.amplitude) < 0.02 * a.amplitude;
 }
 
+constexpr std::size_t kFewestCycles = 3;
+
+/// Where the frequency changes within cycles that are alike one by one: a quarter of a percent is a fraction of a row a
+/// cycle, but adds up over a dwell. The two straight lines through the crossings before and after it must fit them far
+/// better than one does. `last` if it does not change.
+std::size_t change_within(const std::vector<Cycle>& cycles, std::size_t first, std::size_t last) {
+  constexpr double kBetter = 4.0;     // more than a split gains of noise on the crossings
+  constexpr double kResolved = 0.05;  // rows rms by which one line must miss: crossings are known no better
+  // The first crossing is that of a change of slope.
+  const std::size_t count = last - first - 1;
+  if (last < first + 2 + 2 * kFewestCycles) {
+    return last;
+  }
+  const double start = cycles[first + 1].start;
+  const double length = (cycles[last - 1].start - start) / static_cast<double>(count - 1);
+  using Sums = Eigen::Array<double, 6, 1>;  // of 1, k, y, k k, k y, y y
+  std::vector<Sums> sums{Sums::Zero()};
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto x = static_cast<double>(k);
+    const double y = cycles[first + 1 + k].start - start - x * length;
+    sums.push_back(sums.back() + Sums{{1.0, x, y, x * x, x * y, y * y}});
+  }
+  const auto misfit = [&sums](std::size_t from, std::size_t to) {
+    const Sums s = sums[to] - sums[from];
+    const double across = s(4) - s(1) * s(2) / s(0);
+    return std::max(0.0, s(5) - s(2) * s(2) / s(0) - across * across / (s(3) - s(1) * s(1) / s(0)));
+  };
+  const double whole = misfit(0, count);
+  std::size_t change = last;
+  double best = whole / kBetter;
+  for (std::size_t k = kFewestCycles; k + kFewestCycles <= count; ++k) {
+    const double split = misfit(0, k) + misfit(k, count);
+    if (split < best) {
+      best = split;
+      change = first + 1 + k;
+    }
+  }
+  return whole > static_cast<double>(count) * kResolved * kResolved ? change : last;
+}
+
 }  // namespace
 
 std::vector<Dwell> find_dwells(std::span<const double> command, double period) {
-  constexpr std::size_t kFewest = 3;
   const std::vector<Cycle> cycles = cycles_of(command);
   std::vector<Dwell> dwells;
   for (std::size_t c = 0; c < cycles.size();) {
@@ -51,7 +90,10 @@ std::vector<Dwell> find_dwells(std::span<const double> command, double period) {
     while (end < cycles.size() && alike(cycles[c], cycles[end])) {
       ++end;
     }
-    if (end - c >= kFewest) {
+    for (std::size_t change = change_within(cycles, c, end); change < end; change = change_within(cycles, c, end)) {
+      end = change;
+    }
+    if (end - c >= kFewestCycles) {
       // By the crossings inside the dwell alone.
       const double length = (cycles[end - 1].start - cycles[c + 1].start) / static_cast<double>(end - c - 2);
       // The last period of a record has no crossing at its end.

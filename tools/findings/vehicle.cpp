@@ -231,7 +231,7 @@ Outcome static_or_dynamic(const Bench& bench) {
   outcome.note =
       "The same vehicle and steady state as in F12, in place of its modes their static flexibility. \"Nearly the same "
       "frequency\" [SD] holds "
-      "to 5 % at seven of the eight locations. It does not hold for the pitch of engine 3, which is drawn: there the "
+      "to 6 % at seven of the eight locations. It does not hold for the pitch of engine 3, which is drawn: there the "
       "deepest "
       "notch is that of a mode.";
   return outcome;
