@@ -20,11 +20,10 @@ namespace hotfire::explain {
 namespace {
 
 /// Says which test would separate two effects, and leaves its command in the explanation.
-template <class Family>
-void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const Fitted<Family>& explained,
-                         const ExplainOptions& options, Explanation& explanation) {
+void add_next_experiment(const Dataset& data, const Rival& rival, const Fitted& explained, const ExplainOptions& options,
+                         Explanation& explanation) {
   std::string text = words::explain_equally(label(rival.kept), label(rival.other));
-  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+  if (is_hydraulic_axis(explained.base)) {
     options.watch.progress("searching for the experiment that separates them");
     const std::string limits = options.limits ? words::limits_of_rig() : words::limits_of_records();
     NextExperiment next =
@@ -47,7 +46,7 @@ void add_next_experiment(const Dataset& data, const Rival<Family>& rival, const 
 /// (`refuse_impossible_channels`); a mass may rightly be anywhere without its missing effects, so it is the end of a search
 /// that decides: nothing follows the mass, and with the force turned something does.
 void refuse_turned_sign(const Dataset& data, const ModelFile& model, const SearchOptions& options,
-                        const SearchResult<DirectFamily>& found) {
+                        const SearchResult& found) {
   constexpr double kFollowsMass = 50.0;  // percent of the motion
   constexpr double kClearlyLess = 0.5;
   const ChannelFit& left = found.explained.goodness.held_out.front();
@@ -59,7 +58,7 @@ void refuse_turned_sign(const Dataset& data, const ModelFile& model, const Searc
   for (Experiment& experiment : turned.experiments) {
     std::ranges::transform(experiment.input, experiment.input.begin(), std::negate<>());
   }
-  const SearchResult<DirectFamily> other = search<DirectFamily>(turned, model, options);
+  const SearchResult other = search(turned, model, options);
   const double left_turned = other.explained.goodness.held_out.front().rms;
   if (!other.interrupted && left_turned < kClearlyLess * left.rms) {
     throw FileError(words::turned_mass(data.experiments.front().name, left_turned, left.rms));
@@ -67,8 +66,8 @@ void refuse_turned_sign(const Dataset& data, const ModelFile& model, const Searc
 }
 
 /// Zeros that are those of one null bias of the valve: the plant has it.
-void add_common_bias(const Dataset& data, const SearchResult<SimplexFamily>& found, Explanation& explanation) {
-  auto& plant = std::get<PlainParameters<SimplexFamily>>(explanation.model.parameters);
+void add_common_bias(const Dataset& data, const SearchResult& found, Explanation& explanation) {
+  auto& plant = std::get<SimplexParameters>(explanation.model.parameters);
   if (const auto bias = common_valve_bias(data, found.explained.zeros, plant)) {
     plant = with_valve_bias(plant, *bias);
     explanation.result.valve_bias = *bias;
@@ -76,13 +75,15 @@ void add_common_bias(const Dataset& data, const SearchResult<SimplexFamily>& fou
   }
 }
 
-template <class Family>
-Explanation explain_as(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
+}  // namespace
+
+Explanation explain(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
   const Dataset data = make_dataset(model, records, options.exclusions);
   const std::vector<Dataset> kept_back = held_out_data(model, options);
   const SearchOptions search_options{options.threads, options.most_effects, options.watch};
-  SearchResult<Family> found = search<Family>(data, model, search_options);
-  if constexpr (std::is_same_v<Family, DirectFamily>) {
+  SearchResult found = search(data, model, search_options);
+  const bool is_axis = is_hydraulic_axis(model.parameters);
+  if (!is_axis) {
     refuse_turned_sign(data, model, search_options, found);
   }
   options.watch.progress("fitting a linear black box, to compare");
@@ -106,17 +107,10 @@ Explanation explain_as(const ModelFile& model, const std::vector<Record>& record
     add_next_experiment(data, *found.rival, found.explained.model, options, explanation);
   }
   explanation.model.parameters = plant_of(found, options.keep_drift);
-  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+  if (is_axis) {
     add_common_bias(data, found, explanation);
   }
   return explanation;
-}
-
-}  // namespace
-
-Explanation explain(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
-  return std::holds_alternative<SimplexParameters>(model.parameters) ? explain_as<SimplexFamily>(model, records, options)
-                                                                     : explain_as<DirectFamily>(model, records, options);
 }
 
 }  // namespace hotfire::explain

@@ -22,9 +22,9 @@ namespace hotfire::explain {
 
 namespace {
 
-using Found = SearchResult<SimplexFamily>;
+using Found = SearchResult;
 using FoundAxes = std::vector<std::optional<Found>>;
-using Stage = Assessed<SimplexFamily> Found::*;
+using Stage = Assessed Found::*;
 
 /// The effects that the axes of a vehicle know.
 template <class Parameters>
@@ -40,9 +40,8 @@ VehicleParameters together(const VehicleParameters& declared, const FoundAxes& f
         for (std::size_t i = 0; i < found.size(); ++i) {
           if (found[i]) {
             const double declared_arm = parameters.axes[i].actuator.moment_arm;
-            const Fitted<SimplexFamily>& fitted = ((*found[i]).*stage).model;
-            put_back<EffectsOf<Parameters>>(Evaluator<SimplexFamily>::with_values(fitted.base, fitted.free, fitted.u),
-                                            parameters.axes[i]);
+            const Fitted& fitted = ((*found[i]).*stage).model;
+            put_back<EffectsOf<Parameters>>(std::get<SimplexParameters>(fitted.parameters()), parameters.axes[i]);
             if (!parameters.constant_arms[i / 2]) {
               parameters.axes[i].actuator.moment_arm = declared_arm;
             }
@@ -62,8 +61,7 @@ Watch watch_of(const Watch& watch, const std::string& axis) {
 
 Found search_axis(const AxisOfVehicle& axis, const ExplainOptions& options) {
   try {
-    return search<SimplexFamily>(axis.data, axis.model,
-                                 {options.threads, options.most_effects, watch_of(options.watch, axis.name)});
+    return search(axis.data, axis.model, {options.threads, options.most_effects, watch_of(options.watch, axis.name)});
   } catch (const FileError& error) {
     throw FileError(words::of_axis(axis.name, error.what()));
   }
@@ -81,8 +79,8 @@ void fit_beside_explained(const VehicleParameters& declared, const ExplainOption
     if (found[i]) {
       const AxisOfVehicle& axis = vehicle.axes[i];
       options.watch.progress(axis.name + ": fitting beside the rest of the vehicle as explained");
-      const Evaluator<SimplexFamily> fine(axis.data, Resolution::fine);
-      Assessed<SimplexFamily> again = refined(fine, fine, options.threads, found[i]->explained.model, kFinal);
+      const Evaluator fine(axis.data, Resolution::fine);
+      Assessed again = refined(fine, fine, options.threads, found[i]->explained.model, kFinal);
       if (again.good()) {
         found[i]->explained = std::move(again);
       }
@@ -96,7 +94,7 @@ void judge_together(const VehicleParameters& declared, unsigned threads, const V
   const auto run = run_coupled(together(declared, found, stage), vehicle, threads);
   for (std::size_t i = 0; run && i < found.size(); ++i) {
     if (found[i]) {
-      Assessed<SimplexFamily>& assessed = (*found[i]).*stage;
+      Assessed& assessed = (*found[i]).*stage;
       assessed.prediction = run->prediction[i];
       assessed.zeros = run->zeros[i];
       assessed.goodness = goodness(vehicle.axes[i].data, run->prediction[i]);
@@ -154,7 +152,7 @@ VehicleParameters explained_vehicle(const VehicleParameters& declared, const Fou
         for (std::size_t i = 0; i < found.size(); ++i) {
           if (found[i]) {
             SimplexParameters axis = alone<Effects>(parameters.axes[i]);
-            axis.effects = plant_of(*found[i], keep_drift).effects;
+            axis.effects = std::get<SimplexParameters>(plant_of(*found[i], keep_drift)).effects;
             put_back<Effects>(axis, parameters.axes[i]);
           }
         }

@@ -9,18 +9,13 @@ namespace hotfire::explain {
 namespace {
 
 /// What a model found on other records predicts of `data`.
-template <class Family>
-Prediction prediction_of(Fitted<Family> model, const Dataset& data, unsigned threads) {
+Prediction prediction_of(Fitted model, const Dataset& data, unsigned threads) {
   drop_parameters(model, [](const FreeParameter& parameter) { return parameter.is_initial_state(); });
-  Scales scales;
-  if constexpr (std::is_same_v<Family, DirectFamily>) {
-    scales = scales_of(data);
-  }
-  for (const FreeParameter& state : initial_states(data, scales, model.u)) {
+  for (const FreeParameter& state : initial_states(data, scales_of(model.base, data), model.u)) {
     model.free.push_back(state);
   }
   Prediction prediction;
-  if (!Evaluator<Family>(data, Resolution::fine).predict(model.base, model.free, model.u, threads, prediction)) {
+  if (!Evaluator(data, Resolution::fine).predict(model.base, model.free, model.u, threads, prediction)) {
     throw FileError(words::diverges_held_out(data.experiments.front().name));
   }
   return prediction;
@@ -59,24 +54,16 @@ std::vector<Dataset> held_out_data(const ModelFile& model, const ExplainOptions&
   return data;
 }
 
-template <class Family>
 std::vector<HeldOutRecord> held_out_records(const ExplainOptions& options, const std::vector<Dataset>& data,
-                                            const SearchResult<Family>& found) {
+                                            const SearchResult& found) {
   std::vector<HeldOutRecord> records;
   records.reserve(data.size());
   for (std::size_t i = 0; i < data.size(); ++i) {
-    const auto predicted = [&](const Assessed<Family>& stage) {
-      return prediction_of(stage.model, data[i], options.threads);
-    };
+    const auto predicted = [&](const Assessed& stage) { return prediction_of(stage.model, data[i], options.threads); };
     records.push_back(held_out_record(options.kept_back[i], data[i],
                                       {predicted(found.declared), predicted(found.calibrated), predicted(found.explained)}));
   }
   return records;
 }
-
-template std::vector<HeldOutRecord> held_out_records(const ExplainOptions&, const std::vector<Dataset>&,
-                                                     const SearchResult<SimplexFamily>&);
-template std::vector<HeldOutRecord> held_out_records(const ExplainOptions&, const std::vector<Dataset>&,
-                                                     const SearchResult<DirectFamily>&);
 
 }  // namespace hotfire::explain

@@ -17,9 +17,8 @@ std::vector<Dataset> held_out_data(const ModelFile& model, const ExplainOptions&
 /// choice has seen a row of it. The explained model is the one of explained.toml, with what was found to be a fault of the
 /// records. A force-driven mass starts as the first rows say, a sinusoid of unknown law at the phase of the record's own
 /// clock. Throws FileError where a model runs away.
-template <class Family>
 std::vector<HeldOutRecord> held_out_records(const ExplainOptions& options, const std::vector<Dataset>& data,
-                                            const SearchResult<Family>& found);
+                                            const SearchResult& found);
 
 /// What the declared, the calibrated and the explained model predict, in this order.
 using StagePredictions = std::array<Prediction, 3>;

@@ -12,6 +12,7 @@
 
 #include "model/checks.hpp"
 #include "model/key_text.hpp"
+#include "tools/files/model/plant_of.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 
@@ -139,9 +140,8 @@ std::string topology_of(const Model& model) {
     return std::string(std::holds_alternative<TaosParameters>(vehicle->parameters) ? model::Taos<double>::topology
                                                                                    : model::Masv<double>::topology);
   }
-  return std::string(std::holds_alternative<SimplexParameters>(std::get<ModelFile>(model.file).parameters)
-                         ? model::Simplex<double>::topology
-                         : model::Direct<double>::topology);
+  return std::visit([](const auto& parameters) { return std::string(PlantOf<decltype(parameters), double>::topology); },
+                    std::get<ModelFile>(model.file).parameters);
 }
 
 Model load(const std::filesystem::path& path) {

@@ -10,6 +10,7 @@
 
 #include "model/key_text.hpp"
 #include "model/numerics/step_size.hpp"
+#include "tools/files/model/plant_of.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 #include "tools/simulate/open_loop.hpp"
@@ -97,13 +98,13 @@ std::vector<ChannelSlopes> gradients(const ModelFile& model, const Record& input
                                    suggestion(key, std::vector<std::string_view>(acting.begin(), acting.end()))));
     }
   }
-  if (const auto* direct = std::get_if<DirectParameters>(&model.parameters)) {
-    require_channel(inputs, "force", "the model is driven by it");
-    return differentiated<model::Direct<double>, model::Direct<Dual>>(*direct, inputs, keys);
-  }
-  require_channel(inputs, "command", "the model is driven by it");
-  return differentiated<model::Simplex<double>, model::Simplex<Dual>>(std::get<SimplexParameters>(model.parameters), inputs,
-                                                                      keys);
+  return std::visit(
+      [&]<class Parameters>(const Parameters& parameters) {
+        using Plant = PlantOf<Parameters, double>;
+        require_channel(inputs, std::string(Plant::input_channel), "the model is driven by it");
+        return differentiated<Plant, PlantOf<Parameters, Dual>>(parameters, inputs, keys);
+      },
+      model.parameters);
 }
 
 }  // namespace hotfire

@@ -9,14 +9,14 @@
 
 namespace hotfire {
 
-/// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command, a `direct`
-/// mass at rest at the first row of `position`, or at zero without one.
+/// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command, a driven
+/// mass at rest at the first row of its first channel, or at zero without one.
 template <class Plant>
 typename Plant::State start_of(const Plant& plant, const Record& inputs) {
   using S = typename Plant::Scalar;
   typename Plant::State state = [&] {
-    if constexpr (Plant::topology == "direct") {
-      const Channel* position = inputs.find("position");
+    if constexpr (requires { plant.at_rest(S(0.0)); }) {
+      const Channel* position = inputs.find(std::string(Plant::channels.front()));
       return plant.at_rest(S(position != nullptr ? position->values.front() : 0.0));
     } else {
       return plant.steady(S(inputs.find(std::string(Plant::input_channel))->values.front()));

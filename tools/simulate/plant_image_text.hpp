@@ -10,7 +10,7 @@
 
 #include "model/key_text.hpp"
 #include "model/vehicle_keys.hpp"
-#include "tools/files/model/model_file.hpp"
+#include "tools/files/model/plant_of.hpp"
 
 namespace hotfire {
 
@@ -77,8 +77,7 @@ std::string plant_image_text(const Parameters& parameters) requires requires {
   parameters.effects;
 }
 {
-  constexpr bool is_simplex = std::is_same_v<Parameters, SimplexParameters>;
-  PlantImageWriter writer(is_simplex ? model::Simplex<double>::topology : model::Direct<double>::topology);
+  PlantImageWriter writer(PlantOf<Parameters, double>::topology);
   model::visit_keys(parameters, writer);
   return writer.text();
 }

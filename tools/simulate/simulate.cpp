@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "model/numerics/step_size.hpp"
+#include "tools/files/model/plant_of.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/open_loop.hpp"
 #include "tools/simulate/run.hpp"
@@ -111,27 +112,27 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
 }  // namespace
 
 Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_start_rows) {
-  if (const auto* direct = std::get_if<DirectParameters>(&model.parameters)) {
-    require_channel(inputs, "force", "the model is driven by it");
-    const int steps = model::steps_per_period<model::Direct<double>>(*direct, inputs.period);
-    const model::Direct<double> plant(*direct, inputs.period / steps);
-    auto state = start_of(plant, inputs);
-    if (fit_start_rows > 0) {
-      const auto [start, speed] = fitted_start(*direct, inputs, fit_start_rows);
-      state = plant.moving(start, speed);
-      state.clock.start = inputs.start;
-    }
-    return run_open_loop(plant, state, inputs, steps);
-  }
-  if (fit_start_rows > 0) {
+  if (fit_start_rows > 0 && !std::holds_alternative<DirectParameters>(model.parameters)) {
     throw UsageError(
         "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command");
   }
-  require_channel(inputs, "command", "the model is driven by it");
-  const auto& parameters = std::get<SimplexParameters>(model.parameters);
-  const int steps = model::steps_per_period<model::Simplex<double>>(parameters, inputs.period);
-  const model::Simplex<double> plant(parameters, inputs.period / steps);
-  return run_open_loop(plant, start_of(plant, inputs), inputs, steps);
+  return std::visit(
+      [&]<class Parameters>(const Parameters& parameters) {
+        using Plant = PlantOf<Parameters, double>;
+        require_channel(inputs, std::string(Plant::input_channel), "the model is driven by it");
+        const int steps = model::steps_per_period<Plant>(parameters, inputs.period);
+        const Plant plant(parameters, inputs.period / steps);
+        auto state = start_of(plant, inputs);
+        if constexpr (std::is_same_v<Parameters, DirectParameters>) {
+          if (fit_start_rows > 0) {
+            const auto [start, speed] = fitted_start(parameters, inputs, fit_start_rows);
+            state = plant.moving(start, speed);
+            state.clock.start = inputs.start;
+          }
+        }
+        return run_open_loop(plant, state, inputs, steps);
+      },
+      model.parameters);
 }
 
 double moment_arm_of(const ModelFile& model) {

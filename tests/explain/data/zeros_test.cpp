@@ -44,7 +44,7 @@ void measure(Dataset& data, double zero) {
   Dataset plain = data;
   plain.experiments.front().zero_deviation.assign(3, 0.0);
   Prediction truth;
-  CHECK_TRUE(Evaluator<SimplexFamily>(plain, Resolution::fine).predict({}, {}, {}, 1, truth));
+  CHECK_TRUE(Evaluator(plain, Resolution::fine).predict({}, {}, {}, 1, truth));
   std::mt19937_64 generator(3);
   std::normal_distribution<double> normal(0.0, 1.0);
   for (std::size_t c = 0; c < 2; ++c) {
@@ -64,7 +64,7 @@ TEST(Zeros, AChannelThatReadsOffIsMetByItsZeroOnHeldOutRowsToo) {
   measure(data, 5e-4);
   Prediction prediction;
   Zeros zeros;
-  CHECK_TRUE(Evaluator<SimplexFamily>(data, Resolution::fine).predict({}, {}, {}, 1, prediction, zeros));
+  CHECK_TRUE(Evaluator(data, Resolution::fine).predict({}, {}, {}, 1, prediction, zeros));
   DOUBLES_EQUAL(5e-4, zeros[0][0], 4.0 * kZerosNoise / std::sqrt(500.0));
   const Experiment& experiment = data.experiments.front();
   double square = 0.0;
@@ -82,7 +82,7 @@ TEST(Zeros, AZeroCostsItsPriorAndNoMore) {
   measure(none, 0.0);
   measure(off, 2.0 * kDeviation);
   const auto cost = [](const Dataset& data) {
-    const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
+    const Evaluator evaluator(data, Resolution::fine);
     Prediction prediction;
     CHECK_TRUE(evaluator.predict({}, {}, {}, 1, prediction));
     return evaluator.squares_by_channel(evaluator.residuals(prediction))[0];
@@ -94,9 +94,9 @@ TEST(Zeros, AZeroCostsItsPriorAndNoMore) {
 TEST(Zeros, DerivativesAreOfTheWhitenedResiduals) {
   Dataset data = moving_axis(kDeviation);
   measure(data, 5e-4);
-  const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
-  const PlainParameters<SimplexFamily> base;
-  const auto free = declared_parameters<SimplexFamily>(base, {{"servovalve.position_gain", 0.03}});
+  const Evaluator evaluator(data, Resolution::fine);
+  const hotfire::SimplexParameters base;
+  const auto free = declared_parameters(base, {{"servovalve.position_gain", 0.03}});
   const std::vector<std::size_t> all{0};
   const std::vector<double> at{0.0};
   Eigen::MatrixXd jacobian;
@@ -120,7 +120,7 @@ TEST(Zeros, AShiftThatAZeroCanBeIsNotIdentified) {
   int i = 0;
   for (Dataset* data : {&free_zero, &known_zero}) {
     measure(*data, 0.0);
-    const Evaluator<SimplexFamily> evaluator(*data, Resolution::fine);
+    const Evaluator evaluator(*data, Resolution::fine);
     Prediction prediction;
     CHECK_TRUE(evaluator.predict({}, {}, {}, 1, prediction));
     const Eigen::VectorXd before = evaluator.residuals(prediction);
@@ -128,7 +128,7 @@ TEST(Zeros, AShiftThatAZeroCanBeIsNotIdentified) {
     for (double& value : moved.experiments.front().measured[0]) {
       value -= kDeviation;
     }
-    const Evaluator<SimplexFamily> other(moved, Resolution::fine);
+    const Evaluator other(moved, Resolution::fine);
     CHECK_TRUE(other.predict({}, {}, {}, 1, prediction));
     shift[i++] = other.residuals(prediction) - before;
   }

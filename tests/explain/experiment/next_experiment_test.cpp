@@ -18,7 +18,6 @@ using namespace hotfire;
 using explain::CommandLimits;
 using explain::Dataset;
 using explain::Fitted;
-using explain::SimplexFamily;
 
 constexpr double kLargest = 0.02;
 constexpr double kNoise = 8e-6;
@@ -38,12 +37,12 @@ Dataset records() {
 }
 
 /// The reference axis with a dead band of its valve; none at zero.
-Fitted<SimplexFamily> with_deadband(double half_width) {
-  Fitted<SimplexFamily> fitted;
-  model::visit_effects(fitted.base, [&]<class E>(std::size_t index, auto& values) {
+Fitted with_deadband(double half_width) {
+  Fitted fitted;
+  explain::visit_effects(fitted.base, [&]<class E>(std::size_t index, auto& values) {
     if constexpr (std::is_same_v<E, model::ValveDeadband>) {
       values.half_width = half_width;
-      fitted.base.effects.active[index] = half_width > 0.0;
+      explain::set_active(fitted.base, index, half_width > 0.0);
     }
   });
   return fitted;

@@ -40,17 +40,16 @@ Dataset smooth_dataset() {
 /// That axis with two of its declared parameters free.
 struct InertiaAndStiffness {
   const Dataset data = smooth_dataset();
-  const PlainParameters<SimplexFamily> base;
+  const hotfire::SimplexParameters base;
   const std::vector<FreeParameter> free =
-      declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+      declared_parameters(base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
 
-  Prediction predicted(const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u, unsigned threads = 1) const {
+  Prediction predicted(const Evaluator& evaluator, const std::vector<double>& u, unsigned threads = 1) const {
     Prediction prediction;
     CHECK(evaluator.predict(base, free, u, threads, prediction));
     return prediction;
   }
-  Eigen::MatrixXd slopes(const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u,
-                         unsigned threads = 1) const {
+  Eigen::MatrixXd slopes(const Evaluator& evaluator, const std::vector<double>& u, unsigned threads = 1) const {
     const std::vector<std::size_t> all{0, 1};
     Eigen::MatrixXd jacobian;
     CHECK(evaluator.differentiate(base, free, u, all, threads, jacobian));
@@ -64,19 +63,19 @@ TEST_GROUP(Evaluator){};
 
 TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAndAnEffect) {
   const Dataset data = smooth_dataset();
-  const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
-  PlainParameters<SimplexFamily> base;
+  const Evaluator evaluator(data, Resolution::fine);
+  ModelParameters base = hotfire::SimplexParameters();
   std::map<std::string, double> tolerance;
-  hotfire::model::visit_parameters(base, [&](const hotfire::model::Key& key, const auto& field, const double&) {
+  visit_parameters(base, [&](const hotfire::model::Key& key, const auto& field, const double&) {
     if (!key.is_effect) {
       tolerance[std::string(key.section) + "." + std::string(field.name)] = 0.05;
     }
   });
-  std::vector<FreeParameter> free = declared_parameters<SimplexFamily>(base, tolerance);
-  for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
+  std::vector<FreeParameter> free = declared_parameters(base, tolerance);
+  for (const Candidate& candidate : all_candidates(base, data)) {
     if (candidate.name == "structural_mode") {
-      activate<SimplexFamily>(base, candidate);
-      const auto own = effect_parameters<SimplexFamily>(base, candidate, {});
+      activate(base, candidate);
+      const auto own = effect_parameters(base, candidate, {});
       free.insert(free.end(), own.begin(), own.end());
     }
   }
@@ -109,7 +108,7 @@ TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAnd
 
 TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
   const InertiaAndStiffness axis;
-  const Evaluator<SimplexFamily> evaluator(axis.data, Resolution::fine);
+  const Evaluator evaluator(axis.data, Resolution::fine);
   const std::vector<double> u{0.3, -0.2};
   CHECK((axis.slopes(evaluator, u, 1).array() == axis.slopes(evaluator, u, 2).array()).all());
   CHECK(axis.predicted(evaluator, u, 1) == axis.predicted(evaluator, u, 2));
@@ -118,9 +117,9 @@ TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
 TEST(Evaluator, DerivativesMayBeThoseOfLongerStepsThanItsReadings) {
   const InertiaAndStiffness axis;
   const std::vector<double> u{0.3, -0.2};
-  const Evaluator<SimplexFamily> coarse(axis.data, Resolution::coarse);
-  const Evaluator<SimplexFamily> rough(axis.data, Resolution::rough);
-  const Evaluator<SimplexFamily> mixed(axis.data, Resolution::coarse, Resolution::rough);
+  const Evaluator coarse(axis.data, Resolution::coarse);
+  const Evaluator rough(axis.data, Resolution::rough);
+  const Evaluator mixed(axis.data, Resolution::coarse, Resolution::rough);
   CHECK((axis.slopes(mixed, u).array() == axis.slopes(rough, u).array()).all());
   CHECK(axis.predicted(mixed, u) == axis.predicted(coarse, u));
 }
@@ -129,10 +128,10 @@ TEST(Evaluator, ShiftedLongStepsAreRightWhereTheShiftWasTakenAndNearlySoNearby) 
   const InertiaAndStiffness axis;
   const std::vector<double> there{0.3, -0.2};
   const std::vector<double> nearby{0.8, 0.3};
-  const Evaluator<SimplexFamily> fine(axis.data, Resolution::fine);
-  const Evaluator<SimplexFamily> rough(axis.data, Resolution::rough);
-  const Evaluator<SimplexFamily> shifted = rough.shifted(axis.predicted(rough, there), axis.predicted(fine, there));
-  const auto off = [&](const Evaluator<SimplexFamily>& evaluator, const std::vector<double>& u) {
+  const Evaluator fine(axis.data, Resolution::fine);
+  const Evaluator rough(axis.data, Resolution::rough);
+  const Evaluator shifted = rough.shifted(axis.predicted(rough, there), axis.predicted(fine, there));
+  const auto off = [&](const Evaluator& evaluator, const std::vector<double>& u) {
     return (evaluator.residuals(axis.predicted(evaluator, u)) - fine.residuals(axis.predicted(fine, u))).norm();
   };
   const double lost = off(rough, there);
@@ -145,13 +144,13 @@ TEST(Evaluator, ShiftedLongStepsAreRightWhereTheShiftWasTakenAndNearlySoNearby) 
 
 TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARipple) {
   const Dataset data = smooth_dataset();
-  const Evaluator<SimplexFamily> evaluator(data, Resolution::coarse);
-  PlainParameters<SimplexFamily> base;
-  std::vector<FreeParameter> free = declared_parameters<SimplexFamily>(base, {{"engine.inertia", 0.05}});
-  for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
+  const Evaluator evaluator(data, Resolution::coarse);
+  ModelParameters base = hotfire::SimplexParameters();
+  std::vector<FreeParameter> free = declared_parameters(base, {{"engine.inertia", 0.05}});
+  for (const Candidate& candidate : all_candidates(base, data)) {
     if (candidate.name == "valve_hysteresis") {
-      activate<SimplexFamily>(base, candidate);
-      const auto own = effect_parameters<SimplexFamily>(base, candidate, {});
+      activate(base, candidate);
+      const auto own = effect_parameters(base, candidate, {});
       free.insert(free.end(), own.begin(), own.end());
     }
   }
@@ -159,7 +158,7 @@ TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARippl
   const std::vector<double> u{0.2, free.back().coordinate(free.back().unit_size)};
   const std::vector<std::size_t> all{0, 1};
   Eigen::MatrixXd wide;
-  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::wide, 2, wide) == Slopes::wide);
+  CHECK(differentiate(evaluator, base, free, u, all, Slopes::wide, 2, wide) == Slopes::wide);
   for (std::size_t k = 0; k < free.size(); ++k) {
     const double step = wide_step(free[k]);
     std::vector<double> at = u;
@@ -174,6 +173,6 @@ TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARippl
     CHECK((difference - wide.col(static_cast<Eigen::Index>(k))).norm() <= 1e-12 * difference.norm());
   }
   Eigen::MatrixXd exact;
-  CHECK(differentiate<SimplexFamily>(evaluator, base, free, u, all, Slopes::exact, 2, exact) == Slopes::exact);
+  CHECK(differentiate(evaluator, base, free, u, all, Slopes::exact, 2, exact) == Slopes::exact);
   CHECK((exact - wide).norm() > 0.0);
 }

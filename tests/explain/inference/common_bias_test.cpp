@@ -24,7 +24,7 @@ Dataset two_records() {
 
 /// Zeros that a bias of 0.02 leaves: the position error bias / K_e of the piston, and the engine at the angle of that stroke
 /// less what the duct's stiffness takes of the load spring.
-Zeros of_bias(const PlainParameters<SimplexFamily>& parameters, double bias) {
+Zeros of_bias(const hotfire::SimplexParameters& parameters, double bias) {
   const double arm = parameters.actuator.moment_arm;
   const double spring = 1.0 / (1.0 / parameters.actuator.stiffness + 1.0 / parameters.structure.stiffness);
   const double follows = spring * arm * arm / (spring * arm * arm + parameters.engine.duct_stiffness);
@@ -38,14 +38,14 @@ TEST_GROUP(CommonBias){};
 
 // What leaks past the piston under the duct's load takes less than a hundredth of the shift.
 TEST(CommonBias, ZerosThatOneValveMakesAreItsBias) {
-  const PlainParameters<SimplexFamily> axis;
+  const hotfire::SimplexParameters axis;
   const auto bias = common_valve_bias(two_records(), of_bias(axis, 0.02), axis);
   CHECK(bias.has_value());
   DOUBLES_EQUAL(0.02, *bias, 2e-4);
 }
 
 TEST(CommonBias, ZerosThatDifferBetweenRecordsOrChannelsAreTheSensors) {
-  const PlainParameters<SimplexFamily> axis;
+  const hotfire::SimplexParameters axis;
   Zeros zeros = of_bias(axis, 0.02);
   zeros[1][0] *= 0.5;
   CHECK(!common_valve_bias(two_records(), zeros, axis));
@@ -55,7 +55,7 @@ TEST(CommonBias, ZerosThatDifferBetweenRecordsOrChannelsAreTheSensors) {
 }
 
 TEST(CommonBias, ZerosBelowTheNoiseOfOneReadingAndSingleRecordsIdentifyNone) {
-  const PlainParameters<SimplexFamily> axis;
+  const hotfire::SimplexParameters axis;
   CHECK(!common_valve_bias(two_records(), of_bias(axis, 1e-4), axis));
   Dataset one = two_records();
   one.experiments.pop_back();

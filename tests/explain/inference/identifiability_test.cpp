@@ -11,12 +11,13 @@ using namespace hotfire::explain;
 
 /// An axis whose load spring and inertia are known to 5 and 2 %, and what its data add to that: `along` counts how well they
 /// identify the notch, `each` every coordinate by itself.
-Fitted<SimplexFamily> axis(double along, double each) {
-  Fitted<SimplexFamily> fitted;
-  fitted.free = declared_parameters<SimplexFamily>(fitted.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+Fitted axis(double along, double each) {
+  Fitted fitted;
+  fitted.free = declared_parameters(fitted.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
   fitted.u.assign(2, 0.0);
   // In coordinates, in tolerances: the notch falls with J and rises with K_T, in series with the actuator.
-  const double share = 1.0 / (1.0 + fitted.base.structure.stiffness / fitted.base.actuator.stiffness);
+  const hotfire::SimplexParameters declared;
+  const double share = 1.0 / (1.0 + declared.structure.stiffness / declared.actuator.stiffness);
   Eigen::Vector2d notch;
   for (std::size_t k = 0; k < 2; ++k) {
     notch(static_cast<Eigen::Index>(k)) = fitted.free[k].key == "engine.inertia" ? -0.02 : share * 0.05;
@@ -48,9 +49,8 @@ TEST(Identifiability, WhereTheDataSayNothingTheDeclarationRemains) {
 }
 
 TEST(Identifiability, ParametersOfWhichOneMakesUpForTheOtherAreNamedWithTheirRate) {
-  Fitted<SimplexFamily> fitted;
-  fitted.free =
-      declared_parameters<SimplexFamily>(fitted.base, {{"engine.viscous_damping", 0.3}, {"actuator.piston_damping", 0.3}});
+  Fitted fitted;
+  fitted.free = declared_parameters(fitted.base, {{"engine.viscous_damping", 0.3}, {"actuator.piston_damping", 0.3}});
   fitted.u.assign(2, 0.0);
   // The sum of their coordinates is identified a hundred times better than either: with one larger the other is smaller by
   // as much.

@@ -17,7 +17,7 @@ using namespace hotfire::explain;
 /// record is chosen for it. The declared leakage, which does the same, is free if `with_other`.
 struct LeakingAxis {
   Dataset data;
-  Fitted<SimplexFamily> fitted;
+  Fitted fitted;
 
   LeakingAxis(double deviation, bool with_other) {
     data.channels = {"piston", "engine", "load_pressure"};
@@ -36,10 +36,10 @@ struct LeakingAxis {
     experiment.zero_deviation.assign(data.channels.size(), 0.0);
     data.experiments.push_back(experiment);
 
-    for (const Candidate& candidate : all_candidates<SimplexFamily>(data)) {
+    for (const Candidate& candidate : all_candidates(fitted.base, data)) {
       if (candidate.name == "leakage" && candidate.option_name == "laminar") {
-        activate<SimplexFamily>(fitted.base, candidate);
-        fitted.free = effect_parameters<SimplexFamily>(fitted.base, candidate, {});
+        activate(fitted.base, candidate);
+        fitted.free = effect_parameters(fitted.base, candidate, {});
       }
     }
     // No prior but the data's.
@@ -47,18 +47,18 @@ struct LeakingAxis {
     fitted.u = {std::log(2e-11)};
     measure(deviation);
     if (with_other) {
-      const auto other = declared_parameters<SimplexFamily>(fitted.base, {{"actuator.leakage", 1.0}});
+      const auto other = declared_parameters(fitted.base, {{"actuator.leakage", 1.0}});
       fitted.free.insert(fitted.free.end(), other.begin(), other.end());
       fitted.u.push_back(0.0);
     }
-    const Evaluator<SimplexFamily> evaluator(data, Resolution::fine);
+    const Evaluator evaluator(data, Resolution::fine);
     fitted.temper.assign(data.channels.size(), 1.0);
     CHECK_TRUE(fit(evaluator, fitted, {30, 1, 1e-9, Slopes::exact, nullptr}));
   }
 
   const Address& leak() const { return fitted.free.front().address; }
   double value() const { return fitted.free.front().value(fitted.u.front()); }
-  Intervals profile() const { return profile_intervals(Evaluator<SimplexFamily>(data, Resolution::fine), fitted, 1); }
+  Intervals profile() const { return profile_intervals(Evaluator(data, Resolution::fine), fitted, 1); }
   double half_of_curvature() const {
     const auto interval = estimates(fitted.free, fitted.u, fitted.normal).front().interval;
     CHECK_TRUE(interval.has_value());
@@ -69,7 +69,7 @@ struct LeakingAxis {
   void measure(double deviation) {
     const std::vector<std::size_t> all{0};
     Eigen::MatrixXd jacobian;
-    const Evaluator<SimplexFamily> silent(data, Resolution::fine);
+    const Evaluator silent(data, Resolution::fine);
     CHECK_TRUE(silent.differentiate(fitted.base, fitted.free, fitted.u, all, 1, jacobian));
     data.noise.assign(3, deviation * jacobian.norm());
     data.experiments.front().noise = data.noise;

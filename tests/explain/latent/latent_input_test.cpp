@@ -18,7 +18,6 @@ using explain::LatentInput;
 using explain::LatentPlace;
 using explain::LatentProblem;
 using explain::Port;
-using explain::SimplexFamily;
 
 constexpr double kTorque = 2e3;  // N m
 constexpr double kNoise = 1e-6;  // m, rad
@@ -70,9 +69,9 @@ struct Smoothed {
     explain::smooth(problem, kEngine, input);
   }
 
-  static Fitted<SimplexFamily> about(const ModelFile& model) {
-    Fitted<SimplexFamily> fitted;
-    fitted.base = std::get<SimplexParameters>(model.parameters);
+  static Fitted about(const ModelFile& model) {
+    Fitted fitted;
+    fitted.base = model.parameters;
     return fitted;
   }
 
@@ -146,8 +145,8 @@ TEST(LatentInput, HeldOutRowsAreNotLookedAt) {
   const ModelFile model = declared();
   Dataset data = explain::make_dataset(model, {record_of()});
   const auto likelihood = [&] {
-    Fitted<SimplexFamily> about;
-    about.base = std::get<SimplexParameters>(model.parameters);
+    Fitted about;
+    about.base = model.parameters;
     return explain::most_likely_input(explain::latent_problem(data, about, 1), {Port::spring, 0}).log_likelihood;
   };
   const double before = likelihood();

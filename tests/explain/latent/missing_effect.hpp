@@ -77,11 +77,11 @@ inline explain::Dataset data_of(const ModelFile& truth, std::size_t copies = 1) 
 }
 
 /// The declared model about its declared values.
-inline explain::Fitted<explain::SimplexFamily> about_declared() {
+inline explain::Fitted about_declared() {
   const ModelFile model = declared();
-  explain::Fitted<explain::SimplexFamily> about;
-  about.base = std::get<SimplexParameters>(model.parameters);
-  about.free = explain::declared_parameters<explain::SimplexFamily>(about.base, model.tolerance);
+  explain::Fitted about;
+  about.base = model.parameters;
+  about.free = explain::declared_parameters(about.base, model.tolerance);
   about.u.assign(about.free.size(), 0.0);
   return about;
 }

@@ -7,8 +7,8 @@ namespace {
 
 using namespace hotfire::explain;
 
-Assessed<SimplexFamily> leaving(double times_noise) {
-  Assessed<SimplexFamily> assessed;
+Assessed leaving(double times_noise) {
+  Assessed assessed;
   ChannelFit fit;
   fit.rows = 100.0;
   fit.mean_square = times_noise * times_noise;
@@ -24,7 +24,7 @@ Trial tried(const Candidate& candidate) {
 }
 
 std::string sentence_with(const std::vector<Candidate>& kept) {
-  SearchResult<SimplexFamily> found;
+  SearchResult found;
   found.declared = leaving(8.0);
   found.calibrated = leaving(4.0);
   found.explained = leaving(1.0);
@@ -52,7 +52,7 @@ TEST(Verdict, AFaultOfTheRecordIsNotSaidOfTheModel) {
 }
 
 TEST(Verdict, AnInterruptedSearchNamesWhatPromisedMostByThen) {
-  SearchResult<SimplexFamily> found;
+  SearchResult found;
   found.interrupted = true;
   found.declared = found.calibrated = found.explained = leaving(4.0);
   Trial screened = tried(kLeakage);
@@ -73,7 +73,7 @@ TEST(Verdict, AnInterruptedSearchNamesWhatPromisedMostByThen) {
 }
 
 TEST(Verdict, TimesTheNoiseIsNotSaidWhereAFloorReplacesIt) {
-  SearchResult<SimplexFamily> found;
+  SearchResult found;
   found.declared = leaving(8.0);
   found.calibrated = leaving(4.0);
   found.explained = leaving(1.0);

@@ -8,8 +8,8 @@ namespace {
 using namespace hotfire::explain;
 
 /// Screened candidates, the best first, as a screening leaves them.
-std::vector<Screened<SimplexFamily>> screened(const std::vector<double>& criteria) {
-  std::vector<Screened<SimplexFamily>> all;
+std::vector<Screened> screened(const std::vector<double>& criteria) {
+  std::vector<Screened> all;
   for (const double criterion : criteria) {
     all.emplace_back();
     all.back().criterion = criterion;
@@ -36,8 +36,8 @@ TEST(Finalists, WhereNoneLooksStrongTheBestAreFittedAllTheSame) {
 TEST(Finalists, WhereNoneReachesTheNoiseTheClosestLawOfEachNameMayWinYet) {
   const std::vector<std::pair<std::string, double>> left{
       {"backlash", 1.8}, {"soft_stiffness", 1.5}, {"soft_stiffness", 1.6}, {"piston_friction", 3.3}, {"unsimulable", 0.0}};
-  std::vector<Screened<SimplexFamily>> all = screened({-50.0, -40.0, -39.0, -20.0, -15.0});
-  std::vector<Assessed<SimplexFamily>> finalists(all.size());
+  std::vector<Screened> all = screened({-50.0, -40.0, -39.0, -20.0, -15.0});
+  std::vector<Assessed> finalists(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i].candidate.name = left[i].first;
     if (left[i].second > 0.0) {
@@ -46,6 +46,6 @@ TEST(Finalists, WhereNoneReachesTheNoiseTheClosestLawOfEachNameMayWinYet) {
     }
   }
   // 3.3 is clearly more than 1.5.
-  const std::vector<std::size_t> contenders = contenders_of<SimplexFamily>({0, 1, 2, 3, 4}, all, finalists);
+  const std::vector<std::size_t> contenders = contenders_of({0, 1, 2, 3, 4}, all, finalists);
   CHECK((contenders == std::vector<std::size_t>{1, 0}));
 }

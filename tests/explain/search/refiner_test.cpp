@@ -12,11 +12,9 @@ namespace {
 
 using namespace hotfire;
 using explain::Dataset;
-using explain::DirectFamily;
 using explain::Evaluator;
 using explain::Fitted;
 using explain::Resolution;
-using explain::SimplexFamily;
 
 /// Steps of a degree and back, simulated by the declared model, the piston read a hundredth of its way off; with or without
 /// the load pressure, to which rough steps do most.
@@ -47,21 +45,21 @@ bool screens_roughly(bool with_pressure) {
   model.parameters = SimplexParameters{};
   model.noise = {{"piston", 8e-6}, {"load_pressure", 8e3}};
   const Dataset data = stepped(model, with_pressure);
-  const Evaluator<SimplexFamily> rough(data, Resolution::rough);
-  const Evaluator<SimplexFamily> coarse(data, Resolution::coarse);
-  const Evaluator<SimplexFamily> fine(data, Resolution::fine);
+  const Evaluator rough(data, Resolution::rough);
+  const Evaluator coarse(data, Resolution::coarse);
+  const Evaluator fine(data, Resolution::fine);
   const explain::Scales scales;
   const explain::Watch watch;
-  const explain::Refiner<SimplexFamily> refiner(data, rough, coarse, fine, scales, 1, watch);
-  Fitted<SimplexFamily> declared;
-  declared.base = std::get<SimplexParameters>(model.parameters);
+  const explain::Refiner refiner(data, rough, coarse, fine, scales, 1, watch);
+  Fitted declared;
+  declared.base = model.parameters;
   declared.temper.assign(data.channels.size(), 1.0);
   return refiner.for_screening(declared).resolution() == Resolution::rough;
 }
 
 /// The candidate with a name and law.
 explain::Candidate candidate_of(const Dataset& data, const std::string& name, const std::string& law = "") {
-  for (const explain::Candidate& candidate : explain::all_candidates<DirectFamily>(data)) {
+  for (const explain::Candidate& candidate : explain::all_candidates(DirectParameters(), data)) {
     if (candidate.name == name && candidate.option_name == law) {
       return candidate;
     }
@@ -71,14 +69,16 @@ explain::Candidate candidate_of(const Dataset& data, const std::string& name, co
 
 /// A guided mass under a law of friction, its parameters `above` the typical ones in their coordinates, which are
 /// logarithms.
-Fitted<DirectFamily> guided_mass(const Dataset& data, const explain::Scales& scales, const std::string& law, double above) {
-  Fitted<DirectFamily> model;
-  model.base.mass.inertia = 1.0;
-  model.base.mass.damping = 0.5;
-  model.base.mass.stiffness = 100.0;
+Fitted guided_mass(const Dataset& data, const explain::Scales& scales, const std::string& law, double above) {
+  Fitted model;
+  DirectParameters declared;
+  declared.mass.inertia = 1.0;
+  declared.mass.damping = 0.5;
+  declared.mass.stiffness = 100.0;
+  model.base = declared;
   const explain::Candidate candidate = candidate_of(data, "sliding_friction", law);
-  explain::activate<DirectFamily>(model.base, candidate);
-  model.free = explain::effect_parameters<DirectFamily>(model.base, candidate, scales);
+  explain::activate(model.base, candidate);
+  model.free = explain::effect_parameters(model.base, candidate, scales);
   for (const explain::FreeParameter& parameter : model.free) {
     model.u.push_back(parameter.coordinate(parameter.unit_size) + above);
   }
@@ -102,8 +102,8 @@ Dataset pushed_to_and_fro(const std::string& law) {
   model.parameters = DirectParameters{};
   model.noise = {{"position", 1e-5}};
   const Dataset shape = explain::make_dataset(model, {record});
-  const Fitted<DirectFamily> truth = guided_mass(shape, {10.0, 0.1, 0.5}, law, 0.4);
-  model.parameters = Evaluator<DirectFamily>::with_values(truth.base, truth.free, truth.u);
+  const Fitted truth = guided_mass(shape, {10.0, 0.1, 0.5}, law, 0.4);
+  model.parameters = truth.parameters();
   record.channels[1].values = simulate(model, record).find("position")->values;
   const std::vector<double> noise = test::coloured_noise(record.rows, 0.0, 3);
   for (std::size_t row = 0; row < record.rows; ++row) {
@@ -117,10 +117,10 @@ struct Strokes {
   explicit Strokes(const std::string& law = "lugre") : data(pushed_to_and_fro(law)) {}
 
   Dataset data;
-  Evaluator<DirectFamily> fine{data, Resolution::fine};
+  Evaluator fine{data, Resolution::fine};
   explain::Scales scales{10.0, 0.1, 0.5};
   explain::Watch watch;
-  explain::Refiner<DirectFamily> refiner{data, fine, fine, fine, scales, 2, watch};
+  explain::Refiner refiner{data, fine, fine, fine, scales, 2, watch};
 };
 
 }  // namespace
@@ -131,7 +131,7 @@ TEST(Refiner, FromASimplerLawTheOneThatTheDataHoldIsReachedAndFromThatNoFurther)
   const Strokes strokes;
   const Dataset& data = strokes.data;
   const explain::Scales& scales = strokes.scales;
-  const explain::Refiner<DirectFamily>& refiner = strokes.refiner;
+  const explain::Refiner& refiner = strokes.refiner;
   const auto dahl = refiner.ranked(guided_mass(data, scales, "dahl", 0.0), explain::kRanking);
   CHECK_FALSE(explain::reaches_noise(data, dahl));
   const auto richer = refiner.of_richer_laws(1, dahl, candidate_of(data, "sliding_friction", "dahl"));
@@ -166,15 +166,15 @@ TEST(Refiner, AnEffectInThePlaceOfAnotherIsFittedWithAllElseThatWasFound) {
   const explain::Candidate dahl = candidate_of(data, "sliding_friction", "dahl");
   const explain::Candidate lugre = candidate_of(data, "sliding_friction", "lugre");
   const explain::Candidate quadratic = candidate_of(data, "quadratic_stiffness");
-  Fitted<DirectFamily> model = guided_mass(data, strokes.scales, "dahl", 0.2);
-  explain::activate<DirectFamily>(model.base, quadratic);
-  for (const auto& parameter : explain::effect_parameters<DirectFamily>(model.base, quadratic, strokes.scales)) {
+  Fitted model = guided_mass(data, strokes.scales, "dahl", 0.2);
+  explain::activate(model.base, quadratic);
+  for (const auto& parameter : explain::effect_parameters(model.base, quadratic, strokes.scales)) {
     model.free.push_back(parameter);
     model.u.push_back(0.0);
   }
   const auto with = strokes.refiner.in_place_of(model, dahl, lugre, guided_mass(data, strokes.scales, "lugre", 0.2));
   CHECK_TRUE(explain::reaches_noise(data, with));
-  CHECK_TRUE(with.model.base.effects.active[quadratic.effect]);
+  CHECK_TRUE(explain::is_active(with.model.base, quadratic.effect));
   LONGS_EQUAL(guided_mass(data, strokes.scales, "lugre", 0.0).free.size() + model.free.size() -
                   guided_mass(data, strokes.scales, "dahl", 0.0).free.size(),
               with.model.free.size());
@@ -185,11 +185,11 @@ TEST(Refiner, AScreenedCandidateThatWasMovedTooFarIsFittedFromWhereTheErrorIsLea
   const Strokes strokes;
   const Dataset& data = strokes.data;
   const explain::Scales& scales = strokes.scales;
-  const explain::Refiner<DirectFamily>& refiner = strokes.refiner;
-  Fitted<DirectFamily> screened = guided_mass(data, scales, "lugre", 0.2);
+  const explain::Refiner& refiner = strokes.refiner;
+  Fitted screened = guided_mass(data, scales, "lugre", 0.2);
   const explain::Candidate earlier = candidate_of(data, "quadratic_stiffness");
-  explain::activate<DirectFamily>(screened.base, earlier);
-  const auto before = explain::effect_parameters<DirectFamily>(screened.base, earlier, scales);
+  explain::activate(screened.base, earlier);
+  const auto before = explain::effect_parameters(screened.base, earlier, scales);
   screened.free.insert(screened.free.begin(), before.begin(), before.end());
   screened.u.insert(screened.u.begin(), before.size(), 1e6);
   CHECK_FALSE(refiner.ranked(screened, explain::kRanking).good());

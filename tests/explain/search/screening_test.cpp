@@ -13,25 +13,24 @@
 namespace {
 
 using namespace hotfire;
-using explain::DirectFamily;
 using explain::Screened;
 
 /// Every candidate screened beside a model whose values are a fiftieth of a tolerance off the true ones: near enough for a
 /// linear move, and as far off as to leave more than the noise.
-std::vector<Screened<DirectFamily>> screened_beside_nearly_calibrated() {
+std::vector<Screened> screened_beside_nearly_calibrated() {
   const ModelFile model = test::declared_oscillator(97.0);
   const explain::Dataset data = explain::make_dataset(model, {test::oscillator(0.0, 1e-3)});
-  const explain::Evaluator<DirectFamily> evaluator(data, explain::Resolution::fine);
-  const explain::Scales scales = explain::scales_of(data);
-  explain::Fitted<DirectFamily> current;
-  current.base = std::get<DirectParameters>(model.parameters);
-  current.free = explain::declared_parameters<DirectFamily>(current.base, model.tolerance);
+  const explain::Evaluator evaluator(data, explain::Resolution::fine);
+  const explain::Scales scales = explain::scales_of(model.parameters, data);
+  explain::Fitted current;
+  current.base = model.parameters;
+  current.free = explain::declared_parameters(current.base, model.tolerance);
   const std::map<std::string, double> truth{{"mass.inertia", 1.0}, {"mass.damping", 1.5}, {"mass.stiffness", 100.0}};
   for (const explain::FreeParameter& parameter : current.free) {
     current.u.push_back(parameter.coordinate(truth.at(parameter.key)) + 0.02);
   }
-  const explain::Screening<DirectFamily> screening(evaluator, current, scales, 2);
-  return screening.run(explain::all_candidates<DirectFamily>(data), "screening", {});
+  const explain::Screening screening(evaluator, current, scales, 2);
+  return screening.run(explain::all_candidates(current.base, data), "screening", {});
 }
 
 }  // namespace
@@ -41,7 +40,7 @@ TEST_GROUP(Screening){};
 TEST(Screening, WhatTheModelsOwnParametersGainBesideACandidateIsNotTheCandidates) {
   const auto screened = screened_beside_nearly_calibrated();
   CHECK_FALSE(screened.empty());
-  for (const Screened<DirectFamily>& candidate : screened) {
+  for (const Screened& candidate : screened) {
     CHECK_TRUE(candidate.criterion > -explain::policy().strong_evidence);
   }
 }

@@ -13,11 +13,10 @@ using namespace hotfire;
 using test::declared_oscillator;
 using test::oscillator;
 
-explain::SearchResult<explain::DirectFamily> found_in(const Record& record, int most_effects = 4,
-                                                      double declared_stiffness = 97.0) {
+explain::SearchResult found_in(const Record& record, int most_effects = 4, double declared_stiffness = 97.0) {
   const ModelFile model = declared_oscillator(declared_stiffness);
   const auto data = explain::make_dataset(model, {record});
-  return explain::search<explain::DirectFamily>(data, model, {2, most_effects, {}});
+  return explain::search(data, model, {2, most_effects, {}});
 }
 
 }  // namespace
@@ -82,7 +81,7 @@ TEST(Search, ADeclaredEffectIsCalibratedWithinItsToleranceAndOneWithoutSupportIs
   });
   model.tolerance["effects.cubic_stiffness.stiffness"] = 0.5;
   const auto data = explain::make_dataset(model, {oscillator(400.0, 1e-3)});
-  const auto found = explain::search<explain::DirectFamily>(data, model, {2, 4, {}});
+  const auto found = explain::search(data, model, {2, 4, {}});
   LONGS_EQUAL(0, found.kept.size());
   const auto& calibrated = found.calibrated.model;
   double cubic = 0.0;

@@ -10,7 +10,6 @@ namespace {
 using namespace hotfire;
 using namespace hotfire::test;
 using explain::Screened;
-using explain::SimplexFamily;
 using model::Argument;
 using model::Memory;
 using model::Site;
@@ -35,11 +34,11 @@ ModelFile with_term(F&& set) {
 }
 
 template <class E>
-const auto& term_of(const explain::Fitted<SimplexFamily>& fitted) {
-  return std::get<typename E::template Params<double>>(fitted.base.effects.values);
+const auto& term_of(const explain::Fitted& fitted) {
+  return std::get<typename E::template Params<double>>(std::get<SimplexParameters>(fitted.base).effects.values);
 }
 
-std::vector<Screened<SimplexFamily>> proposed_for(const ModelFile& truth, explain::Fitted<SimplexFamily> around) {
+std::vector<Screened> proposed_for(const ModelFile& truth, explain::Fitted around) {
   const explain::Dataset data = data_of(truth);
   const explain::Located located = explain::locate(data, about_declared(), 2);
   const explain::Scales scales;
@@ -77,7 +76,7 @@ TEST(TermProposals, AMemoryIsFoundWithItsTime) {
                                       }),
                                       about_declared());
   CHECK(!proposals.empty());
-  const Screened<SimplexFamily>& best = proposals.front();
+  const Screened& best = proposals.front();
   STRCMP_EQUAL(std::string(TorqueTerm::name).c_str(), best.candidate.name.c_str());
   // A washout and the argument itself make a lag.
   const auto kind = static_cast<Memory>(term_of<TorqueTerm>(best.fitted).option);
@@ -113,9 +112,9 @@ TEST(TermProposals, NothingIsProposedWhereNothingIsMissing) { CHECK(proposed_for
 
 TEST(TermProposals, ASiteThatHasATermGetsNoSecondOne) {
   auto around = about_declared();
-  model::visit_effects(around.base, [&]<class E>(std::size_t index, auto&) {
+  explain::visit_effects(around.base, [&]<class E>(std::size_t index, auto&) {
     if constexpr (std::is_same_v<E, FlowTerm>) {
-      around.base.effects.active[index] = true;
+      explain::set_active(around.base, index, true);
     }
   });
   for (const auto& proposal : proposed_for(with_product(), around)) {

@@ -10,8 +10,8 @@ namespace {
 using namespace hotfire::explain;
 
 /// A model whose held-out residuals are these many times the noise, channel by channel.
-Assessed<SimplexFamily> leaving(const std::vector<double>& errors) {
-  Assessed<SimplexFamily> assessed;
+Assessed leaving(const std::vector<double>& errors) {
+  Assessed assessed;
   for (const double error : errors) {
     assessed.goodness.held_out.push_back({.rows = 100.0, .mean_square = error * error});
   }
@@ -35,8 +35,8 @@ TEST(Assessed, WhatClearsTheWorstChannelCountsByTheRmsOverAll) {
 }
 
 TEST(Assessed, ADeclaredParameterSixTolerancesOffReplacesSomethingAndAnEffectsOwnDoesNot) {
-  Fitted<SimplexFamily> model;
-  model.free = declared_parameters<SimplexFamily>(model.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
+  Fitted model;
+  model.free = declared_parameters(model.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});
   model.u = {2.0, -4.0};
   CHECK(is_within_tolerances(model));
   model.u = {2.0, -6.0};
@@ -46,8 +46,8 @@ TEST(Assessed, ADeclaredParameterSixTolerancesOffReplacesSomethingAndAnEffectsOw
 }
 
 TEST(Assessed, ADeclaredValueMovedByTolerancesKeepsItsSignAndComesBackFromItsCoordinate) {
-  const Fitted<SimplexFamily> model;
-  const auto free = declared_parameters<SimplexFamily>(model.base, {{"actuator.piston_damping", 0.3}});
+  const Fitted model;
+  const auto free = declared_parameters(model.base, {{"actuator.piston_damping", 0.3}});
   LONGS_EQUAL(1, free.size());
   DOUBLES_EQUAL(free[0].declared, free[0].value(0.0), 1e-9);
   DOUBLES_EQUAL(1.3, free[0].value(1.0) / free[0].declared, 1e-12);

@@ -24,11 +24,11 @@ Dataset every_channel() {
 TEST_GROUP(Candidates){};
 
 TEST(Candidates, AParameterIsAddressedByItsEffectAndFieldAndItsKeyIsThatOfModelFiles) {
-  const PlainParameters<SimplexFamily> neutral;
+  const hotfire::SimplexParameters neutral;
   std::size_t parameters = 0;
-  for (const Candidate& candidate : all_candidates<SimplexFamily>(every_channel())) {
+  for (const Candidate& candidate : all_candidates(neutral, every_channel())) {
     std::set<Address> addresses;
-    for (const FreeParameter& free : effect_parameters<SimplexFamily>(neutral, candidate, {})) {
+    for (const FreeParameter& free : effect_parameters(neutral, candidate, {})) {
       CHECK_TRUE_TEXT(addresses.insert(free.address).second, free.key.c_str());
       CHECK_TRUE(free.is_of_effect(candidate.effect) && !free.is_of_effect(candidate.effect + 1));
       STRCMP_EQUAL(("effects." + candidate.name + "." + std::string(free.address.field)).c_str(), free.key.c_str());
@@ -39,20 +39,20 @@ TEST(Candidates, AParameterIsAddressedByItsEffectAndFieldAndItsKeyIsThatOfModelF
 }
 
 TEST(Candidates, APointOfATableIsAddressedByItsNumberToo) {
-  PlainParameters<SimplexFamily> parameters;
-  for (const Candidate& candidate : unlisted_candidates<SimplexFamily>(every_channel())) {
+  ModelParameters parameters = hotfire::SimplexParameters();
+  for (const Candidate& candidate : unlisted_candidates(parameters, every_channel())) {
     if (candidate.name != "unlisted_flow" || candidate.option_name != "opening") {
       continue;
     }
-    activate<SimplexFamily>(parameters, candidate);
-    hotfire::model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    activate(parameters, candidate);
+    visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
       if constexpr (std::is_same_v<E, hotfire::model::UnlistedFlow>) {
         CHECK_EQUAL(candidate.effect, index);
         values.table.points = 3;
         values.table.x = {-1.0, 0.0, 1.0};
       }
     });
-    const std::vector<FreeParameter> free = effect_parameters<SimplexFamily>(parameters, candidate, {});
+    const std::vector<FreeParameter> free = effect_parameters(parameters, candidate, {});
     CHECK_EQUAL(3U, free.size());
     STRCMP_EQUAL("effects.unlisted_flow.flow_at_opening.2", free[2].key.c_str());
     CHECK_TRUE(free[2].is_ordinate() && free[2].address.point == 2 && free[2].index == free[1].index + 1);

@@ -14,7 +14,6 @@ namespace {
 
 using namespace hotfire;
 using explain::Dataset;
-using explain::DirectFamily;
 using explain::Fitted;
 
 constexpr double kFrequency = 1.7;
@@ -30,12 +29,12 @@ Dataset two_starts(const ModelFile& model) {
 }
 
 /// A mass under a sinusoid, the clock of each record where `phases` say at its first row.
-Fitted<DirectFamily> under_sinusoid(const ModelFile& model, const Dataset& data, const explain::Candidate& candidate,
-                                    std::array<double, 2> phases) {
-  Fitted<DirectFamily> fitted;
-  fitted.base = std::get<DirectParameters>(model.parameters);
-  explain::activate<DirectFamily>(fitted.base, candidate);
-  fitted.free = explain::effect_parameters<DirectFamily>(fitted.base, candidate, explain::scales_of(data));
+Fitted under_sinusoid(const ModelFile& model, const Dataset& data, const explain::Candidate& candidate,
+                      std::array<double, 2> phases) {
+  Fitted fitted;
+  fitted.base = model.parameters;
+  explain::activate(fitted.base, candidate);
+  fitted.free = explain::effect_parameters(fitted.base, candidate, explain::scales_of(model.parameters, data));
   for (const explain::FreeParameter& parameter : fitted.free) {
     fitted.u.push_back(parameter.coordinate(parameter.unit == "Hz" ? kFrequency : 5.0));
   }
@@ -48,15 +47,14 @@ Fitted<DirectFamily> under_sinusoid(const ModelFile& model, const Dataset& data,
   return fitted;
 }
 
-explain::Prediction predicted(const Dataset& data, const Fitted<DirectFamily>& fitted) {
+explain::Prediction predicted(const Dataset& data, const Fitted& fitted) {
   explain::Prediction prediction;
-  CHECK(explain::Evaluator<DirectFamily>(data, explain::Resolution::fine)
-            .predict(fitted.base, fitted.free, fitted.u, 1, prediction));
+  CHECK(explain::Evaluator(data, explain::Resolution::fine).predict(fitted.base, fitted.free, fitted.u, 1, prediction));
   return prediction;
 }
 
 explain::Candidate sinusoid(const Dataset& data) {
-  const auto candidates = explain::unlisted_candidates<DirectFamily>(data);
+  const auto candidates = explain::unlisted_candidates(DirectParameters(), data);
   return *std::ranges::find_if(candidates, explain::is_periodic);
 }
 
@@ -69,8 +67,8 @@ TEST(periodic, records_that_start_at_one_phase_are_predicted_alike_by_it_and_by_
   const Dataset data = two_starts(model);
   const explain::Candidate candidate = sinusoid(data);
   const double later = 2.0 * std::numbers::pi * kFrequency * data.experiments[1].start;
-  const Fitted<DirectFamily> own = under_sinusoid(model, data, candidate, {kPhase, kPhase + later});
-  const Fitted<DirectFamily> common = explain::with_common_phase<DirectFamily>(data, own, candidate);
+  const Fitted own = under_sinusoid(model, data, candidate, {kPhase, kPhase + later});
+  const Fitted common = explain::with_common_phase(data, own, candidate);
   CHECK_EQUAL(own.free.size() - 1, common.free.size());
   const explain::Prediction by_clocks = predicted(data, own);
   const explain::Prediction by_phase = predicted(data, common);

@@ -12,24 +12,23 @@ namespace {
 
 using namespace hotfire;
 using explain::Dataset;
-using explain::DirectFamily;
 using explain::Fitted;
 
 explain::Candidate force_over_position(const Dataset& data) {
-  const auto candidates = explain::unlisted_candidates<DirectFamily>(data);
+  const auto candidates = explain::unlisted_candidates(DirectParameters(), data);
   return *std::ranges::find_if(candidates, [](const explain::Candidate& candidate) {
     return candidate.name == "unlisted_force" && candidate.option_name == "position";
   });
 }
 
 /// The oscillator with a force over its position that zigzags, laid over the rows that `data` has a fit see.
-Fitted<DirectFamily> with_zigzag(const ModelFile& model, const Dataset& data, const explain::Candidate& candidate) {
-  Fitted<DirectFamily> fitted;
-  fitted.base = std::get<DirectParameters>(model.parameters);
-  const Fitted<DirectFamily> plain = fitted;
-  explain::activate<DirectFamily>(fitted.base, candidate);
-  explain::lay_table<DirectFamily>(fitted.base, candidate, data, plain);
-  fitted.free = explain::effect_parameters<DirectFamily>(fitted.base, candidate, explain::scales_of(data));
+Fitted with_zigzag(const ModelFile& model, const Dataset& data, const explain::Candidate& candidate) {
+  Fitted fitted;
+  fitted.base = model.parameters;
+  const Fitted plain = fitted;
+  explain::activate(fitted.base, candidate);
+  explain::lay_table(fitted.base, candidate, data, plain);
+  fitted.free = explain::effect_parameters(fitted.base, candidate, explain::scales_of(model.parameters, data));
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
     fitted.u.push_back(k % 2 == 0 ? 0.5 : -1.0 - static_cast<double>(k));
   }
@@ -37,9 +36,8 @@ Fitted<DirectFamily> with_zigzag(const ModelFile& model, const Dataset& data, co
 }
 
 /// The table as the plant runs it.
-explain::FittedTable table_of(const Fitted<DirectFamily>& fitted, const explain::Candidate& candidate) {
-  return *explain::table_of<DirectFamily>(explain::Evaluator<DirectFamily>::with_values(fitted.base, fitted.free, fitted.u),
-                                          candidate);
+explain::FittedTable table_of(const Fitted& fitted, const explain::Candidate& candidate) {
+  return *explain::table_of(fitted.parameters(), candidate);
 }
 
 model::UnlistedTable<double> runnable(const explain::FittedTable& table) {
@@ -62,8 +60,8 @@ TEST(table_points, over_further_rows_a_table_reaches_further_and_is_the_same_fun
   Dataset every_row = all;
   explain::fit_every_row(every_row);
   const explain::Candidate candidate = force_over_position(all);
-  const Fitted<DirectFamily> narrow = with_zigzag(model, few, candidate);
-  const Fitted<DirectFamily> wide = explain::reaching_over<DirectFamily>(every_row, narrow, candidate);
+  const Fitted narrow = with_zigzag(model, few, candidate);
+  const Fitted wide = explain::reaching_over(every_row, narrow, candidate);
   const explain::FittedTable before = table_of(narrow, candidate);
   const explain::FittedTable after = table_of(wide, candidate);
   CHECK(after.x.front() < before.x.front());
@@ -80,10 +78,10 @@ TEST(table_points, a_table_that_reaches_over_every_row_stays_as_it_is) {
   Dataset data = explain::make_dataset(model, {test::oscillator(0.0, 1e-3)});
   explain::fit_every_row(data);
   const explain::Candidate candidate = force_over_position(data);
-  Fitted<DirectFamily> fitted = with_zigzag(model, data, candidate);
+  Fitted fitted = with_zigzag(model, data, candidate);
   // Without a force the mass runs through just the rows that the table was laid over.
   std::ranges::fill(fitted.u, 0.0);
-  const Fitted<DirectFamily> wide = explain::reaching_over<DirectFamily>(data, fitted, candidate);
+  const Fitted wide = explain::reaching_over(data, fitted, candidate);
   const explain::FittedTable before = table_of(fitted, candidate);
   const explain::FittedTable after = table_of(wide, candidate);
   CHECK_EQUAL(before.x.size(), after.x.size());
@@ -110,7 +108,7 @@ bool mass_feeds_energy(double at_negative, double at_rest, double at_positive) {
       effect.table.y = {at_negative, at_rest, at_positive};
     }
   });
-  return explain::feeds_energy<DirectFamily>(parameters, candidate);
+  return explain::feeds_energy(parameters, candidate);
 }
 
 bool term_feeds_energy(model::Argument argument, double slope) {
@@ -127,7 +125,7 @@ bool term_feeds_energy(model::Argument argument, double slope) {
       effect.table.y = {-0.1 * slope, 0.0, 0.1 * slope};
     }
   });
-  return explain::feeds_energy<explain::SimplexFamily>(parameters, candidate);
+  return explain::feeds_energy(parameters, candidate);
 }
 
 }  // namespace

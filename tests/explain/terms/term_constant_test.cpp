@@ -17,12 +17,12 @@ using Command = model::Term<model::Site::command>;
 
 /// The declared model with a curve over the position, which adds `constant` everywhere and a bend on top of it.
 template <class E>
-Fitted<SimplexFamily> with_curve(double constant, double size, Candidate& candidate) {
-  Fitted<SimplexFamily> fitted = test::about_declared();
-  model::visit_effects(fitted.base, [&]<class Own>(std::size_t index, auto& effect) {
+Fitted with_curve(double constant, double size, Candidate& candidate) {
+  Fitted fitted = test::about_declared();
+  visit_effects(fitted.base, [&]<class Own>(std::size_t index, auto& effect) {
     if constexpr (std::is_same_v<Own, E>) {
       candidate = {index, 0, std::string(E::name), "", std::string(model::site_name(E::site))};
-      fitted.base.effects.active[index] = true;
+      set_active(fitted.base, index, true);
       effect.argument = static_cast<int>(model::Argument::position);
       effect.table.points = 3;
       effect.table.x = {-0.01, 0.0, 0.01};
@@ -33,9 +33,9 @@ Fitted<SimplexFamily> with_curve(double constant, double size, Candidate& candid
 }
 
 template <class E>
-double first_ordinate(const Fitted<SimplexFamily>& fitted) {
+double first_ordinate(const Fitted& fitted) {
   double ordinate = 0.0;
-  model::visit_effects(fitted.base, [&]<class Own>(std::size_t, const auto& effect) {
+  visit_effects(fitted.base, [&]<class Own>(std::size_t, const auto& effect) {
     if constexpr (std::is_same_v<Own, E>) {
       ordinate = effect.table.y[0];
     }
@@ -50,10 +50,10 @@ double chosen_constant(double constant, double size) {
   ModelFile truth = test::declared();
   truth.parameters = with_curve<E>(0.0, size, candidate).base;
   const Dataset data = test::data_of(truth, 2);
-  const Evaluator<SimplexFamily> fine(data, Resolution::fine);
-  const Assessed<SimplexFamily> wrong = assess(fine, 1, with_curve<E>(constant, size, candidate));
+  const Evaluator fine(data, Resolution::fine);
+  const Assessed wrong = assess(fine, 1, with_curve<E>(constant, size, candidate));
   CHECK(wrong.good());
-  const Assessed<SimplexFamily> right = assess(fine, 1, with_least_zeros(data, wrong.zeros, wrong.model, candidate).value());
+  const Assessed right = assess(fine, 1, with_least_zeros(data, wrong.zeros, wrong.model, candidate).value());
   CHECK(right.good());
   DOUBLES_EQUAL(1.0, Goodness::combined(right.goodness.fitted), 0.05);
   return first_ordinate<E>(right.model);
@@ -77,10 +77,10 @@ TEST(TermConstant, CurveOfASignalToo) {
 
 TEST(TermConstant, IntervalsOfACurveAreThoseOfItsShape) {
   Candidate candidate;
-  Fitted<SimplexFamily> fitted = with_curve<PistonReading>(3e-4, 1e-4, candidate);
+  Fitted fitted = with_curve<PistonReading>(3e-4, 1e-4, candidate);
   fitted.free.clear();
   fitted.u.clear();
-  for (const FreeParameter& p : effect_parameters<SimplexFamily>(fitted.base, candidate, {})) {
+  for (const FreeParameter& p : effect_parameters(fitted.base, candidate, {})) {
     if (p.is_ordinate()) {
       fitted.free.push_back(p);
       fitted.u.push_back(p.coordinate(3e-4));
@@ -94,7 +94,7 @@ TEST(TermConstant, IntervalsOfACurveAreThoseOfItsShape) {
     CHECK(!estimate.interval);
   }
   const Dataset data = test::data_of(test::declared());
-  const Fitted<SimplexFamily> given = with_least_zeros(data, {{-1e-4, 0.0, 0.0}}, fitted, candidate).value();
+  const Fitted given = with_least_zeros(data, {{-1e-4, 0.0, 0.0}}, fitted, candidate).value();
   for (const Estimate& estimate : estimates(given.free, given.u, given.normal)) {
     CHECK(estimate.interval.has_value());
     DOUBLES_EQUAL(2e-4, estimate.value, 1e-9);
@@ -104,8 +104,8 @@ TEST(TermConstant, IntervalsOfACurveAreThoseOfItsShape) {
 
 TEST(TermConstant, ModelWithoutACurveStaysAsItIs) {
   Candidate candidate;
-  Fitted<SimplexFamily> fitted = with_curve<PistonReading>(0.0, 0.0, candidate);
+  Fitted fitted = with_curve<PistonReading>(0.0, 0.0, candidate);
   const Dataset data = test::data_of(test::declared());
-  const Fitted<SimplexFamily> same = with_least_zeros(data, {{1e-3, 1e-3, 0.0}}, fitted, candidate).value_or(fitted);
+  const Fitted same = with_least_zeros(data, {{1e-3, 1e-3, 0.0}}, fitted, candidate).value_or(fitted);
   DOUBLES_EQUAL(0.0, first_ordinate<PistonReading>(same), 0.0);
 }

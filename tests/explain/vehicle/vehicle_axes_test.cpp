@@ -112,11 +112,10 @@ Record record_of(const VehicleFile& model) {
 /// What an axis as declared does beside the motion that is given, against what it did in the vehicle: the largest rms
 /// difference of its channels over their noise.
 double largest_difference(const explain::AxisOfVehicle& axis, const explain::CoupledRun& run, std::size_t place) {
-  explain::Fitted<explain::SimplexFamily> declared;
+  explain::Fitted declared;
   declared.base = std::get<SimplexParameters>(axis.model.parameters);
   declared.temper.assign(axis.data.channels.size(), 1.0);
-  const auto alone =
-      explain::assess(explain::Evaluator<explain::SimplexFamily>(axis.data, explain::Resolution::fine), 2, declared);
+  const auto alone = explain::assess(explain::Evaluator(axis.data, explain::Resolution::fine), 2, declared);
   double worst = 0.0;
   for (const std::size_t channel : {0, 1}) {
     const std::vector<double>& together = run.prediction[place][0][channel];

@@ -65,11 +65,14 @@ Trial tried(const Candidate& candidate, const char* decision = "kept") {
   return trial;
 }
 
-template <class Family>
-SearchResult<Family> result_with(const std::vector<Candidate>& kept) {
+const ModelParameters kAxis = hotfire::SimplexParameters();
+const ModelParameters kMass = hotfire::DirectParameters();
+
+SearchResult result_with(const ModelParameters& plant, const std::vector<Candidate>& kept) {
   ChannelFit fit;
   fit.rows = 100.0;
-  SearchResult<Family> found;
+  SearchResult found;
+  found.explained.model.base = plant;
   fit.mean_square = 64.0;
   found.declared.goodness.held_out = {fit};
   fit.mean_square = 16.0;
@@ -90,34 +93,33 @@ class EverySentence {
   explicit EverySentence(SentenceCheck& check) : check_(check) {}
 
   void of_listed_effects() {
-    for (const Candidate& candidate : all_candidates<SimplexFamily>(every_channel())) {
-      of_verdicts<SimplexFamily>({candidate});
+    for (const Candidate& candidate : all_candidates(kAxis, every_channel())) {
+      of_verdicts(kAxis, {candidate});
       // The longest that a model of three effects can have.
-      of_verdicts<SimplexFamily>(
-          {candidate, candidate, {0, 0, "sensor_nonlinearity", "load_pressure", "sensor.load_pressure"}});
+      of_verdicts(kAxis, {candidate, candidate, {0, 0, "sensor_nonlinearity", "load_pressure", "sensor.load_pressure"}});
     }
-    for (const Candidate& candidate : all_candidates<DirectFamily>(every_channel())) {
-      of_verdicts<DirectFamily>({candidate});
+    for (const Candidate& candidate : all_candidates(kMass, every_channel())) {
+      of_verdicts(kMass, {candidate});
     }
   }
 
   void of_unlisted_terms() {
-    std::vector<Candidate> terms = unlisted_candidates<SimplexFamily>(every_channel());
+    std::vector<Candidate> terms = unlisted_candidates(kAxis, every_channel());
     for (const Candidate& term : terms_of_grammar()) {
       terms.push_back(with_index_of_a_term(term));
     }
     for (const Candidate& term : terms) {
-      of_unlisted<SimplexFamily>(term);
+      of_unlisted(kAxis, term);
     }
-    for (const Candidate& term : unlisted_candidates<DirectFamily>(every_channel())) {
-      of_unlisted<DirectFamily>(term);
+    for (const Candidate& term : unlisted_candidates(kMass, every_channel())) {
+      of_unlisted(kMass, term);
     }
     of_tables();
     of_forms();
   }
 
   void of_places() {
-    SearchResult<SimplexFamily> found = result_with<SimplexFamily>({});
+    SearchResult found = result_with(kAxis, {});
     for (const bool is_single : {true, false}) {
       found.located.is_single = is_single;
       found.located.places.clear();
@@ -134,7 +136,7 @@ class EverySentence {
 
   void of_verdicts_without_effects() {
     for (const bool noise_is_known : {true, false}) {
-      SearchResult<SimplexFamily> found = result_with<SimplexFamily>({});
+      SearchResult found = result_with(kAxis, {});
       for (const Verdict verdict : {Verdict::nothing_missing, Verdict::unlisted_effect, Verdict::undecided}) {
         check_.add(sentence_of(verdict, found, noise_is_known));
       }
@@ -252,7 +254,7 @@ class EverySentence {
  private:
   /// `is_unlisted` asks for the place in the list of effects.
   static Candidate with_index_of_a_term(Candidate term) {
-    const PlainParameters<SimplexFamily> neutral;
+    const hotfire::SimplexParameters neutral;
     model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
       if (E::name == term.name) {
         term.effect = index;
@@ -261,20 +263,18 @@ class EverySentence {
     return term;
   }
 
-  template <class Family>
-  void of_verdicts(const std::vector<Candidate>& kept) {
-    const SearchResult<Family> found = result_with<Family>(kept);
+  void of_verdicts(const ModelParameters& plant, const std::vector<Candidate>& kept) {
+    const SearchResult found = result_with(plant, kept);
     for (const bool noise_is_known : {true, false}) {
       check_.add(sentence_of(Verdict::explained, found, noise_is_known));
       check_.add(sentence_of(Verdict::partly_explained, found, noise_is_known));
     }
   }
 
-  template <class Family>
-  void of_unlisted(const Candidate& term) {
-    CHECK_TRUE(is_unlisted<Family>(term));
+  void of_unlisted(const ModelParameters& plant, const Candidate& term) {
+    CHECK_TRUE(is_unlisted(plant, term));
     const Candidate listed{0, 0, "gimbal_friction", "lugre", "engine_torque"};
-    SearchResult<Family> found = result_with<Family>({term});
+    SearchResult found = result_with(plant, {term});
     for (const bool noise_is_known : {true, false}) {
       check_.add(sentence_of(Verdict::unlisted_effect, found, noise_is_known));
     }

@@ -209,7 +209,9 @@ TEST(Model, an_effect_that_is_present_is_active_with_its_law) {
   bool active = false;
   SimplexParameters parameters;
   parameters.effects = effects;
-  for (const KeyGroup& group : layout_of(parameters).effects) {
+  ModelFile model;
+  model.parameters = parameters;
+  for (const KeyGroup& group : layout_of(model).effects) {
     if (group.name == "gimbal_friction") {
       active = *group.active;
       LONGS_EQUAL(1, *group.option);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "tools/explain/data/hold_out.hpp"
+#include "tools/explain/data/plants.hpp"
 #include "tools/explain/data/statistics.hpp"
 #include "tools/explain/data/zeros.hpp"
 #include "tools/explain/words/refusals.hpp"
@@ -41,17 +42,6 @@ std::vector<double> values_of(const Channel& channel, const Record& record, cons
   }
   return bridged(channel.values, excluded);
 }
-
-template <class Parameters>
-struct ChannelsOf;
-template <>
-struct ChannelsOf<SimplexParameters> {
-  using Plant = model::Simplex<double>;
-};
-template <>
-struct ChannelsOf<DirectParameters> {
-  using Plant = model::Direct<double>;
-};
 
 /// A record in the channels of the model, of which it marks those that the record has as used.
 Experiment experiment_of(const Record& record, const std::string& input, const std::vector<Exclusion>& exclusions,
@@ -173,7 +163,7 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   std::string input;
   std::visit(
       [&](const auto& parameters) {
-        using Plant = typename ChannelsOf<std::remove_cvref_t<decltype(parameters)>>::Plant;
+        using Plant = PlantOf<decltype(parameters), double>;
         for (const auto channel : Plant::channels) {
           data.channels.emplace_back(channel);
         }

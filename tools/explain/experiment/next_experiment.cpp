@@ -45,13 +45,13 @@ CommandLimits limits_of(const Dataset& data) {
   return {-largest, largest};
 }
 
-NextExperiment best_separation(const Dataset& data, const Fitted<SimplexFamily>& one, const Fitted<SimplexFamily>& other,
-                               const CommandLimits& limits, unsigned threads) {
+NextExperiment best_separation(const Dataset& data, const Fitted& one, const Fitted& other, const CommandLimits& limits,
+                               unsigned threads) {
   const double period = data.experiments.front().period;
   const std::vector<TestProfile> profiles = test_profiles(limits, 0.1 / period);
   const int steps = model::steps_per_period(period);
-  const auto plant_of = [&](const Fitted<SimplexFamily>& fitted) {
-    return model::Simplex<double>(Evaluator<SimplexFamily>::with_values(fitted.base, fitted.free, fitted.u), period / steps);
+  const auto plant_of = [&](const Fitted& fitted) {
+    return model::Simplex<double>(std::get<SimplexParameters>(fitted.parameters()), period / steps);
   };
   const model::Simplex<double> first = plant_of(one);
   const model::Simplex<double> second = plant_of(other);

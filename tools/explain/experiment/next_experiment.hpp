@@ -11,11 +11,10 @@
 namespace hotfire::explain {
 
 /// Another candidate that explains the records as well as the one that was kept.
-template <class Family>
 struct Rival {
   Candidate kept;
   Candidate other;
-  Fitted<Family> model;  ///< with `other` in the place of `kept`
+  Fitted model;  ///< with `other` in the place of `kept`
 };
 
 /// The test that separates two models of the same rig.
@@ -32,7 +31,7 @@ CommandLimits limits_of(const Dataset& data);
 /// Simulates both models over the profiles of test_profiles.hpp within the limits and below a tenth of the records' sampling
 /// rate; returns the one under which they differ most. Of two that differ alike the shorter one wins. Without words where
 /// the limits leave no profile.
-NextExperiment best_separation(const Dataset& data, const Fitted<SimplexFamily>& one, const Fitted<SimplexFamily>& other,
-                               const CommandLimits& limits, unsigned threads);
+NextExperiment best_separation(const Dataset& data, const Fitted& one, const Fitted& other, const CommandLimits& limits,
+                               unsigned threads);
 
 }  // namespace hotfire::explain

@@ -15,6 +15,7 @@
 #include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/fit/parallel.hpp"
+#include "tools/simulate/scalar_parameters.hpp"
 
 namespace hotfire::explain {
 
@@ -98,10 +99,95 @@ class Writer {
   std::vector<std::vector<const Stretch*>> by_channel_;
 };
 
+/// The experiments of a dataset, as a plant is stepped through them.
+struct Course {
+  const Dataset& data;
+  std::span<const std::size_t> order;           ///< of the experiments, as threads take them
+  std::function<int(const Experiment&)> steps;  ///< per row
+  unsigned threads = 1;
+};
+
+/// Simulates all experiments and adds `shift`, if there is one. False if a state did not stay finite.
+template <class Parameters>
+bool simulate(const Parameters& parameters, const Course& course, std::span<const FreeParameter> free,
+              std::span<const double> u, const Prediction& shift, Prediction& prediction) {
+  const Dataset& data = course.data;
+  const auto plants = plants_by_period<PlantOf<Parameters, double>>(data, parameters, course.steps);
+  prediction.resize(data.experiments.size());
+  std::atomic<bool> finite{true};
+  parallel_for(data.experiments.size(), course.threads, [&](std::size_t task) {
+    const std::size_t e = course.order[task];
+    const Experiment& experiment = data.experiments[e];
+    auto& channels = prediction[e];
+    channels.resize(data.channels.size());
+    for (std::vector<double>& channel : channels) {
+      channel.resize(experiment.rows());
+    }
+    const auto& plant = *plants.at(experiment.period);
+    const auto start = start_of<double>(data, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
+    auto state = initial_state(plant, data, experiment, start);
+    if (!run_experiment(plant, data, experiment, state, course.steps(experiment),
+                        [&](std::size_t row, const auto& readings) {
+                          for (std::size_t c = 0; c < readings.size(); ++c) {
+                            channels[c][row] = readings[c] + (shift.empty() ? 0.0 : shift[e][c][row]);
+                          }
+                        })) {
+      finite = false;
+    }
+  });
+  return finite;
+}
+
+/// Simulates all experiments in dual numbers, once for every chunk. False if a state or a derivative did not stay finite.
+template <class Parameters>
+bool simulate_dual(const Parameters& plain, const Course& course, const std::vector<Chunk>& chunks,
+                   const std::vector<Stretch>& stretches, Eigen::MatrixXd& jacobian) {
+  using Plant = PlantOf<Parameters, Dual>;
+  const Dataset& data = course.data;
+  std::vector<std::map<double, std::unique_ptr<Plant>>> plants(chunks.size());
+  parallel_for(chunks.size(), course.threads, [&](std::size_t c) {
+    auto parameters = with_scalar<typename Plant::Parameters>(plain);
+    chunks[c].seed_all(parameters);
+    plants[c] = plants_by_period<Plant>(data, parameters, course.steps);
+  });
+  std::atomic<bool> finite{true};
+  parallel_for(chunks.size() * data.experiments.size(), course.threads, [&](std::size_t task) {
+    const Chunk& chunk = chunks[task % chunks.size()];
+    const std::size_t e = course.order[task / chunks.size()];
+    const Experiment& experiment = data.experiments[e];
+    const auto& plant = *plants[task % chunks.size()].at(experiment.period);
+    const auto start = start_of<Dual>(data, e, chunk.free, [&](std::size_t k) { return chunk.value(k); });
+    // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
+    auto state = std::make_unique<typename Plant::State>(initial_state(plant, data, experiment, start));
+    Writer writer(data, stretches, e, jacobian);
+    bool good = true;
+    const auto sink = [&](std::size_t row, const auto& readings) {
+      for (std::size_t channel = 0; channel < readings.size(); ++channel) {
+        good = writer.write(row, channel, readings[channel], chunk) && good;
+      }
+    };
+    const bool ran = run_experiment(plant, data, experiment, *state, course.steps(experiment), sink);
+    if (!ran || !good) {
+      finite = false;
+    }
+  });
+  return finite;
+}
+
+/// Steps per row of an experiment.
+int steps_of(const ModelParameters& base, const Experiment& experiment, Resolution resolution) {
+  const int fine = std::visit(
+      [&]<class Parameters>(const Parameters& own) {
+        return model::steps_per_period<PlantOf<Parameters, double>>(own, experiment.period);
+      },
+      base);
+  const int times_longer = resolution == Resolution::fine ? 1 : resolution == Resolution::coarse ? 2 : 4;
+  return (fine + times_longer - 1) / times_longer;
+}
+
 }  // namespace
 
-template <class Family>
-Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution, Resolution slopes)
+Evaluator::Evaluator(const Dataset& data, Resolution resolution, Resolution slopes)
     : data_(data), resolution_(resolution), slopes_(slopes), longest_first_(data.experiments.size()) {
   std::iota(longest_first_.begin(), longest_first_.end(), std::size_t{0});
   std::stable_sort(longest_first_.begin(), longest_first_.end(),
@@ -120,13 +206,10 @@ Evaluator<Family>::Evaluator(const Dataset& data, Resolution resolution, Resolut
   }
 }
 
-template <class Family>
-typename Evaluator<Family>::Parameters Evaluator<Family>::with_values(const Parameters& base,
-                                                                      std::span<const FreeParameter> free,
-                                                                      std::span<const double> u) {
-  Parameters parameters = base;
+ModelParameters with_values(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u) {
+  ModelParameters parameters = base;
   std::size_t index = 0;
-  model::visit_values(parameters, [&](double& value) {
+  visit_values(parameters, [&](double& value) {
     for (std::size_t k = 0; k < free.size(); ++k) {
       if (!free[k].is_initial_state() && free[k].index == index) {
         value = free[k].value(u[k]);
@@ -137,47 +220,22 @@ typename Evaluator<Family>::Parameters Evaluator<Family>::with_values(const Para
   return parameters;
 }
 
-template <class Family>
-bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
-                                unsigned threads, Prediction& prediction, Zeros& zeros) const {
-  using Plant = typename Family::template Plant<double>;
-  const auto plants = plants_by_period<Plant>(data_, with_values(base, free, u),
-                                              [&](const Experiment& e) { return steps_of(base, e, resolution_); });
-  prediction.resize(data_.experiments.size());
-  std::atomic<bool> finite{true};
-  parallel_for(data_.experiments.size(), threads, [&](std::size_t task) {
-    const std::size_t e = longest_first_[task];
-    const Experiment& experiment = data_.experiments[e];
-    auto& channels = prediction[e];
-    channels.resize(data_.channels.size());
-    for (std::vector<double>& channel : channels) {
-      channel.resize(experiment.rows());
-    }
-    const auto& plant = *plants.at(experiment.period);
-    const auto start = start_of<double>(data_, e, free, [&](std::size_t k) { return free[k].value(u[k]); });
-    auto state = initial_state(plant, data_, experiment, start);
-    if (!run_experiment(plant, data_, experiment, state, steps_of(base, experiment, resolution_),
-                        [&](std::size_t row, const auto& readings) {
-                          for (std::size_t c = 0; c < readings.size(); ++c) {
-                            channels[c][row] = readings[c] + (shift_.empty() ? 0.0 : shift_[e][c][row]);
-                          }
-                        })) {
-      finite = false;
-    }
-  });
+bool Evaluator::predict(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                        unsigned threads, Prediction& prediction, Zeros& zeros) const {
+  const Course course{data_, longest_first_, [&](const Experiment& e) { return steps_of(base, e, resolution_); }, threads};
+  const bool finite = std::visit([&](const auto& own) { return simulate(own, course, free, u, shift_, prediction); },
+                                 with_values(base, free, u));
   zeros = add_zeros(data_, prediction);
   return finite;
 }
 
-template <class Family>
-bool Evaluator<Family>::predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
-                                unsigned threads, Prediction& prediction) const {
+bool Evaluator::predict(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                        unsigned threads, Prediction& prediction) const {
   Zeros zeros;
   return predict(base, free, u, threads, prediction, zeros);
 }
 
-template <class Family>
-Evaluator<Family> Evaluator<Family>::shifted(const Prediction& own, const Prediction& finer) const {
+Evaluator Evaluator::shifted(const Prediction& own, const Prediction& finer) const {
   Evaluator moved = *this;
   moved.shift_ = finer;
   for (std::size_t e = 0; e < own.size(); ++e) {
@@ -188,8 +246,7 @@ Evaluator<Family> Evaluator<Family>::shifted(const Prediction& own, const Predic
   return moved;
 }
 
-template <class Family>
-Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const {
+Eigen::VectorXd Evaluator::residuals(const Prediction& prediction) const {
   Eigen::VectorXd residual(static_cast<Eigen::Index>(fit_rows_));
   for (const Stretch& s : stretches_) {
     const auto& measured = data_.experiments[s.experiment].measured[s.channel];
@@ -207,9 +264,8 @@ Eigen::VectorXd Evaluator<Family>::residuals(const Prediction& prediction) const
   return residual;
 }
 
-template <class Family>
 template <class F>
-void Evaluator<Family>::for_each_zero(F&& f) const {
+void Evaluator::for_each_zero(F&& f) const {
   for (std::size_t i = 0; i < stretches_.size();) {
     const Stretch& first = stretches_[i];
     std::size_t rows = 0;
@@ -224,8 +280,7 @@ void Evaluator<Family>::for_each_zero(F&& f) const {
   }
 }
 
-template <class Family>
-std::vector<double> Evaluator<Family>::squares_by_channel(const Eigen::VectorXd& residual) const {
+std::vector<double> Evaluator::squares_by_channel(const Eigen::VectorXd& residual) const {
   std::vector<double> square(data_.channels.size(), 0.0);
   for (const Stretch& s : stretches_) {
     square[s.channel] +=
@@ -234,61 +289,22 @@ std::vector<double> Evaluator<Family>::squares_by_channel(const Eigen::VectorXd&
   return square;
 }
 
-template <class Family>
-int Evaluator<Family>::steps_of(const Parameters& base, const Experiment& experiment, Resolution resolution) const {
-  const int fine = model::steps_per_period<typename Family::template Plant<double>>(base, experiment.period);
-  const int times_longer = resolution == Resolution::fine ? 1 : resolution == Resolution::coarse ? 2 : 4;
-  return (fine + times_longer - 1) / times_longer;
-}
-
-template <class Family>
-bool Evaluator<Family>::differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
-                                      std::span<const std::size_t> wanted, unsigned threads,
-                                      Eigen::MatrixXd& jacobian) const {
-  using Plant = typename Family::template Plant<Dual>;
+bool Evaluator::differentiate(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+                              std::span<const std::size_t> wanted, unsigned threads, Eigen::MatrixXd& jacobian) const {
   jacobian.resize(static_cast<Eigen::Index>(fit_rows_), static_cast<Eigen::Index>(wanted.size()));
   std::vector<Chunk> chunks;
   for (std::size_t first = 0; first < wanted.size(); first += kLanes) {
     const std::size_t count = std::min(kLanes, wanted.size() - first);
     chunks.push_back({free, u, wanted.subspan(first, count), static_cast<Eigen::Index>(first)});
   }
-  const auto plain = with_values(base, free, u);
-  std::vector<std::map<double, std::unique_ptr<Plant>>> plants(chunks.size());
-  parallel_for(chunks.size(), threads, [&](std::size_t c) {
-    auto parameters = with_scalar<typename Plant::Parameters>(plain);
-    chunks[c].seed_all(parameters);
-    plants[c] = plants_by_period<Plant>(data_, parameters, [&](const Experiment& e) { return steps_of(base, e, slopes_); });
-  });
-
-  std::atomic<bool> finite{true};
-  parallel_for(chunks.size() * data_.experiments.size(), threads, [&](std::size_t task) {
-    const Chunk& chunk = chunks[task % chunks.size()];
-    const std::size_t e = longest_first_[task / chunks.size()];
-    const Experiment& experiment = data_.experiments[e];
-    const auto& plant = *plants[task % chunks.size()].at(experiment.period);
-    const auto start = start_of<Dual>(data_, e, free, [&](std::size_t k) { return chunk.value(k); });
-    // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
-    auto state = std::make_unique<typename Plant::State>(initial_state(plant, data_, experiment, start));
-    Writer writer(data_, stretches_, e, jacobian);
-    bool good = true;
-    const auto sink = [&](std::size_t row, const auto& readings) {
-      for (std::size_t channel = 0; channel < readings.size(); ++channel) {
-        good = writer.write(row, channel, readings[channel], chunk) && good;
-      }
-    };
-    const bool ran = run_experiment(plant, data_, experiment, *state, steps_of(base, experiment, slopes_), sink);
-    if (!ran || !good) {
-      finite = false;
-    }
-  });
+  const Course course{data_, longest_first_, [&](const Experiment& e) { return steps_of(base, e, slopes_); }, threads};
+  const bool finite = std::visit([&](const auto& own) { return simulate_dual(own, course, chunks, stretches_, jacobian); },
+                                 with_values(base, free, u));
   for_each_zero([&](Eigen::Index first, Eigen::Index rows, double precision) {
     auto part = jacobian.middleRows(first, rows);
     part.rowwise() -= (1.0 - 1.0 / std::sqrt(1.0 + precision)) * part.colwise().mean();
   });
   return finite;
 }
-
-template class Evaluator<SimplexFamily>;
-template class Evaluator<DirectFamily>;
 
 }  // namespace hotfire::explain

@@ -29,14 +29,14 @@ struct Stretch {
 /// quarter and screens them, where what is left is far more than such steps are wrong by.
 enum class Resolution { fine, coarse, rough };
 
+/// Puts the coordinates `u` into parameters.
+ModelParameters with_values(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u);
+
 /// Simulates every experiment of a dataset under given parameters, and differentiates the simulation exactly by dual
 /// numbers: the one that it makes, or one of longer steps. The end of a fit is where residuals say, and a fit still closes
 /// in on it along derivatives that are off by a few percent.
-template <class Family>
 class Evaluator {
  public:
-  using Parameters = PlainParameters<Family>;
-
   Evaluator(const Dataset& data, Resolution resolution) : Evaluator(data, resolution, resolution) {}
   /// Differentiates under `slopes`.
   Evaluator(const Dataset& data, Resolution resolution, Resolution slopes);
@@ -49,10 +49,10 @@ class Evaluator {
 
   /// Simulates all experiments, and adds to each channel of each the zero that is most likely then (zeros.hpp). False if a
   /// state became non-finite.
-  bool predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u, unsigned threads,
+  bool predict(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u, unsigned threads,
                Prediction& prediction) const;
   /// The same with those zeros.
-  bool predict(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u, unsigned threads,
+  bool predict(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u, unsigned threads,
                Prediction& prediction, Zeros& zeros) const;
 
   /// This evaluator with every prediction shifted by as much as one under finer steps differs from its `own` at one model:
@@ -69,17 +69,13 @@ class Evaluator {
 
   /// Derivatives of such residuals with respect to the coordinates `u` of the parameters `wanted`, a column each. False if
   /// one became non-finite.
-  bool differentiate(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u,
+  bool differentiate(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u,
                      std::span<const std::size_t> wanted, unsigned threads, Eigen::MatrixXd& jacobian) const;
-
-  /// Puts the coordinates `u` into parameters.
-  static Parameters with_values(const Parameters& base, std::span<const FreeParameter> free, std::span<const double> u);
 
  private:
   /// Calls f(first row, rows, precision) for the residuals of every channel of every record that has a zero.
   template <class F>
   void for_each_zero(F&& f) const;
-  int steps_of(const Parameters& base, const Experiment& experiment, Resolution resolution) const;
 
   const Dataset& data_;
   Resolution resolution_ = Resolution::fine;
@@ -89,8 +85,5 @@ class Evaluator {
   std::vector<Stretch> stretches_;
   std::size_t fit_rows_ = 0;
 };
-
-extern template class Evaluator<SimplexFamily>;
-extern template class Evaluator<DirectFamily>;
 
 }  // namespace hotfire::explain

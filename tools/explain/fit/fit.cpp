@@ -50,10 +50,9 @@ Compressed compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradie
 }
 
 /// Simulation error of all experiments and the priors, as one block of Ceres.
-template <class Family>
 class SimulationError : public ceres::CostFunction {
  public:
-  SimulationError(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options)
+  SimulationError(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options)
       : fitted_(fitted),
         options_(options),
         tangent_(evaluator, fitted.base, fitted.free, simulated(), options.slopes, options.threads),
@@ -153,9 +152,9 @@ class SimulationError : public ceres::CostFunction {
     return true;
   }
 
-  Fitted<Family>& fitted_;
+  Fitted& fitted_;
   FitOptions options_;
-  mutable Tangent<Family> tangent_;
+  mutable Tangent tangent_;
   Eigen::VectorXd weight_;
   mutable Eigen::MatrixXd weighted_;
   mutable int weighted_revision_ = 0;  ///< the derivatives that `weighted_` is of
@@ -169,13 +168,12 @@ double relative_variance(const Dataset& data, const Stretch& stretch) {
 
 }  // namespace
 
-template <class Family>
-bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options) {
+bool fit(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options) {
   if (fitted.free.empty()) {
     fitted.converged = true;
     return true;
   }
-  auto* error = new SimulationError<Family>(evaluator, fitted, options);  // the problem owns it
+  auto* error = new SimulationError(evaluator, fitted, options);  // the problem owns it
   ceres::Problem problem;
   problem.AddResidualBlock(error, nullptr, fitted.u.data());
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
@@ -210,8 +208,7 @@ bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOp
   return summary.IsSolutionUsable();
 }
 
-template <class Family>
-Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& residual) {
+Temper temper_of(const Evaluator& evaluator, const Eigen::VectorXd& residual) {
   const std::size_t channels = evaluator.data().channels.size();
   std::vector<double> inflated(channels, 0.0);
   std::vector<double> count(channels, 0.0);
@@ -230,8 +227,7 @@ Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& resi
   return temper;
 }
 
-template <class Family>
-Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& temper) {
+Eigen::VectorXd weights_of(const Evaluator& evaluator, const Temper& temper) {
   Eigen::VectorXd weights(static_cast<Eigen::Index>(evaluator.fit_rows()));
   for (const Stretch& s : evaluator.stretches()) {
     const double variance = relative_variance(evaluator.data(), s);
@@ -240,12 +236,5 @@ Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& tem
   }
   return weights;
 }
-
-template Eigen::VectorXd weights_of(const Evaluator<SimplexFamily>&, const Temper&);
-template Eigen::VectorXd weights_of(const Evaluator<DirectFamily>&, const Temper&);
-template bool fit(const Evaluator<SimplexFamily>&, Fitted<SimplexFamily>&, const FitOptions&);
-template bool fit(const Evaluator<DirectFamily>&, Fitted<DirectFamily>&, const FitOptions&);
-template Temper temper_of(const Evaluator<SimplexFamily>&, const Eigen::VectorXd&);
-template Temper temper_of(const Evaluator<DirectFamily>&, const Eigen::VectorXd&);
 
 }  // namespace hotfire::explain

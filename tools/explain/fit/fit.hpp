@@ -19,15 +19,17 @@ namespace hotfire::explain {
 using Temper = std::vector<double>;
 
 /// A parameterised model at a point, and how it fits.
-template <class Family>
 struct Fitted {
-  PlainParameters<Family> base;     ///< active effects, laws and fixed values
+  ModelParameters base;             ///< active effects, laws and fixed values
   std::vector<FreeParameter> free;  ///< what the fit moved
   std::vector<double> u;            ///< where it ended
   Temper temper;
   Eigen::MatrixXd normal;  ///< J^T J of the last derivative, priors included
   bool converged = false;
   bool chaotic = false;  ///< exact derivatives ran away where it ended
+
+  /// `base` with what the fit moved where it ended.
+  ModelParameters parameters() const { return with_values(base, free, u); }
 };
 
 /// Derivatives of the declared parameters, frozen at a calibrated model: while candidates are screened, the declared
@@ -47,23 +49,13 @@ struct FitOptions {
 
 /// Minimises the weighted simulation error plus the priors of the declared tolerances from `fitted.u` (Levenberg-Marquardt
 /// in Ceres), and leaves the result there. False if the start itself can't be simulated.
-template <class Family>
-bool fit(const Evaluator<Family>& evaluator, Fitted<Family>& fitted, const FitOptions& options);
+bool fit(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options);
 
 /// The temper that residuals ask for: mean square times statistical inefficiency over the channel's mean noise variance, at
 /// least 1.
-template <class Family>
-Temper temper_of(const Evaluator<Family>& evaluator, const Eigen::VectorXd& residual);
+Temper temper_of(const Evaluator& evaluator, const Eigen::VectorXd& residual);
 
 /// What one over sensor noise of every residual counts under a temper: the root of the share of its variance that is noise.
-template <class Family>
-Eigen::VectorXd weights_of(const Evaluator<Family>& evaluator, const Temper& temper);
-
-extern template bool fit(const Evaluator<SimplexFamily>&, Fitted<SimplexFamily>&, const FitOptions&);
-extern template bool fit(const Evaluator<DirectFamily>&, Fitted<DirectFamily>&, const FitOptions&);
-extern template Eigen::VectorXd weights_of(const Evaluator<SimplexFamily>&, const Temper&);
-extern template Eigen::VectorXd weights_of(const Evaluator<DirectFamily>&, const Temper&);
-extern template Temper temper_of(const Evaluator<SimplexFamily>&, const Eigen::VectorXd&);
-extern template Temper temper_of(const Evaluator<DirectFamily>&, const Eigen::VectorXd&);
+Eigen::VectorXd weights_of(const Evaluator& evaluator, const Temper& temper);
 
 }  // namespace hotfire::explain

@@ -12,7 +12,9 @@
 
 namespace hotfire::explain {
 
-Scales scales_of(const Dataset& data) {
+namespace {
+
+Scales scales_of_records(const Dataset& data) {
   double force = 0.0;
   double position = 0.0;
   double velocity = 0.0;
@@ -45,13 +47,20 @@ Scales scales_of(const Dataset& data) {
   return scales;
 }
 
-Scales scales_of(const SimplexParameters& declared) {
+Scales scales_of_rig(const SimplexParameters& declared) {
   const SimplexParameters reference;
   Scales scales;
   scales.metre = reference.servovalve.position_gain / declared.servovalve.position_gain;
   scales.second = servo_time(declared) / servo_time(reference);
   scales.pascal = declared.actuator.supply_pressure / reference.actuator.supply_pressure;
   return scales;
+}
+
+}  // namespace
+
+Scales scales_of(const ModelParameters& declared, const Dataset& data) {
+  const auto* axis = std::get_if<SimplexParameters>(&declared);
+  return axis != nullptr ? scales_of_rig(*axis) : scales_of_records(data);
 }
 
 double servo_time(const SimplexParameters& declared) {

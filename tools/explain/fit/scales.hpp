@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "tools/explain/data/dataset.hpp"
+#include "tools/explain/data/plants.hpp"
 
 namespace hotfire::explain {
 
@@ -18,11 +19,10 @@ struct Scales {
   double pascal = 1.0;
 };
 
-/// rms force, rms position about its mean, and rms position over rms velocity, of all experiments together. For `direct`.
-Scales scales_of(const Dataset& data);
-
-/// Stroke of full opening 1 / K_e, the time A / (Q_r K_e) in which the servo makes it, and the supply pressure.
-Scales scales_of(const SimplexParameters& declared);
+/// Of a `direct` mass: rms force, rms position about its mean, and rms position over rms velocity, of all experiments
+/// together. Of a hydraulic axis: stroke of full opening 1 / K_e, the time A / (Q_r K_e) in which the servo makes it, and
+/// the supply pressure.
+Scales scales_of(const ModelParameters& declared, const Dataset& data);
 
 /// Time constant of the position loop [s], A / (Q_r K_e).
 double servo_time(const SimplexParameters& declared);

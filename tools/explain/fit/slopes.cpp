@@ -14,10 +14,9 @@ namespace {
 /// a parameter (one tolerance, a factor e) is a derivative that ran away.
 constexpr double kRunawaySlope = 1e6;
 
-template <class Family>
-bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
-                 std::span<const FreeParameter> free, std::span<const double> u, std::span<const std::size_t> wanted,
-                 unsigned threads, Eigen::MatrixXd& jacobian) {
+bool differences(const Evaluator& evaluator, const ModelParameters& base, std::span<const FreeParameter> free,
+                 std::span<const double> u, std::span<const std::size_t> wanted, unsigned threads,
+                 Eigen::MatrixXd& jacobian) {
   const std::size_t count = wanted.size();
   std::vector<Eigen::VectorXd> sides(2 * count);
   std::vector<double> reached(2 * count, 0.0);
@@ -48,8 +47,7 @@ bool differences(const Evaluator<Family>& evaluator, const PlainParameters<Famil
 
 double wide_step(const FreeParameter& parameter) { return parameter.is_declared() ? 0.3 : 0.1; }
 
-template <class Family>
-std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
+std::optional<Slopes> differentiate(const Evaluator& evaluator, const ModelParameters& base,
                                     std::span<const FreeParameter> free, std::span<const double> u,
                                     std::span<const std::size_t> wanted, Slopes asked, unsigned threads,
                                     Eigen::MatrixXd& jacobian) {
@@ -59,12 +57,5 @@ std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const Pl
   }
   return differences(evaluator, base, free, u, wanted, threads, jacobian) ? std::optional(Slopes::wide) : std::nullopt;
 }
-
-template std::optional<Slopes> differentiate(const Evaluator<SimplexFamily>&, const PlainParameters<SimplexFamily>&,
-                                             std::span<const FreeParameter>, std::span<const double>,
-                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::MatrixXd&);
-template std::optional<Slopes> differentiate(const Evaluator<DirectFamily>&, const PlainParameters<DirectFamily>&,
-                                             std::span<const FreeParameter>, std::span<const double>,
-                                             std::span<const std::size_t>, Slopes, unsigned, Eigen::MatrixXd&);
 
 }  // namespace hotfire::explain

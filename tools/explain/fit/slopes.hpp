@@ -18,17 +18,9 @@ double wide_step(const FreeParameter& parameter);
 /// Derivatives of the residuals that a fit sees, as `Evaluator::differentiate`. Stick-slip motion can be chaotic: each
 /// slip is set off or not, and exact derivatives, those of one sequence of slips, run away. Wide ones then take their place.
 /// They are taken outright where `asked` for. Returns which were taken, nothing if a simulation did not stay finite.
-template <class Family>
-std::optional<Slopes> differentiate(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base,
+std::optional<Slopes> differentiate(const Evaluator& evaluator, const ModelParameters& base,
                                     std::span<const FreeParameter> free, std::span<const double> u,
                                     std::span<const std::size_t> wanted, Slopes asked, unsigned threads,
                                     Eigen::MatrixXd& jacobian);
-
-extern template std::optional<Slopes> differentiate(const Evaluator<SimplexFamily>&, const PlainParameters<SimplexFamily>&,
-                                                    std::span<const FreeParameter>, std::span<const double>,
-                                                    std::span<const std::size_t>, Slopes, unsigned, Eigen::MatrixXd&);
-extern template std::optional<Slopes> differentiate(const Evaluator<DirectFamily>&, const PlainParameters<DirectFamily>&,
-                                                    std::span<const FreeParameter>, std::span<const double>,
-                                                    std::span<const std::size_t>, Slopes, unsigned, Eigen::MatrixXd&);
 
 }  // namespace hotfire::explain

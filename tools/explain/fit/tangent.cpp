@@ -14,8 +14,7 @@ constexpr double kMissed = 0.1;
 
 }  // namespace
 
-template <class Family>
-bool Tangent<Family>::move_to(std::span<const double> u) {
+bool Tangent::move_to(std::span<const double> u) {
   if (std::equal(u.begin(), u.end(), at_.begin(), at_.end())) {
     return true;
   }
@@ -28,15 +27,14 @@ bool Tangent<Family>::move_to(std::span<const double> u) {
   return true;
 }
 
-template <class Family>
-bool Tangent<Family>::differentiate_at(std::span<const double> u) {
+bool Tangent::differentiate_at(std::span<const double> u) {
   if (!move_to(u)) {
     return false;
   }
   if (!taken_at_.empty() && holds_at(u)) {
     return true;
   }
-  const auto taken = differentiate<Family>(evaluator_, base_, free_, u, wanted_, asked_, threads_, jacobian_);
+  const auto taken = differentiate(evaluator_, base_, free_, u, wanted_, asked_, threads_, jacobian_);
   if (!taken) {
     taken_at_.clear();
     return false;
@@ -48,8 +46,7 @@ bool Tangent<Family>::differentiate_at(std::span<const double> u) {
   return true;
 }
 
-template <class Family>
-bool Tangent<Family>::holds_at(std::span<const double> u) const {
+bool Tangent::holds_at(std::span<const double> u) const {
   Eigen::VectorXd move(static_cast<Eigen::Index>(wanted_.size()));
   bool within_width = true;
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
@@ -64,8 +61,5 @@ bool Tangent<Family>::holds_at(std::span<const double> u) const {
   const Eigen::VectorXd said = jacobian_ * move;
   return (residual_ - taken_residual_ - said).squaredNorm() <= kMissed * kMissed * said.squaredNorm();
 }
-
-template class Tangent<SimplexFamily>;
-template class Tangent<DirectFamily>;
 
 }  // namespace hotfire::explain

@@ -13,12 +13,11 @@ namespace hotfire::explain {
 /// Residuals along the way of a fit, with derivatives that are taken again only where they no longer hold: a simulation with
 /// derivatives costs as much as a dozen without. Exact ones hold as long as the residuals have moved as they said; wide ones
 /// over the width of their differences, within which they resolve nothing finer.
-template <class Family>
 class Tangent {
  public:
   /// Of `evaluator` under `base` with the coordinates of `free`, with derivatives for the parameters `wanted`, taken as
   /// `asked`.
-  Tangent(const Evaluator<Family>& evaluator, const PlainParameters<Family>& base, std::span<const FreeParameter> free,
+  Tangent(const Evaluator& evaluator, const ModelParameters& base, std::span<const FreeParameter> free,
           std::vector<std::size_t> wanted, Slopes asked, unsigned threads)
       : evaluator_(evaluator), base_(base), free_(free), wanted_(std::move(wanted)), asked_(asked), threads_(threads) {}
 
@@ -45,8 +44,8 @@ class Tangent {
  private:
   bool holds_at(std::span<const double> u) const;
 
-  const Evaluator<Family>& evaluator_;
-  const PlainParameters<Family>& base_;
+  const Evaluator& evaluator_;
+  const ModelParameters& base_;
   std::span<const FreeParameter> free_;
   std::vector<std::size_t> wanted_;
   Slopes asked_;
@@ -59,8 +58,5 @@ class Tangent {
   Slopes slopes_ = Slopes::exact;
   int revision_ = 0;
 };
-
-extern template class Tangent<SimplexFamily>;
-extern template class Tangent<DirectFamily>;
 
 }  // namespace hotfire::explain

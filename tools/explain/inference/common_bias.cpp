@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeft = 0.1;
 constexpr std::size_t kFewestRecords = 2;
 
-bool has_valve_bias(const PlainParameters<SimplexFamily>& parameters) {
+bool has_valve_bias(const SimplexParameters& parameters) {
   bool has = false;
   model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto&) {
     if constexpr (std::is_same_v<E, model::ValveBias>) {
@@ -22,7 +22,7 @@ bool has_valve_bias(const PlainParameters<SimplexFamily>& parameters) {
 
 }  // namespace
 
-PlainParameters<SimplexFamily> with_valve_bias(PlainParameters<SimplexFamily> parameters, double bias) {
+SimplexParameters with_valve_bias(SimplexParameters parameters, double bias) {
   model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
     if constexpr (std::is_same_v<E, model::ValveBias>) {
       parameters.effects.active[index] = true;
@@ -32,8 +32,7 @@ PlainParameters<SimplexFamily> with_valve_bias(PlainParameters<SimplexFamily> pa
   return parameters;
 }
 
-std::optional<double> common_valve_bias(const Dataset& data, const Zeros& zeros,
-                                        const PlainParameters<SimplexFamily>& parameters) {
+std::optional<double> common_valve_bias(const Dataset& data, const Zeros& zeros, const SimplexParameters& parameters) {
   if (data.experiments.size() < kFewestRecords || has_valve_bias(parameters)) {
     return std::nullopt;
   }

@@ -13,10 +13,9 @@ namespace hotfire::explain {
 /// sensors know nothing of each other. Least squares over at least two records with one zero beyond its noise; nothing where
 /// more than a tenth of the zeros' rms is left, or where the model has a bias of its own. A zero of the command that all
 /// records share does the same, and cannot be separated from it.
-std::optional<double> common_valve_bias(const Dataset& data, const Zeros& zeros,
-                                        const PlainParameters<SimplexFamily>& parameters);
+std::optional<double> common_valve_bias(const Dataset& data, const Zeros& zeros, const SimplexParameters& parameters);
 
 /// `parameters` with that bias.
-PlainParameters<SimplexFamily> with_valve_bias(PlainParameters<SimplexFamily> parameters, double bias);
+SimplexParameters with_valve_bias(SimplexParameters parameters, double bias);
 
 }  // namespace hotfire::explain

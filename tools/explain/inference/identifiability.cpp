@@ -22,42 +22,46 @@ constexpr double kDetermined = 0.9;
 constexpr double kAlike = 0.95;
 
 /// A quantity of the plant that the data may identify better than its factors.
-template <class Family>
 struct Combination {
   std::string name;
-  std::function<double(const PlainParameters<Family>&)> value;
+  std::function<double(const ModelParameters&)> value;
 };
 
-template <class Family>
-std::vector<Combination<Family>> combinations() {
-  using P = PlainParameters<Family>;
-  if constexpr (std::is_same_v<Family, SimplexFamily>) {
-    // The step does not matter to what is asked of the plant.
-    constexpr double kStep = 1e-3;
-    return {{words::name_of(words::Combination::notch),
-             [](const P& p) {
-               return model::Simplex<double>(p, kStep).stiffness() * p.actuator.moment_arm * p.actuator.moment_arm /
-                      p.engine.inertia;
-             }},
-            {words::name_of(words::Combination::loop_gain),
-             [](const P& p) { return p.servovalve.rated_flow * p.servovalve.position_gain / p.actuator.piston_area; }},
-            {words::name_of(words::Combination::oil_stiffness),
-             [](const P& p) {
-               return p.actuator.bulk_modulus * p.actuator.piston_area * p.actuator.piston_area / p.actuator.trapped_volume;
-             }},
-            {words::name_of(words::Combination::engine_damping),
-             [](const P& p) { return p.engine.viscous_damping / p.engine.inertia; }}};
-  } else {
-    return {{words::name_of(words::Combination::natural_frequency),
-             [](const P& p) { return p.mass.stiffness / p.mass.inertia; }},
-            {words::name_of(words::Combination::mass_damping), [](const P& p) { return p.mass.damping / p.mass.inertia; }}};
-  }
+/// A quantity of one kind of plant, of parameters that hold this kind.
+template <class Parameters>
+Combination combination_of(words::Combination name, double (*value)(const Parameters&)) {
+  return {words::name_of(name), [value](const ModelParameters& p) { return value(std::get<Parameters>(p)); }};
 }
 
-template <class Family>
+std::vector<Combination> combinations(const ModelParameters& plant) {
+  using Axis = SimplexParameters;
+  using Mass = DirectParameters;
+  using enum words::Combination;
+  if (!is_hydraulic_axis(plant)) {
+    return {combination_of<Mass>(natural_frequency, [](const Mass& p) { return p.mass.stiffness / p.mass.inertia; }),
+            combination_of<Mass>(mass_damping, [](const Mass& p) { return p.mass.damping / p.mass.inertia; })};
+  }
+  return {combination_of<Axis>(notch,
+                               [](const Axis& p) {
+                                 // The step does not matter to what is asked of the plant.
+                                 constexpr double kStep = 1e-3;
+                                 return model::Simplex<double>(p, kStep).stiffness() * p.actuator.moment_arm *
+                                        p.actuator.moment_arm / p.engine.inertia;
+                               }),
+          combination_of<Axis>(
+              loop_gain,
+              [](const Axis& p) { return p.servovalve.rated_flow * p.servovalve.position_gain / p.actuator.piston_area; }),
+          combination_of<Axis>(oil_stiffness,
+                               [](const Axis& p) {
+                                 return p.actuator.bulk_modulus * p.actuator.piston_area * p.actuator.piston_area /
+                                        p.actuator.trapped_volume;
+                               }),
+          combination_of<Axis>(engine_damping, [](const Axis& p) { return p.engine.viscous_damping / p.engine.inertia; })};
+}
+
 class Identifiability {
  public:
-  explicit Identifiability(const Fitted<Family>& fitted) : fitted_(fitted), covariance_(covariance_of(fitted.normal)) {
+  explicit Identifiability(const Fitted& fitted) : fitted_(fitted), covariance_(covariance_of(fitted.normal)) {
     for (std::size_t k = 0; k < fitted.free.size(); ++k) {
       const FreeParameter& parameter = fitted.free[k];
       if (!parameter.is_ordinate() && !parameter.is_initial_state() && parameter.value(fitted.u[k]) != 0.0) {
@@ -68,7 +72,7 @@ class Identifiability {
 
   std::vector<std::string> sentences() {
     std::vector<std::string> all;
-    for (const Combination<Family>& combination : combinations<Family>()) {
+    for (const Combination& combination : combinations(fitted_.base)) {
       say_combination(combination, all);
     }
     say_groups(all);
@@ -90,11 +94,11 @@ class Identifiability {
     return std::abs(relative_slope(k)) * std::sqrt(std::max(0.0, covariance(k, k)));
   }
 
-  void say_combination(const Combination<Family>& combination, std::vector<std::string>& all) {
+  void say_combination(const Combination& combination, std::vector<std::string>& all) {
     const auto logarithm = [&](std::size_t k, double move) {
       std::vector<double> u = fitted_.u;
       u[k] += move;
-      return std::log(std::abs(combination.value(Evaluator<Family>::with_values(fitted_.base, fitted_.free, u))));
+      return std::log(std::abs(combination.value(with_values(fitted_.base, fitted_.free, u))));
     };
     constexpr double kMove = 1e-4;
     std::vector<std::size_t> factors;
@@ -183,7 +187,7 @@ class Identifiability {
     }
   }
 
-  const Fitted<Family>& fitted_;
+  const Fitted& fitted_;
   Eigen::MatrixXd covariance_;
   std::vector<std::size_t> considered_;
   std::set<std::size_t> said_;  ///< parameters that a sentence has named
@@ -191,15 +195,11 @@ class Identifiability {
 
 }  // namespace
 
-template <class Family>
-std::vector<std::string> not_separated(const Fitted<Family>& fitted) {
+std::vector<std::string> not_separated(const Fitted& fitted) {
   if (fitted.free.empty() || fitted.normal.rows() != static_cast<Eigen::Index>(fitted.free.size())) {
     return {};
   }
-  return Identifiability<Family>(fitted).sentences();
+  return Identifiability(fitted).sentences();
 }
-
-template std::vector<std::string> not_separated(const Fitted<SimplexFamily>&);
-template std::vector<std::string> not_separated(const Fitted<DirectFamily>&);
 
 }  // namespace hotfire::explain

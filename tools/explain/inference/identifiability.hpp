@@ -13,10 +13,6 @@ namespace hotfire::explain {
 /// - groups of parameters that make up for each other, and at which rates (correlation beyond 0.95);
 /// - declared parameters that the data say nothing on.
 /// From J^T J and the priors at an optimum (`Fitted::normal`); tables and initial states are left out.
-template <class Family>
-std::vector<std::string> not_separated(const Fitted<Family>& fitted);
-
-extern template std::vector<std::string> not_separated(const Fitted<SimplexFamily>&);
-extern template std::vector<std::string> not_separated(const Fitted<DirectFamily>&);
+std::vector<std::string> not_separated(const Fitted& fitted);
 
 }  // namespace hotfire::explain

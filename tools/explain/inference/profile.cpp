@@ -27,10 +27,9 @@ constexpr int kMostSteps = 5;
 constexpr double kFitted = 0.03;
 
 /// The error of a model about an optimum, with the derivatives taken there.
-template <class Family>
 class Surroundings {
  public:
-  Surroundings(const Evaluator<Family>& evaluator, const Fitted<Family>& optimum)
+  Surroundings(const Evaluator& evaluator, const Fitted& optimum)
       : evaluator_(evaluator), optimum_(optimum), weight_(weights_of(evaluator, optimum.temper)) {}
 
   /// Takes the derivatives, and goes to where the error is least: a fit ends close to there, a part of a deviation away.
@@ -150,8 +149,8 @@ class Surroundings {
     return least;
   }
 
-  const Evaluator<Family>& evaluator_;
-  const Fitted<Family>& optimum_;
+  const Evaluator& evaluator_;
+  const Fitted& optimum_;
   Eigen::VectorXd weight_;
   Eigen::MatrixXd weighted_;  ///< derivatives of the weighted residuals
   Eigen::MatrixXd normal_;
@@ -165,8 +164,7 @@ bool is_like_a_parabola(const std::optional<double>& rise) {
 }
 
 /// How many deviations to a side the interval of parameter `k` ends; none if its range ends before, or no end is found.
-template <class Family>
-std::optional<double> end_of(const Surroundings<Family>& surroundings, std::size_t k, double side) {
+std::optional<double> end_of(const Surroundings& surroundings, std::size_t k, double side) {
   const double most = surroundings.most_deviations(k, side);
   double inside = 0.0;
   double outside = most;
@@ -189,8 +187,7 @@ std::optional<double> end_of(const Surroundings<Family>& surroundings, std::size
 
 }  // namespace
 
-template <class Family>
-Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Family>& fitted, unsigned threads) {
+Intervals profile_intervals(const Evaluator& evaluator, const Fitted& fitted, unsigned threads) {
   std::vector<std::size_t> wanted;
   const std::vector<Estimate> estimated = estimates(fitted.free, fitted.u, fitted.normal);
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
@@ -199,7 +196,7 @@ Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Fam
       wanted.push_back(k);
     }
   }
-  Surroundings<Family> surroundings(evaluator, fitted);
+  Surroundings surroundings(evaluator, fitted);
   if (fitted.chaotic || wanted.empty() || !surroundings.differentiate(threads)) {
     return {};
   }
@@ -224,8 +221,5 @@ Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Fam
   }
   return intervals;
 }
-
-template Intervals profile_intervals(const Evaluator<SimplexFamily>&, const Fitted<SimplexFamily>&, unsigned);
-template Intervals profile_intervals(const Evaluator<DirectFamily>&, const Fitted<DirectFamily>&, unsigned);
 
 }  // namespace hotfire::explain

@@ -16,10 +16,6 @@ using Intervals = std::map<Address, std::pair<double, double>>;
 /// likelihood, chi-squared of one degree of freedom [Venzon and Moolgavkar 1988, Applied Statistics 37(1)]). `fitted` is to
 /// be an optimum on the rows of `evaluator`. Left out: the others, tables, what the data do not determine, and chaotic
 /// models, whose error has no profile.
-template <class Family>
-Intervals profile_intervals(const Evaluator<Family>& evaluator, const Fitted<Family>& fitted, unsigned threads);
-
-extern template Intervals profile_intervals(const Evaluator<SimplexFamily>&, const Fitted<SimplexFamily>&, unsigned);
-extern template Intervals profile_intervals(const Evaluator<DirectFamily>&, const Fitted<DirectFamily>&, unsigned);
+Intervals profile_intervals(const Evaluator& evaluator, const Fitted& fitted, unsigned threads);
 
 }  // namespace hotfire::explain

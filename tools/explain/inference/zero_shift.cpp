@@ -6,8 +6,8 @@
 
 namespace hotfire::explain {
 
-std::array<double, 3> shift_at_rest(const PlainParameters<SimplexFamily>& plain,
-                                    const PlainParameters<SimplexFamily>& changed, double by, double step) {
+std::array<double, 3> shift_at_rest(const SimplexParameters& plain, const SimplexParameters& changed, double by,
+                                    double step) {
   const model::Simplex<double> one(plain, step);
   const model::Simplex<double> other(changed, step);
   const std::array<double, 3> before = one.measured(one.steady(0.0));

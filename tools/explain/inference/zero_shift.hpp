@@ -10,8 +10,8 @@
 namespace hotfire::explain {
 
 /// What each reading of an axis at rest moves by, for a unit of what `by` of makes `changed` of `plain`. `step` in s.
-std::array<double, 3> shift_at_rest(const PlainParameters<SimplexFamily>& plain,
-                                    const PlainParameters<SimplexFamily>& changed, double by, double step);
+std::array<double, 3> shift_at_rest(const SimplexParameters& plain, const SimplexParameters& changed, double by,
+                                    double step);
 
 /// How far the zeros of the records are one shift of the readings. Squares are of zeros over their prior's deviations.
 struct CommonShift {

@@ -190,14 +190,14 @@ class Filter {
 
 }  // namespace
 
-LatentProblem latent_problem(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads) {
+LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned threads) {
   // Zeros that are integrated out of the residuals would correlate all rows of a record, which a filter takes one by one.
   Dataset without_priors = data;
   for (Experiment& experiment : without_priors.experiments) {
     experiment.zero_deviation.assign(data.channels.size(), 0.0);
   }
-  const Evaluator<SimplexFamily> evaluator(without_priors, Resolution::coarse, Resolution::rough);
-  const auto parameters = Evaluator<SimplexFamily>::with_values(around.base, around.free, around.u);
+  const Evaluator evaluator(without_priors, Resolution::coarse, Resolution::rough);
+  const auto parameters = std::get<SimplexParameters>(around.parameters());
   LatentProblem problem{data, parameters, flow_scales(parameters), {}, {}, {}, {}, {}};
   std::vector<std::size_t> declared;
   for (std::size_t k = 0; k < around.free.size(); ++k) {

@@ -31,7 +31,7 @@ struct LatentProblem {
 
 /// The problem about a fitted model. Empty flows if the model could not be simulated. Its parameters are the declared ones,
 /// in tolerances, then the zero of every channel of every record, in its prior's deviation (zeros.hpp).
-LatentProblem latent_problem(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads);
+LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned threads);
 
 /// What a signal is like before it is seen: an Ornstein-Uhlenbeck process.
 struct LatentPrior {

@@ -9,6 +9,7 @@
 #include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/fit/parallel.hpp"
+#include "tools/simulate/scalar_parameters.hpp"
 
 namespace hotfire::explain {
 

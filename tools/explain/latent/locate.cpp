@@ -60,7 +60,7 @@ std::vector<std::string> Located::likely_sites() const {
   return sites;
 }
 
-Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads) {
+Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
   const Dataset thin = thinned_to_rows(data, kMostRows);
   Located located;
   const LatentProblem problem = latent_problem(thin, around, threads);

@@ -39,6 +39,6 @@ struct Located {
 /// Tries an unknown signal at every place beside a fitted model. It knows no law: which place explains most is decided by
 /// the likelihood of the records alone. Records of more than 32,000 rows together are thinned to as many: the filter keeps
 /// about a kilobyte a row.
-Located locate(const Dataset& data, const Fitted<SimplexFamily>& around, unsigned threads);
+Located locate(const Dataset& data, const Fitted& around, unsigned threads);
 
 }  // namespace hotfire::explain

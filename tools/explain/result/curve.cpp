@@ -213,9 +213,7 @@ Curve effect_curve(const DirectParameters&, const Params& params, const Reach& r
                          "force");
 }
 
-}  // namespace
-
-Reach reach_of(const Dataset& data, const SimplexParameters& parameters) {
+Reach reach_in(const Dataset& data, const SimplexParameters& parameters) {
   Reach reach;
   for (const Experiment& e : data.experiments) {
     reach.input = std::max(reach.input, largest(e.input));
@@ -243,7 +241,7 @@ Reach reach_of(const Dataset& data, const SimplexParameters& parameters) {
   return reach;
 }
 
-Reach reach_of(const Dataset& data, const DirectParameters&) {
+Reach reach_in(const Dataset& data, const DirectParameters&) {
   Reach reach;
   for (const Experiment& e : data.experiments) {
     reach.input = std::max(reach.input, largest(e.input));
@@ -256,20 +254,26 @@ Reach reach_of(const Dataset& data, const DirectParameters&) {
   return reach;
 }
 
-template <class Family>
-Curve curve_of(const PlainParameters<Family>& parameters, std::size_t effect, const Reach& reach) {
-  Curve result;
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto& values) {
-    if constexpr (requires { E::is_unlisted; }) {
-      return;
-    } else if (index == effect) {
-      result = effect_curve<E>(parameters, values, reach);
-    }
-  });
-  return result;
+}  // namespace
+
+Reach reach_of(const Dataset& data, const ModelParameters& parameters) {
+  return std::visit([&](const auto& own) { return reach_in(data, own); }, parameters);
 }
 
-template Curve curve_of<SimplexFamily>(const SimplexParameters&, std::size_t, const Reach&);
-template Curve curve_of<DirectFamily>(const DirectParameters&, std::size_t, const Reach&);
+Curve curve_of(const ModelParameters& parameters, std::size_t effect, const Reach& reach) {
+  Curve result;
+  std::visit(
+      [&](const auto& own) {
+        model::visit_effects(own, [&]<class E>(std::size_t index, const auto& values) {
+          if constexpr (requires { E::is_unlisted; }) {
+            return;
+          } else if (index == effect) {
+            result = effect_curve<E>(own, values, reach);
+          }
+        });
+      },
+      parameters);
+  return result;
+}
 
 }  // namespace hotfire::explain

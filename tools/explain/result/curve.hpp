@@ -20,16 +20,11 @@ struct Reach {
   double other_rate = 0.0;
 };
 
-Reach reach_of(const Dataset& data, const SimplexParameters& parameters);
-Reach reach_of(const Dataset& data, const DirectParameters& parameters);
+Reach reach_of(const Dataset& data, const ModelParameters& parameters);
 
 /// The curve of an active effect as the page draws it (docs/report.md): force or torque against rate or position, output
 /// against input, force against deflection, or a response in time where the effect remembers. Evaluated by the effect
 /// itself.
-template <class Family>
-Curve curve_of(const PlainParameters<Family>& parameters, std::size_t effect, const Reach& reach);
-
-extern template Curve curve_of<SimplexFamily>(const SimplexParameters&, std::size_t, const Reach&);
-extern template Curve curve_of<DirectFamily>(const DirectParameters&, std::size_t, const Reach&);
+Curve curve_of(const ModelParameters& parameters, std::size_t effect, const Reach& reach);
 
 }  // namespace hotfire::explain

@@ -16,11 +16,9 @@ namespace {
 using Meanings = std::map<Address, std::string_view>;
 
 /// Meanings of the fields of a plant's parameters.
-template <class Family>
-Meanings meanings() {
+Meanings meanings(const ModelParameters& plant) {
   Meanings result;
-  const PlainParameters<Family> neutral;
-  model::visit_parameters(neutral, [&](const model::Key& key, const auto& field, const double&) {
+  visit_parameters(plant, [&](const model::Key& key, const auto& field, const double&) {
     result[{key, field.name}] = field.meaning;
   });
   return result;
@@ -34,8 +32,7 @@ std::string meaning_of(const Meanings& meanings, const Address& address) {
 
 double percent_taken_off(double ratio) { return 100.0 * (1.0 - ratio); }
 
-template <class Family>
-std::vector<EffectParameter> parameters_of(const Candidate& candidate, const Fitted<Family>& model,
+std::vector<EffectParameter> parameters_of(const Candidate& candidate, const Fitted& model,
                                            const std::vector<Estimate>& estimated, const Meanings& meaning) {
   std::vector<EffectParameter> parameters;
   for (std::size_t k = 0; k < estimated.size(); ++k) {
@@ -60,14 +57,12 @@ std::vector<Alternative> alternatives_of(const Kept& kept) {
 }
 
 /// A term of unknown law: what it looks like and what it is not.
-template <class Family>
-void describe_unlisted(const PlainParameters<Family>& parameters, const SearchResult<Family>& found, const Kept& kept,
-                       FoundEffect& effect) {
+void describe_unlisted(const ModelParameters& parameters, const SearchResult& found, const Kept& kept, FoundEffect& effect) {
   const Candidate& candidate = kept.trial.candidate;
   effect.name = "unlisted";
   effect.sites = sites_of(kept);
   effect.is_not = what_it_is_not(found);
-  const auto table = table_of<Family>(parameters, candidate);
+  const auto table = table_of(parameters, candidate);
   if (!table) {
     effect.looks_like = law_in_words(candidate);
     return;
@@ -78,9 +73,8 @@ void describe_unlisted(const PlainParameters<Family>& parameters, const SearchRe
 
 }  // namespace
 
-template <class Family>
-std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
-  const Fitted<Family>& model = found.explained.model;
+std::vector<Estimate> estimates_of(const SearchResult& found) {
+  const Fitted& model = found.explained.model;
   std::vector<Estimate> estimated = estimates(model.free, model.u, model.normal);
   for (std::size_t k = 0; k < estimated.size(); ++k) {
     if (const auto profile = found.profiles.find(model.free[k].address); profile != found.profiles.end()) {
@@ -91,13 +85,12 @@ std::vector<Estimate> estimates_of(const SearchResult<Family>& found) {
   return estimated;
 }
 
-template <class Family>
-std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult<Family>& found,
+std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult& found,
                                        const std::vector<Estimate>& estimated) {
-  const Fitted<Family>& model = found.explained.model;
-  const auto parameters = Evaluator<Family>::with_values(model.base, model.free, model.u);
+  const Fitted& model = found.explained.model;
+  const auto parameters = model.parameters();
   const Reach reach = reach_of(data, parameters);
-  const auto meaning = meanings<Family>();
+  const auto meaning = meanings(model.base);
   std::vector<FoundEffect> effects;
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
@@ -109,21 +102,13 @@ std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult<F
     effect.held_out_drop = percent_taken_off(kept.trial.held_out_ratio);
     effect.delta_criterion = kept.trial.delta_criterion;
     effect.alternatives = alternatives_of(kept);
-    if (is_unlisted<Family>(candidate)) {
+    if (is_unlisted(model.base, candidate)) {
       describe_unlisted(parameters, found, kept, effect);
     } else {
-      effect.curve = curve_of<Family>(parameters, candidate.effect, reach);
+      effect.curve = curve_of(parameters, candidate.effect, reach);
     }
   }
   return effects;
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                         \
-  template std::vector<Estimate> estimates_of(const SearchResult<Family>&); \
-  template std::vector<FoundEffect> found_effects(const Dataset&, const SearchResult<Family>&, const std::vector<Estimate>&);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

@@ -10,12 +10,10 @@
 namespace hotfire::explain {
 
 /// The free parameters of the explained model, in its order, with the interval of the profile where there is one.
-template <class Family>
-std::vector<Estimate> estimates_of(const SearchResult<Family>& found);
+std::vector<Estimate> estimates_of(const SearchResult& found);
 
 /// The effects that a search kept, with the estimates of their parameters.
-template <class Family>
-std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult<Family>& found,
+std::vector<FoundEffect> found_effects(const Dataset& data, const SearchResult& found,
                                        const std::vector<Estimate>& estimated);
 
 }  // namespace hotfire::explain

@@ -26,9 +26,8 @@ bool noise_is_known(const Dataset& data) {
   return true;
 }
 
-template <class Family>
 std::vector<ChannelErrors> channel_errors(const Dataset& data, const std::vector<Record>& records,
-                                          const SearchResult<Family>& found) {
+                                          const SearchResult& found) {
   std::vector<ChannelErrors> channels;
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     if (!data.used[c]) {
@@ -52,8 +51,7 @@ std::vector<ChannelErrors> channel_errors(const Dataset& data, const std::vector
   return channels;
 }
 
-template <class Family>
-std::vector<CalibratedParameter> calibration_of(const SearchResult<Family>& found, const std::vector<Estimate>& estimated) {
+std::vector<CalibratedParameter> calibration_of(const SearchResult& found, const std::vector<Estimate>& estimated) {
   std::vector<CalibratedParameter> calibration;
   for (std::size_t k = 0; k < estimated.size(); ++k) {
     const FreeParameter& free = found.explained.model.free[k];
@@ -79,8 +77,7 @@ void warn_of_channels(const std::vector<Kept>& found, std::vector<std::string>& 
   }
 }
 
-template <class Family>
-std::vector<std::string> warnings_of(const ModelFile& model, const Dataset& data, const SearchResult<Family>& found,
+std::vector<std::string> warnings_of(const ModelFile& model, const Dataset& data, const SearchResult& found,
                                      const std::vector<Estimate>& estimated) {
   std::vector<std::string> warnings;
   if (found.interrupted) {
@@ -188,9 +185,8 @@ void warn_of_rows(const Dataset& data, std::vector<std::string>& warnings) {
   }
 }
 
-template <class Family>
 Result result_of(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
-                 const SearchResult<Family>& found) {
+                 const SearchResult& found) {
   const std::vector<Estimate> estimated = estimates_of(found);
   Result result;
   result.model = model.path.string();
@@ -208,13 +204,9 @@ Result result_of(const ModelFile& model, const std::vector<Record>& records, con
   result.search = search_rows(found.trials);
   result.located = located_result(data, found.located);
   // Of the calibrated model: beside the declared one a wrong value of a parameter would show as well.
-  const auto calibrated =
-      Evaluator<Family>::with_values(found.calibrated.model.base, found.calibrated.model.free, found.calibrated.model.u);
+  const auto calibrated = found.calibrated.model.parameters();
   result.trace = trace_result(reconstruct(without_zeros(data, found.calibrated.zeros), calibrated), found.kept);
   return result;
 }
-
-template Result result_of(const ModelFile&, const std::vector<Record>&, const Dataset&, const SearchResult<SimplexFamily>&);
-template Result result_of(const ModelFile&, const std::vector<Record>&, const Dataset&, const SearchResult<DirectFamily>&);
 
 }  // namespace hotfire::explain

@@ -11,16 +11,9 @@
 namespace hotfire::explain {
 
 /// The result of a search. The caller adds held-out records, baseline, next experiment and valve bias.
-template <class Family>
-Result result_of(const ModelFile& model, const std::vector<Record>& records, const Dataset& data,
-                 const SearchResult<Family>& found);
+Result result_of(const ModelFile& model, const std::vector<Record>& records, const Dataset& data, const SearchResult& found);
 
 /// Appends warnings about the rows that are simulated and not compared.
 void warn_of_rows(const Dataset& data, std::vector<std::string>& warnings);
-
-extern template Result result_of(const ModelFile&, const std::vector<Record>&, const Dataset&,
-                                 const SearchResult<SimplexFamily>&);
-extern template Result result_of(const ModelFile&, const std::vector<Record>&, const Dataset&,
-                                 const SearchResult<DirectFamily>&);
 
 }  // namespace hotfire::explain

@@ -199,9 +199,7 @@ std::vector<Trace> joined(const Dataset& data, Reconstruct&& of) {
   return traces;
 }
 
-}  // namespace
-
-std::vector<Trace> reconstruct(const Dataset& data, const SimplexParameters& parameters) {
+std::vector<Trace> reconstruct_with(const Dataset& data, const SimplexParameters& parameters) {
   return joined(data, [&](const Experiment& experiment, bool noise_only, std::mt19937_64& generator) {
     if (experiment.measured[0].empty() || experiment.measured[1].empty()) {
       return std::vector<LeftOver>{};
@@ -217,7 +215,7 @@ std::vector<Trace> reconstruct(const Dataset& data, const SimplexParameters& par
   });
 }
 
-std::vector<Trace> reconstruct(const Dataset& data, const DirectParameters& parameters) {
+std::vector<Trace> reconstruct_with(const Dataset& data, const DirectParameters& parameters) {
   return joined(data, [&](const Experiment& experiment, bool noise_only, std::mt19937_64& generator) {
     if (!noise_only) {
       return left_over(experiment, parameters, experiment.measured[0]);
@@ -226,6 +224,12 @@ std::vector<Trace> reconstruct(const Dataset& data, const DirectParameters& para
     still.input.assign(experiment.rows(), 0.0);
     return left_over(still, parameters, noise_like(experiment.rows(), experiment.noise[0], generator));
   });
+}
+
+}  // namespace
+
+std::vector<Trace> reconstruct(const Dataset& data, const ModelParameters& parameters) {
+  return std::visit([&](const auto& own) { return reconstruct_with(data, own); }, parameters);
 }
 
 std::string in_words(const Trace& trace) {

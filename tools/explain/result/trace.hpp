@@ -29,8 +29,7 @@ struct Trace {
 /// Reconstructs the missing term of every equation whose quantities are measured, loudest against noise first. Motion is
 /// smoothed by a zero-phase Gaussian (about 12 Hz, or a fortieth of the sampling rate) before it is differentiated; what
 /// noise alone would leave is found by passing noise of the channels' rms through the same reconstruction.
-std::vector<Trace> reconstruct(const Dataset& data, const SimplexParameters& parameters);
-std::vector<Trace> reconstruct(const Dataset& data, const DirectParameters& parameters);
+std::vector<Trace> reconstruct(const Dataset& data, const ModelParameters& parameters);
 
 /// The strongest trace in one sentence.
 std::string in_words(const Trace& trace);

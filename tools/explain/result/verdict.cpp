@@ -45,20 +45,22 @@ const Trial* closest_of(const std::vector<Trial>& trials, F&& is_meant) {
   return closest;
 }
 
+bool is_unlisted(const SearchResult& found, const Candidate& candidate) {
+  return is_unlisted(found.explained.model.base, candidate);
+}
+
 /// The first term of unknown law that was kept; null if there is none.
-template <class Family>
-const Kept* first_unlisted(const SearchResult<Family>& found) {
-  const auto kept = std::ranges::find_if(found.kept, [](const Kept& k) { return is_unlisted<Family>(k.trial.candidate); });
+const Kept* first_unlisted(const SearchResult& found) {
+  const auto kept = std::ranges::find_if(found.kept, [&](const Kept& k) { return is_unlisted(found, k.trial.candidate); });
   return kept == found.kept.end() ? nullptr : &*kept;
 }
 
 /// "a term at SITE that depends on ...", "gimbal friction at engine_torque": everything that was kept.
-template <class Family>
-std::vector<std::string> terms_in_words(const SearchResult<Family>& found) {
+std::vector<std::string> terms_in_words(const SearchResult& found) {
   std::vector<std::string> terms;
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
-    terms.push_back(is_unlisted<Family>(candidate)
+    terms.push_back(is_unlisted(found, candidate)
                         ? fmt::format("a term at {} {}", fmt::join(sites_of(kept), " or "), dependence_in_words(candidate))
                         : phrase(candidate));
   }
@@ -90,8 +92,7 @@ bool is_of_record_time(const Candidate& candidate) {
           candidate.name == model::UnlistedDrift::name);
 }
 
-template <class Family>
-Verdict verdict_of(const Dataset& data, const SearchResult<Family>& found) {
+Verdict verdict_of(const Dataset& data, const SearchResult& found) {
   if (first_unlisted(found) != nullptr) {
     return Verdict::unlisted_effect;
   }
@@ -104,8 +105,7 @@ Verdict verdict_of(const Dataset& data, const SearchResult<Family>& found) {
   return found.interrupted || !found.searched ? Verdict::undecided : Verdict::unlisted_effect;
 }
 
-template <class Family>
-std::string sentence_of(Verdict verdict, const SearchResult<Family>& found, bool noise_is_known) {
+std::string sentence_of(Verdict verdict, const SearchResult& found, bool noise_is_known) {
   const words::HeldOutError error{Goodness::combined(found.declared.goodness.held_out),
                                   Goodness::combined(found.explained.goodness.held_out), noise_is_known};
   if (verdict == Verdict::nothing_missing && !is_within_tolerances(found.explained.model)) {
@@ -139,16 +139,15 @@ std::string sentence_of(Verdict verdict, const SearchResult<Family>& found, bool
   return text + words::error_falls(found.kept.size() == 1, error, verdict == Verdict::explained);
 }
 
-template <class Family>
-std::string what_it_is_not(const SearchResult<Family>& found) {
+std::string what_it_is_not(const SearchResult& found) {
   const Trial& kept = first_unlisted(found)->trial;
   // Both in percent of what the calibrated model leaves: only the first round is judged against that as terms of unknown
   // law are.
-  const Trial* listed = closest_of(found.trials, [](const Trial& t) {
-    return t.round == 1 && t.decision != "taken out" && !is_unlisted<Family>(t.candidate);
+  const Trial* listed = closest_of(found.trials, [&](const Trial& t) {
+    return t.round == 1 && t.decision != "taken out" && !is_unlisted(found, t.candidate);
   });
   const Trial* other = closest_of(found.trials, [&](const Trial& t) {
-    return is_unlisted<Family>(t.candidate) && label(t.candidate) != label(kept.candidate);
+    return is_unlisted(found, t.candidate) && label(t.candidate) != label(kept.candidate);
   });
   std::string text = listed == nullptr
                          ? words::no_listed_finalist()
@@ -158,14 +157,5 @@ std::string what_it_is_not(const SearchResult<Family>& found) {
   }
   return text;
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                                     \
-  template Verdict verdict_of<Family>(const Dataset&, const SearchResult<Family>&);     \
-  template std::string sentence_of<Family>(Verdict, const SearchResult<Family>&, bool); \
-  template std::string what_it_is_not<Family>(const SearchResult<Family>&);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

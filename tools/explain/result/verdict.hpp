@@ -16,16 +16,13 @@ bool is_of_record_time(const Candidate& candidate);
 
 /// The verdict of a search (docs/report.md). It is undecided if nothing is kept, more than noise is left, and the search was
 /// interrupted or not asked for.
-template <class Family>
-Verdict verdict_of(const Dataset& data, const SearchResult<Family>& found);
+Verdict verdict_of(const Dataset& data, const SearchResult& found);
 
 /// What was found, in one sentence or two. Errors are in times of the noise where that is known of every channel.
-template <class Family>
-std::string sentence_of(Verdict verdict, const SearchResult<Family>& found, bool noise_is_known = true);
+std::string sentence_of(Verdict verdict, const SearchResult& found, bool noise_is_known = true);
 
 /// What the term of unknown law that was kept is not: the listed effect and the other such terms that came closest, and what
 /// they leave.
-template <class Family>
-std::string what_it_is_not(const SearchResult<Family>& found);
+std::string what_it_is_not(const SearchResult& found);
 
 }  // namespace hotfire::explain

@@ -9,9 +9,7 @@ namespace hotfire::explain {
 
 /// The effects of the declared model that the records do not support: without one, and everything else fitted again, the
 /// explained model is as good. An effect that another declared one needs is not taken out alone.
-template <class Family>
-std::vector<Candidate> effects_without_support(const Dataset& data, const Refiner<Family>& refiner,
-                                               const PlainParameters<Family>& declared, const Assessed<Family>& explained,
-                                               const Watch& watch);
+std::vector<Candidate> effects_without_support(const Dataset& data, const Refiner& refiner, const ModelParameters& declared,
+                                               const Assessed& explained, const Watch& watch);
 
 }  // namespace hotfire::explain

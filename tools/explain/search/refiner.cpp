@@ -30,8 +30,7 @@ constexpr double kMovedTooFar = 2.0;
 
 /// True if what two models leave of every channel differs by less than that share of it. One that is met to its noise counts
 /// with all its rows, and so it must not be lost in the residuals of another that is far off.
-template <class Family>
-bool are_alike(const Evaluator<Family>& evaluator, const Eigen::VectorXd& left, const Eigen::VectorXd& other) {
+bool are_alike(const Evaluator& evaluator, const Eigen::VectorXd& left, const Eigen::VectorXd& other) {
   const std::vector<double> square = evaluator.squares_by_channel(left);
   const std::vector<double> change = evaluator.squares_by_channel(other - left);
   for (std::size_t c = 0; c < square.size(); ++c) {
@@ -44,8 +43,7 @@ bool are_alike(const Evaluator<Family>& evaluator, const Eigen::VectorXd& left, 
 
 }  // namespace
 
-template <class Family>
-std::optional<Evaluator<Family>> Refiner<Family>::rough_about(const Fitted<Family>& model) const {
+std::optional<Evaluator> Refiner::rough_about(const Fitted& model) const {
   Prediction by_rough;
   Prediction by_coarse;
   if (&rough_ == &coarse_ || !rough_.predict(model.base, model.free, model.u, threads_, by_rough) ||
@@ -56,14 +54,12 @@ std::optional<Evaluator<Family>> Refiner<Family>::rough_about(const Fitted<Famil
   return rough_.shifted(by_rough, by_coarse);
 }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Effort& effort) const {
+Assessed Refiner::ranked(const Fitted& fitted, const Effort& effort) const {
   Effort rest = effort;
-  Fitted<Family> start = fitted;
+  Fitted start = fitted;
   const auto rough = effort.passes > 1 ? rough_about(fitted) : std::nullopt;
   if (rough) {
-    Assessed<Family> near =
-        refined(*rough, *rough, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
+    Assessed near = refined(*rough, *rough, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
     if (near.good()) {
       start = std::move(near.model);
       --rest.passes;
@@ -72,10 +68,8 @@ Assessed<Family> Refiner<Family>::ranked(const Fitted<Family>& fitted, const Eff
   return refined(coarse_, fine_, threads_, std::move(start), rest);
 }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, std::span<const double> frozen,
-                                              const Effort& effort) const {
-  std::vector<Fitted<Family>> starts;
+Assessed Refiner::of_screened(const Fitted& screened, std::span<const double> frozen, const Effort& effort) const {
+  std::vector<Fitted> starts;
   for (const double share : kSharesOfMove) {
     starts.push_back(screened);
     for (std::size_t k = 0; k < frozen.size(); ++k) {
@@ -90,9 +84,9 @@ Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, st
       }
     }
   }
-  Fitted<Family> best = screened;
+  Fitted best = screened;
   double least = std::numeric_limits<double>::infinity();
-  for (Fitted<Family>& start : starts) {
+  for (Fitted& start : starts) {
     Prediction prediction;
     if (!coarse_.predict(start.base, start.free, start.u, threads_, prediction)) {
       continue;
@@ -106,60 +100,56 @@ Assessed<Family> Refiner<Family>::of_screened(const Fitted<Family>& screened, st
   return ranked(best, effort);
 }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const {
+Assessed Refiner::from_other_starts(int round, Assessed winner, const Candidate& candidate) const {
   // A term of the grammar started where the regression put it.
   if (is_done(winner) || !candidate.choices.empty()) {
     return winner;
   }
   watch_.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
   if (is_far_from_declared(winner.model)) {
-    Assessed<Family> afresh = ranked(with_declared_values(winner.model), kRanking);
+    Assessed afresh = ranked(with_declared_values(winner.model), kRanking);
     winner = better_of(std::move(winner), std::move(afresh));
     if (is_done(winner)) {
       return winner;
     }
   }
-  Assessed<Family> again = from_other_values(winner, candidate);
+  Assessed again = from_other_values(winner, candidate);
   return better_of(std::move(winner), std::move(again));
 }
 
-template <class Family>
-std::vector<OfLaw<Family>> Refiner<Family>::of_richer_laws(int round, const Assessed<Family>& winner,
-                                                           const Candidate& candidate) const {
-  std::vector<OfLaw<Family>> richer;
+std::vector<OfLaw> Refiner::of_richer_laws(int round, const Assessed& winner, const Candidate& candidate) const {
+  std::vector<OfLaw> richer;
   if (is_complete(data_, winner)) {
     return richer;
   }
-  const std::size_t own = effect_parameters<Family>(winner.model.base, candidate, scales_).size();
-  const Fitted<Family> rest = without_effect(winner.model, candidate);
-  for (const Candidate& law : laws_of<Family>(data_, candidate)) {
-    const std::vector<FreeParameter> parameters = effect_parameters<Family>(rest.base, law, scales_);
+  const std::size_t own = effect_parameters(winner.model.base, candidate, scales_).size();
+  const Fitted rest = without_effect(winner.model, candidate);
+  for (const Candidate& law : laws_of(rest.base, data_, candidate)) {
+    const std::vector<FreeParameter> parameters = effect_parameters(rest.base, law, scales_);
     if (parameters.size() <= own || watch_.interrupted()) {
       continue;
     }
     watch_.progress(fmt::format("round {}: fitting {} from where {} ended", round, label(law), label(candidate)));
-    Fitted<Family> start = rest;
-    activate<Family>(start.base, law);
+    Fitted start = rest;
+    activate(start.base, law);
     for (const FreeParameter& parameter : parameters) {
       start.free.push_back(parameter);
       start.u.push_back(parameter.coordinate(parameter.unit_size));
     }
-    Assessed<Family> fitted = ranked(start, kCheck);
+    Assessed fitted = ranked(start, kCheck);
     if (fitted.good() && criterion_change(fitted, winner, fitted.goodness.fitted) < -policy().strong_evidence) {
-      Assessed<Family> closer = ranked(fitted.model, kRanking);
+      Assessed closer = ranked(fitted.model, kRanking);
       richer.push_back({law, better_of(std::move(fitted), std::move(closer))});
     }
   }
   return richer;
 }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candidate& candidate) const {
+Assessed Refiner::by_simplest_law(Assessed winner, Candidate& candidate) const {
   if (!winner.good()) {
     return winner;
   }
-  const auto own = effect_parameters<Family>(winner.model.base, candidate, scales_);
+  const auto own = effect_parameters(winner.model.base, candidate, scales_);
   const auto estimated = estimates(winner.model.free, winner.model.u, winner.model.normal);
   // A static ratio of 1, the least there can be, is that of a law without one: an interval that reaches so far leaves it
   // open.
@@ -172,8 +162,8 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
     }
     return false;
   };
-  for (const Candidate& law : laws_of<Family>(data_, candidate)) {
-    const auto fewer = effect_parameters<Family>(winner.model.base, law, scales_);
+  for (const Candidate& law : laws_of(winner.model.base, data_, candidate)) {
+    const auto fewer = effect_parameters(winner.model.base, law, scales_);
     const auto has = [&](const FreeParameter& parameter) {
       return std::any_of(fewer.begin(), fewer.end(), [&](const FreeParameter& f) { return f.is_same_as(parameter); });
     };
@@ -182,13 +172,13 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
     if (fewer.size() >= own.size() || !leaves_out_only_open) {
       continue;
     }
-    Fitted<Family> reduced = winner.model;
-    activate<Family>(reduced.base, law);
+    Fitted reduced = winner.model;
+    activate(reduced.base, law);
     drop_parameters(reduced, [&](const FreeParameter& parameter) {
       const auto is = [&](const FreeParameter& p) { return p.is_same_as(parameter); };
       return std::any_of(own.begin(), own.end(), is) && !has(parameter);
     });
-    Assessed<Family> simple = settled(reduced);
+    Assessed simple = settled(reduced);
     const std::vector<ChannelFit>& effective = winner.goodness.fitted;
     if (simple.good() && criterion_change(simple, winner, effective) <= 0.0) {
       candidate = law;
@@ -198,62 +188,52 @@ Assessed<Family> Refiner<Family>::by_simplest_law(Assessed<Family> winner, Candi
   return winner;
 }
 
-template <class Family>
-bool Refiner<Family>::is_done(const Assessed<Family>& winner) const {
-  return is_complete(data_, winner) || watch_.interrupted();
-}
+bool Refiner::is_done(const Assessed& winner) const { return is_complete(data_, winner) || watch_.interrupted(); }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::without(const Fitted<Family>& model, const Candidate& candidate) const {
-  Assessed<Family> rest = ranked(without_effect(model, candidate), kCheck);
+Assessed Refiner::without(const Fitted& model, const Candidate& candidate) const {
+  Assessed rest = ranked(without_effect(model, candidate), kCheck);
   return rest.good() ? over_ripples(std::move(rest)) : rest;
 }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::in_place_of(const Fitted<Family>& model, const Candidate& candidate,
-                                              const Candidate& other, const Fitted<Family>& tied) const {
-  Fitted<Family> start = without_effect(model, candidate);
-  activate<Family>(start.base, other);
+Assessed Refiner::in_place_of(const Fitted& model, const Candidate& candidate, const Candidate& other,
+                              const Fitted& tied) const {
+  Fitted start = without_effect(model, candidate);
+  activate(start.base, other);
   for (std::size_t k = 0; k < tied.free.size(); ++k) {
     if (tied.free[k].is_of_effect(other.effect)) {
       start.free.push_back(tied.free[k]);
       start.u.push_back(tied.u[k]);
     }
   }
-  const Assessed<Family> near = ranked(start, kRanking);
+  const Assessed near = ranked(start, kRanking);
   return near.good() ? settled(near.model) : near;
 }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::over_ripples(Assessed<Family> fitted, double height) const {
+Assessed Refiner::over_ripples(Assessed fitted, double height) const {
   const double left = excess_over_noise(data_, fitted.prediction);
   if (left < policy().nothing_left || left >= height || watch_.interrupted()) {
     return fitted;
   }
-  Assessed<Family> beyond = ranked(fitted.model, kOverRipples);
+  Assessed beyond = ranked(fitted.model, kOverRipples);
   if (beyond.good()) {
     beyond = ranked(beyond.model, kRanking);
   }
   return better_of(std::move(fitted), std::move(beyond));
 }
 
-template <class Family>
-Assessed<Family> Refiner<Family>::from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const {
-  Fitted<Family> anchor = without_effect(winner.model, candidate);
-  anchor.base.effects.active[candidate.effect] = true;
+Assessed Refiner::from_other_values(const Assessed& winner, const Candidate& candidate) const {
+  Fitted anchor = without_effect(winner.model, candidate);
+  set_active(anchor.base, candidate.effect, true);
   std::vector<double> own;
   for (std::size_t k = 0; k < winner.model.free.size(); ++k) {
     if (winner.model.free[k].is_of_effect(candidate.effect)) {
       own.push_back(winner.model.u[k]);
     }
   }
-  const Evaluator<Family> evaluator = for_screening(anchor);
-  const Screening<Family> screening(evaluator, anchor, scales_, threads_);
-  const Screened<Family> again = screening.restart(candidate, own, watch_);
-  return again.good ? of_screened(again.fitted, anchor.u) : Assessed<Family>{};
+  const Evaluator evaluator = for_screening(anchor);
+  const Screening screening(evaluator, anchor, scales_, threads_);
+  const Screened again = screening.restart(candidate, own, watch_);
+  return again.good ? of_screened(again.fitted, anchor.u) : Assessed{};
 }
-
-template class Refiner<SimplexFamily>;
-template class Refiner<DirectFamily>;
 
 }  // namespace hotfire::explain

@@ -11,79 +11,72 @@
 namespace hotfire::explain {
 
 /// A model with an effect by one of its laws.
-template <class Family>
 struct OfLaw {
   Candidate candidate;
-  Assessed<Family> model;
+  Assessed model;
 };
 
 /// Joint fits of everything that is free, as a search needs them.
-template <class Family>
 class Refiner {
  public:
   /// `rough` is for screening and `coarse` for ranks, both on the same rows and the same one where steps must not be rough,
   /// `fine` for what the report says. All are to outlive the refiner.
-  Refiner(const Dataset& data, const Evaluator<Family>& rough, const Evaluator<Family>& coarse,
-          const Evaluator<Family>& fine, const Scales& scales, unsigned threads, const Watch& watch)
+  Refiner(const Dataset& data, const Evaluator& rough, const Evaluator& coarse, const Evaluator& fine, const Scales& scales,
+          unsigned threads, const Watch& watch)
       : data_(data), rough_(rough), coarse_(coarse), fine_(fine), scales_(scales), threads_(threads), watch_(watch) {}
 
   /// What candidates beside a model are screened on: rough steps, shifted to what coarse ones predict of that model, where
   /// the shift is small against what the model leaves.
-  Evaluator<Family> for_screening(const Fitted<Family>& current) const { return rough_about(current).value_or(coarse_); }
+  Evaluator for_screening(const Fitted& current) const { return rough_about(current).value_or(coarse_); }
 
   /// Fitted as its rank needs it, the way to near the end under rough steps where they serve.
-  Assessed<Family> ranked(const Fitted<Family>& fitted, const Effort& effort) const;
+  Assessed ranked(const Fitted& fitted, const Effort& effort) const;
   /// A screened candidate, ranked. Screening moves what was free before along its derivatives from `frozen`, which may carry
   /// it too far: where another place on that way, or a table that is nothing yet, leaves less than half as much, the fit
   /// starts at the least of them.
-  Assessed<Family> of_screened(const Fitted<Family>& screened, std::span<const double> frozen,
-                               const Effort& effort = kRanking) const;
+  Assessed of_screened(const Fitted& screened, std::span<const double> frozen, const Effort& effort = kRanking) const;
   /// Fitted under fine steps, as the report says it.
-  Assessed<Family> settled(const Fitted<Family>& fitted, const Effort& effort = kFinal) const {
+  Assessed settled(const Fitted& fitted, const Effort& effort = kFinal) const {
     return refined(fine_, fine_, threads_, fitted, effort);
   }
 
   /// A model that leaves something, but less beyond the noise than the ripples of its error are high, may sit in one: it is
   /// fitted along differences that are wider than a ripple, and then along exact derivatives, from where those ended. The
   /// best of all. `height`: of the ripples, over the noise.
-  Assessed<Family> over_ripples(Assessed<Family> fitted, double height = policy().near_noise) const;
+  Assessed over_ripples(Assessed fitted, double height = policy().near_noise) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
-  Assessed<Family> from_other_starts(int round, Assessed<Family> winner, const Candidate& candidate) const;
+  Assessed from_other_starts(int round, Assessed winner, const Candidate& candidate) const;
 
   /// An effect by each of its laws that have more parameters, from the typical values of those beside what the model was
   /// calibrated to with the simpler law. Screening ranks the laws beside a calibration without the effect, from which the
   /// one that is right may look no better than one that it contains. Those that are better; none if nothing is missing in
   /// the model.
-  std::vector<OfLaw<Family>> of_richer_laws(int round, const Assessed<Family>& winner, const Candidate& candidate) const;
+  std::vector<OfLaw> of_richer_laws(int round, const Assessed& winner, const Candidate& candidate) const;
 
   /// Where the data leave a parameter of the winner's law open, or do not separate it from an end of its range, a law
   /// without that parameter, started from the winner's values, takes its place if the BIC is no worse. Sets `candidate` to
   /// the law that stays.
-  Assessed<Family> by_simplest_law(Assessed<Family> winner, Candidate& candidate) const;
+  Assessed by_simplest_law(Assessed winner, Candidate& candidate) const;
 
   /// Without an effect, the others fitted again from where they are; over the ripples too, if that ends near the noise.
-  Assessed<Family> without(const Fitted<Family>& model, const Candidate& candidate) const;
+  Assessed without(const Fitted& model, const Candidate& candidate) const;
 
   /// With another effect, or law, in the place of one: `other` as it is in `tied`, all else where it is, fitted together as
   /// the report says it.
-  Assessed<Family> in_place_of(const Fitted<Family>& model, const Candidate& candidate, const Candidate& other,
-                               const Fitted<Family>& tied) const;
+  Assessed in_place_of(const Fitted& model, const Candidate& candidate, const Candidate& other, const Fitted& tied) const;
 
  private:
-  std::optional<Evaluator<Family>> rough_about(const Fitted<Family>& model) const;
-  bool is_done(const Assessed<Family>& winner) const;
-  Assessed<Family> from_other_values(const Assessed<Family>& winner, const Candidate& candidate) const;
+  std::optional<Evaluator> rough_about(const Fitted& model) const;
+  bool is_done(const Assessed& winner) const;
+  Assessed from_other_values(const Assessed& winner, const Candidate& candidate) const;
 
   const Dataset& data_;
-  const Evaluator<Family>& rough_;
-  const Evaluator<Family>& coarse_;
-  const Evaluator<Family>& fine_;
+  const Evaluator& rough_;
+  const Evaluator& coarse_;
+  const Evaluator& fine_;
   const Scales& scales_;
   unsigned threads_;
   const Watch& watch_;
 };
-
-extern template class Refiner<SimplexFamily>;
-extern template class Refiner<DirectFamily>;
 
 }  // namespace hotfire::explain

@@ -23,9 +23,8 @@ bool is_before(const Trial& one, const Trial& other) {
 
 }  // namespace
 
-template <class Family>
-Round<Family>::Round(int number, const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& current,
-                     std::vector<Screened<Family>> screened, const Watch& watch)
+Round::Round(int number, const Dataset& data, const Refiner& refiner, const Assessed& current,
+             std::vector<Screened> screened, const Watch& watch)
     : number_(number),
       data_(data),
       refiner_(refiner),
@@ -33,14 +32,13 @@ Round<Family>::Round(int number, const Dataset& data, const Refiner<Family>& ref
       screened_(std::move(screened)),
       watch_(watch),
       finalists_(screened_.size()),
-      order_(finalists_of<Family>(screened_)) {
-  for (const Screened<Family>& s : screened_) {
+      order_(finalists_of(screened_)) {
+  for (const Screened& s : screened_) {
     trials_.push_back({number_, s.candidate, false, s.criterion, 1.0, s.seconds, "dropped", "", s.scanned});
   }
 }
 
-template <class Family>
-RoundResult<Family> Round<Family>::run() {
+RoundResult Round::run() {
   fit_finalists();
   rank();
   if (watch_.interrupted()) {
@@ -50,7 +48,7 @@ RoundResult<Family> Round<Family>::run() {
     cross_ripples();
     rank();
   }
-  RoundResult<Family> result;
+  RoundResult result;
   if (best_ && clears_up(finalists_[*best_])) {
     finalists_[*best_] = refiner_.from_other_starts(number_, std::move(finalists_[*best_]), trials_[*best_].candidate);
     add_richer_laws();
@@ -80,22 +78,19 @@ RoundResult<Family> Round<Family>::run() {
 
 /// False where what is left is of the noise's size already and a further effect takes away little of it: it then imitates
 /// how the laws that were found differ from the truth's.
-template <class Family>
-bool Round<Family>::clears_up(const Assessed<Family>& with) const {
+bool Round::clears_up(const Assessed& with) const {
   const double before = excess_over_noise(data_, current_.prediction);
   const double after = excess_over_noise(data_, with.prediction);
   return before > policy().visible || after * after < policy().clearly_less * before * before;
 }
 
-template <class Family>
-bool Round<Family>::is_worth_a_name(const Trial& trial, const Assessed<Family>& with) const {
+bool Round::is_worth_a_name(const Trial& trial, const Assessed& with) const {
   return trial.held_out_ratio < policy().hardly_less || excess_over_noise(data_, with.prediction) < policy().near_noise;
 }
 
 /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
 /// another effect that promised more than twice as much.
-template <class Family>
-bool Round<Family>::is_decided_against(std::size_t wanted) const {
+bool Round::is_decided_against(std::size_t wanted) const {
   return std::any_of(order_.begin(), order_.end(), [&](std::size_t i) {
     if (!finalists_[i].good() || excess_over_noise(data_, finalists_[i].prediction) >= policy().nothing_left) {
       return false;
@@ -106,14 +101,12 @@ bool Round<Family>::is_decided_against(std::size_t wanted) const {
   });
 }
 
-template <class Family>
-bool Round<Family>::is_near_noise(std::size_t finalist) const {
+bool Round::is_near_noise(std::size_t finalist) const {
   return excess_over_noise(data_, finalists_[finalist].prediction) < policy().near_noise;
 }
 
-template <class Family>
-void Round<Family>::fit_finalists() {
-  for (const std::size_t i : simplest_laws_first<Family>(order_, screened_)) {
+void Round::fit_finalists() {
+  for (const std::size_t i : simplest_laws_first(order_, screened_)) {
     if (watch_.interrupted()) {
       return;
     }
@@ -127,8 +120,7 @@ void Round<Family>::fit_finalists() {
   }
 }
 
-template <class Family>
-void Round<Family>::cross_ripples() {
+void Round::cross_ripples() {
   for (const std::size_t i : contenders_of(order_, screened_, finalists_)) {
     report_progress("over ripples", i);
     const Stopwatch stopwatch;
@@ -138,9 +130,8 @@ void Round<Family>::cross_ripples() {
 }
 
 /// Puts among the finalists the laws of the best one's effect that have more parameters, from where it ended.
-template <class Family>
-void Round<Family>::add_richer_laws() {
-  for (OfLaw<Family>& richer : refiner_.of_richer_laws(number_, finalists_[*best_], screened_[*best_].candidate)) {
+void Round::add_richer_laws() {
+  for (OfLaw& richer : refiner_.of_richer_laws(number_, finalists_[*best_], screened_[*best_].candidate)) {
     for (std::size_t i = 0; i < screened_.size(); ++i) {
       if (label(screened_[i].candidate) != label(richer.candidate)) {
         continue;
@@ -157,8 +148,7 @@ void Round<Family>::add_richer_laws() {
 
 /// Sets how every finalist does, all on the effective samples of the one with the least error: a model that leaves a
 /// coloured residual must not set the price of a parameter.
-template <class Family>
-void Round<Family>::rank() {
+void Round::rank() {
   std::optional<std::size_t> closest;
   for (const std::size_t i : order_) {
     if (finalists_[i].good() && (!closest || Goodness::combined(finalists_[i].goodness.fitted) <
@@ -179,9 +169,8 @@ void Round<Family>::rank() {
 
 /// The best finalist, by the simplest of its laws and under fine steps where it may be the last, with which all others are
 /// compared once more. One that is not supported as it was ranked rarely is under fine steps: a short fit is enough.
-template <class Family>
-Assessed<Family> Round<Family>::winner() {
-  Assessed<Family> winner = finalists_[*best_];
+Assessed Round::winner() {
+  Assessed winner = finalists_[*best_];
   if (is_near_noise(*best_)) {
     report_progress("with fine steps", *best_);
     if (!is_supported(trials_[*best_])) {
@@ -195,7 +184,7 @@ Assessed<Family> Round<Family>::winner() {
     }
   }
   for (const std::size_t i : order_) {
-    const Assessed<Family>& finalist = i == *best_ ? winner : finalists_[i];
+    const Assessed& finalist = i == *best_ ? winner : finalists_[i];
     if (winner.good() && finalist.good()) {
       compare(trials_[i], finalist, current_, winner.goodness.fitted);
     }
@@ -204,43 +193,36 @@ Assessed<Family> Round<Family>::winner() {
 }
 
 /// What was known of every candidate when the search was interrupted.
-template <class Family>
-RoundResult<Family> Round<Family>::undecided() {
+RoundResult Round::undecided() {
   for (Trial& trial : trials_) {
     trial.decision = kUndecided;
     trial.reason = words::text(trial.refined    ? words::Reason::interrupted_refined
                                : trial.screened ? words::Reason::interrupted_screened
                                                 : words::Reason::interrupted_before);
   }
-  RoundResult<Family> result;
+  RoundResult result;
   result.trials = trials_;
   return result;
 }
 
 /// The closest of the other finalists, fitted as well as the winner was, if the data do not separate the two.
-template <class Family>
-std::optional<Rival<Family>> Round<Family>::rival_of(const Kept& kept) const {
+std::optional<Rival> Round::rival_of(const Kept& kept) const {
   for (const Trial& other : kept.alternatives) {
     if (!other.refined || other.delta_criterion - kept.trial.delta_criterion >= policy().strong_evidence) {
       continue;
     }
     for (std::size_t i = 0; i < screened_.size(); ++i) {
       if (label(screened_[i].candidate) == label(other.candidate) && finalists_[i].good()) {
-        const Assessed<Family> again = refiner_.settled(finalists_[i].model);
-        return again.good() ? std::optional(Rival<Family>{kept.trial.candidate, other.candidate, again.model})
-                            : std::nullopt;
+        const Assessed again = refiner_.settled(finalists_[i].model);
+        return again.good() ? std::optional(Rival{kept.trial.candidate, other.candidate, again.model}) : std::nullopt;
       }
     }
   }
   return std::nullopt;
 }
 
-template <class Family>
-void Round<Family>::report_progress(const std::string& what, std::size_t finalist) const {
+void Round::report_progress(const std::string& what, std::size_t finalist) const {
   watch_.progress(fmt::format("round {}: fitting {} {}", number_, label(screened_[finalist].candidate), what));
 }
-
-template class Round<SimplexFamily>;
-template class Round<DirectFamily>;
 
 }  // namespace hotfire::explain

@@ -12,54 +12,49 @@
 namespace hotfire::explain {
 
 /// What one round of a search came to.
-template <class Family>
 struct RoundResult {
-  std::vector<Trial> trials;           ///< of every candidate that was screened
-  std::optional<Kept> kept;            ///< the best, if it is supported
-  Assessed<Family> model;              ///< with it
-  bool settled = false;                ///< `model` was fitted under fine steps
-  std::optional<Rival<Family>> rival;  ///< of the best
+  std::vector<Trial> trials;   ///< of every candidate that was screened
+  std::optional<Kept> kept;    ///< the best, if it is supported
+  Assessed model;              ///< with it
+  bool settled = false;        ///< `model` was fitted under fine steps
+  std::optional<Rival> rival;  ///< of the best
 };
 
 /// One round of a search: of the candidates screened beside a current model the best are fitted jointly with everything
 /// else, and the best of those is kept if it lowers the BIC and the held-out error clearly.
-template <class Family>
 class Round {
  public:
   /// `current` and what the refiner refers to are to outlive the round.
-  Round(int number, const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& current,
-        std::vector<Screened<Family>> screened, const Watch& watch);
+  Round(int number, const Dataset& data, const Refiner& refiner, const Assessed& current, std::vector<Screened> screened,
+        const Watch& watch);
 
   /// Runs the round. If it was interrupted it keeps none, and its trials say how far it came.
-  RoundResult<Family> run();
+  RoundResult run();
 
  private:
-  bool clears_up(const Assessed<Family>& with) const;
-  bool is_worth_a_name(const Trial& trial, const Assessed<Family>& with) const;
+  bool clears_up(const Assessed& with) const;
+  bool is_worth_a_name(const Trial& trial, const Assessed& with) const;
   bool is_decided_against(std::size_t wanted) const;
   bool is_near_noise(std::size_t finalist) const;
   void fit_finalists();
   void cross_ripples();
   void add_richer_laws();
   void rank();
-  Assessed<Family> winner();
-  RoundResult<Family> undecided();
-  std::optional<Rival<Family>> rival_of(const Kept& kept) const;
+  Assessed winner();
+  RoundResult undecided();
+  std::optional<Rival> rival_of(const Kept& kept) const;
   void report_progress(const std::string& what, std::size_t finalist) const;
 
   int number_;
   const Dataset& data_;
-  const Refiner<Family>& refiner_;
-  const Assessed<Family>& current_;
-  std::vector<Screened<Family>> screened_;
+  const Refiner& refiner_;
+  const Assessed& current_;
+  std::vector<Screened> screened_;
   const Watch& watch_;
-  std::vector<Trial> trials_;                ///< one for each screened
-  std::vector<Assessed<Family>> finalists_;  ///< one for each screened; not good() if it was not fitted jointly
-  std::vector<std::size_t> order_;           ///< those that are to be, or were
-  std::optional<std::size_t> best_;          ///< by the BIC, of those that were
+  std::vector<Trial> trials_;        ///< one for each screened
+  std::vector<Assessed> finalists_;  ///< one for each screened; not good() if it was not fitted jointly
+  std::vector<std::size_t> order_;   ///< those that are to be, or were
+  std::optional<std::size_t> best_;  ///< by the BIC, of those that were
 };
-
-extern template class Round<SimplexFamily>;
-extern template class Round<DirectFamily>;
 
 }  // namespace hotfire::explain

@@ -41,20 +41,18 @@ constexpr std::size_t kRestarts = 4;
 /// Relative change of the cost at which a candidate is ranked well enough.
 constexpr double kRankingTolerance = 1e-4;
 
-template <class Family>
-void sort_best_first(std::vector<Screened<Family>>& screened) {
-  std::erase_if(screened, [](const Screened<Family>& s) { return !s.good; });
+void sort_best_first(std::vector<Screened>& screened) {
+  std::erase_if(screened, [](const Screened& s) { return !s.good; });
   std::sort(screened.begin(), screened.end(),
-            [](const Screened<Family>& a, const Screened<Family>& b) { return a.criterion < b.criterion; });
+            [](const Screened& a, const Screened& b) { return a.criterion < b.criterion; });
 }
 
 /// True if a law's criterion is close enough to its name's best, of either sign.
 bool is_hopeful_law(double criterion, double best) { return criterion <= best + (1.0 - kHopeful) * std::abs(best); }
 
 /// True if two candidates have one of their own parameters, those from `first` on, in common.
-template <class Family>
-bool share_a_parameter(const Screened<Family>& one, const Screened<Family>& other, std::size_t first) {
-  const auto own = [&](const Screened<Family>& s) { return std::span(s.fitted.free).subspan(first); };
+bool share_a_parameter(const Screened& one, const Screened& other, std::size_t first) {
+  const auto own = [&](const Screened& s) { return std::span(s.fitted.free).subspan(first); };
   return std::ranges::any_of(own(one), [&](const FreeParameter& parameter) {
     return std::ranges::any_of(own(other), [&](const FreeParameter& p) { return p.is_same_as(parameter); });
   });
@@ -62,16 +60,14 @@ bool share_a_parameter(const Screened<Family>& one, const Screened<Family>& othe
 
 }  // namespace
 
-template <class Family>
-Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Family>& current, const Scales& scales,
-                             unsigned threads)
+Screening::Screening(const Evaluator& evaluator, const Fitted& current, const Scales& scales, unsigned threads)
     : evaluator_(evaluator), current_(current), scales_(scales), threads_(threads) {
   frozen_.u = current.u;
   std::vector<std::size_t> all(current.free.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  differentiate<Family>(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, frozen_.jacobian);
+  differentiate(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, frozen_.jacobian);
   evaluator.predict(current.base, current.free, current.u, threads, prediction_);
-  current_.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction_));
+  current_.temper = temper_of(evaluator, evaluator.residuals(prediction_));
   goodness_ = goodness(evaluator.data(), prediction_);
   frequencies_ = strongest_frequencies(evaluator.data(), prediction_, first_used(), kFrequencies);
 
@@ -93,7 +89,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   Eigen::VectorXd move;
   cost_ = eliminated_cost(evaluator.residuals(prediction_), move);
 
-  Screened<Family> unaided{{}, current_, 0.0, 0.0, true};
+  Screened unaided{{}, current_, 0.0, 0.0, true};
   for (std::size_t k = 0; k < frozen_.u.size(); ++k) {
     unaided.fitted.u[k] += move(static_cast<Eigen::Index>(k));
   }
@@ -107,8 +103,7 @@ Screening<Family>::Screening(const Evaluator<Family>& evaluator, const Fitted<Fa
   unaided_ = reached;
 }
 
-template <class Family>
-std::vector<std::vector<double>> Screening<Family>::sharpened_for(const std::vector<Candidate>& candidates) const {
+std::vector<std::vector<double>> Screening::sharpened_for(const std::vector<Candidate>& candidates) const {
   const Dataset& data = evaluator_.data();
   std::vector<std::vector<double>> sharpened(data.channels.size());
   for (const Candidate& candidate : candidates) {
@@ -122,10 +117,9 @@ std::vector<std::vector<double>> Screening<Family>::sharpened_for(const std::vec
   return sharpened;
 }
 
-template <class Family>
-std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate>& candidates, const std::string& stage,
-                                                     const Watch& watch) const {
-  std::vector<Screened<Family>> screened(candidates.size());
+std::vector<Screened> Screening::run(const std::vector<Candidate>& candidates, const std::string& stage,
+                                     const Watch& watch) const {
+  std::vector<Screened> screened(candidates.size());
   const std::vector<std::vector<double>> sharpened = sharpened_for(candidates);
   std::atomic<std::size_t> done{0};
   parallel_for(candidates.size(), threads_, [&](std::size_t i) {
@@ -140,7 +134,7 @@ std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate
   std::vector<double> reached;
   std::vector<std::size_t> semifinalists;
   for (std::size_t i = 0; i < screened.size(); ++i) {
-    const Screened<Family>& one = screened[i];
+    const Screened& one = screened[i];
     const bool hopeful = names.size() < kFirstNames || one.criterion < kHopeful * screened.front().criterion;
     auto name = std::find(names.begin(), names.end(), one.candidate.name);
     if (name == names.end() && names.size() < kSemifinalists && hopeful) {
@@ -153,7 +147,7 @@ std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate
   }
   done = 0;
   parallel_for(semifinalists.size(), threads_, [&](std::size_t i) {
-    Screened<Family>& semifinalist = screened[semifinalists[i]];
+    Screened& semifinalist = screened[semifinalists[i]];
     for (int pass = 0; pass < kFullFits && semifinalist.scanned && !watch.interrupted(); ++pass) {
       improve(semifinalist, Stage::full_fit);
     }
@@ -164,8 +158,7 @@ std::vector<Screened<Family>> Screening<Family>::run(const std::vector<Candidate
   return screened;
 }
 
-template <class Family>
-Eigen::VectorXd Screening<Family>::residuals_at_frozen(const Fitted<Family>& fitted) const {
+Eigen::VectorXd Screening::residuals_at_frozen(const Fitted& fitted) const {
   std::vector<double> u = fitted.u;
   std::copy(frozen_.u.begin(), frozen_.u.end(), u.begin());
   Prediction prediction;
@@ -175,23 +168,21 @@ Eigen::VectorXd Screening<Family>::residuals_at_frozen(const Fitted<Family>& fit
   return evaluator_.residuals(prediction);
 }
 
-template <class Family>
-double Screening<Family>::eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const {
+double Screening::eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const {
   const Eigen::VectorXd weighted = residual.cwiseProduct(weight_);
   const Eigen::VectorXd gradient = frozen_.jacobian.transpose() * weighted.cwiseProduct(weight_) + prior_gradient_;
   move = -normal_.solve(gradient);
   return weighted.squaredNorm() + gradient.dot(move);
 }
 
-template <class Family>
-Fitted<Family> Screening<Family>::with_candidate(const Candidate& candidate) const {
-  Fitted<Family> fitted = current_;
-  if (is_unlisted<Family>(candidate)) {
-    activate_unlisted<Family>(fitted.base, candidate, evaluator_.data(), current_);
+Fitted Screening::with_candidate(const Candidate& candidate) const {
+  Fitted fitted = current_;
+  if (is_unlisted(current_.base, candidate)) {
+    activate_unlisted(fitted.base, candidate, evaluator_.data(), current_);
   } else {
-    activate<Family>(fitted.base, candidate);
+    activate(fitted.base, candidate);
   }
-  const auto own = effect_parameters<Family>(fitted.base, candidate, scales_);
+  const auto own = effect_parameters(fitted.base, candidate, scales_);
   fitted.free.insert(fitted.free.end(), own.begin(), own.end());
   if (is_periodic(candidate)) {
     const auto phases = clocks(evaluator_.data());
@@ -200,9 +191,7 @@ Fitted<Family> Screening<Family>::with_candidate(const Candidate& candidate) con
   return fitted;
 }
 
-template <class Family>
-std::vector<typename Screening<Family>::Start> Screening<Family>::scan(
-    Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const {
+std::vector<Screening::Start> Screening::scan(Fitted fitted, const std::vector<std::vector<double>>& points) const {
   std::vector<Start> starts;
   Eigen::VectorXd move;
   for (const auto& point : points) {
@@ -222,13 +211,11 @@ std::vector<typename Screening<Family>::Start> Screening<Family>::scan(
   return starts;
 }
 
-template <class Family>
-Screened<Family> Screening<Family>::start(const Candidate& candidate,
-                                          const std::vector<std::vector<double>>& sharpened) const {
+Screened Screening::start(const Candidate& candidate, const std::vector<std::vector<double>>& sharpened) const {
   const Stopwatch stopwatch;
-  Screened<Family> best;
+  Screened best;
   best.candidate = candidate;
-  const Fitted<Family> fitted = with_candidate(candidate);
+  const Fitted fitted = with_candidate(candidate);
   const std::vector<FreeParameter> own(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
                                        fitted.free.end());
   const auto fields = static_cast<std::size_t>(std::count_if(
@@ -246,16 +233,16 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate,
       own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
   const std::size_t valleys = one_valley ? 1 : kStarts;
   const std::vector<Start> starts =
-      scan(fitted, is_periodic(candidate) ? periodic_starts<Family>(evaluator_, fitted, current_.free.size(),
-                                                                    sharpened[channel_of_sinusoid(candidate)])
-                                          : start_points(own, frequencies_));
+      scan(fitted, is_periodic(candidate)
+                       ? periodic_starts(evaluator_, fitted, current_.free.size(), sharpened[channel_of_sinusoid(candidate)])
+                       : start_points(own, frequencies_));
   // A table starts as nothing, and a frequency has to be met. Of any other law one of the starts is better than nothing, or
   // it is not what is missing.
   const bool searched =
       has_table || std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.unit == "Hz"; });
   const bool hopeless = !searched && !starts.empty() && starts.front().cost >= cost_;
   for (std::size_t i = 0; i < starts.size() && i < (hopeless ? 1 : valleys); ++i) {
-    Screened<Family> screened{candidate, fitted, 0.0, 0.0, true};
+    Screened screened{candidate, fitted, 0.0, 0.0, true};
     screened.fitted.u = starts[i].u;
     improve(screened, hopeless ? Stage::scan : Stage::short_fit);
     if (screened.good && (!best.good || screened.criterion < best.criterion)) {
@@ -266,10 +253,8 @@ Screened<Family> Screening<Family>::start(const Candidate& candidate,
   return best;
 }
 
-template <class Family>
-Screened<Family> Screening<Family>::restart(const Candidate& candidate, const std::vector<double>& own,
-                                            const Watch& watch) const {
-  const Fitted<Family> fitted = with_candidate(candidate);
+Screened Screening::restart(const Candidate& candidate, const std::vector<double>& own, const Watch& watch) const {
+  const Fitted fitted = with_candidate(candidate);
   const std::vector<FreeParameter> parameters(fitted.free.begin() + static_cast<std::ptrdiff_t>(current_.free.size()),
                                               fitted.free.end());
   std::vector<std::vector<double>> points = start_points(parameters, frequencies_);
@@ -281,7 +266,7 @@ Screened<Family> Screening<Family>::restart(const Candidate& candidate, const st
     }
   }
   const std::vector<Start> starts = scan(fitted, points);
-  std::vector<Screened<Family>> restarts;
+  std::vector<Screened> restarts;
   for (std::size_t i = 0; i < starts.size() && i < kRestarts; ++i) {
     restarts.push_back({candidate, fitted, 0.0, 0.0, true});
     restarts.back().fitted.u = starts[i].u;
@@ -299,30 +284,29 @@ Screened<Family> Screening<Family>::restart(const Candidate& candidate, const st
     }
   });
   sort_best_first(restarts);
-  Screened<Family> unmoved{candidate, fitted, 0.0, 0.0, true};
+  Screened unmoved{candidate, fitted, 0.0, 0.0, true};
   unmoved.fitted.u = frozen_.u;
   unmoved.fitted.u.insert(unmoved.fitted.u.end(), own.begin(), own.end());
   improve(unmoved, Stage::scan);
   const bool elsewhere =
       !restarts.empty() && (!unmoved.good || restarts.front().criterion < unmoved.criterion - policy().strong_evidence);
-  return elsewhere ? restarts.front() : Screened<Family>{candidate, fitted, 0.0, 0.0, false};
+  return elsewhere ? restarts.front() : Screened{candidate, fitted, 0.0, 0.0, false};
 }
 
 /// Laws of one effect share parameters and some contain others: each is fitted once more from where the best one ended.
-template <class Family>
-void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
-                                            const Watch& watch) const {
+void Screening::start_from_siblings(std::vector<Screened>& screened, const std::vector<std::string>& names,
+                                    const Watch& watch) const {
   const std::size_t first = current_.free.size();
-  const std::vector<Screened<Family>> ended = screened;
+  const std::vector<Screened> ended = screened;
   parallel_for(screened.size(), threads_, [&](std::size_t i) {
     const auto best = std::find_if(ended.begin(), ended.end(),
-                                   [&](const Screened<Family>& s) { return s.candidate.name == ended[i].candidate.name; });
+                                   [&](const Screened& s) { return s.candidate.name == ended[i].candidate.name; });
     const bool wanted = std::find(names.begin(), names.end(), ended[i].candidate.name) != names.end() &&
                         share_a_parameter(*best, ended[i], first);
     if (!wanted || best == ended.begin() + static_cast<std::ptrdiff_t>(i) || watch.interrupted()) {
       return;
     }
-    Screened<Family> again{ended[i].candidate, ended[i].fitted, 0.0, ended[i].seconds, true};
+    Screened again{ended[i].candidate, ended[i].fitted, 0.0, ended[i].seconds, true};
     for (std::size_t k = first; k < again.fitted.free.size(); ++k) {
       FreeParameter& parameter = again.fitted.free[k];
       again.fitted.u[k] = parameter.coordinate(std::clamp(parameter.unit_size, parameter.lower, parameter.upper));
@@ -343,14 +327,13 @@ void Screening<Family>::start_from_siblings(std::vector<Screened<Family>>& scree
   sort_best_first(screened);
 }
 
-template <class Family>
-void Screening<Family>::improve(Screened<Family>& screened, Stage stage) const {
+void Screening::improve(Screened& screened, Stage stage) const {
   if (!screened.good) {
     return;
   }
   const Stopwatch stopwatch;
   const int iterations = stage == Stage::scan ? 0 : stage == Stage::short_fit ? kShortFit : kFullFit;
-  Fitted<Family>& fitted = screened.fitted;
+  Fitted& fitted = screened.fitted;
   screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, Slopes::exact, &frozen_});
   Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
   if (residual.size() == 0) {
@@ -360,14 +343,13 @@ void Screening<Family>::improve(Screened<Family>& screened, Stage stage) const {
   const auto count = static_cast<Eigen::Index>(frozen_.u.size());
   residual += frozen_.jacobian * (Eigen::Map<const Eigen::VectorXd>(fitted.u.data(), count) -
                                   Eigen::Map<const Eigen::VectorXd>(frozen_.u.data(), count));
-  fitted.temper = temper_of<Family>(evaluator_, residual);
+  fitted.temper = temper_of(evaluator_, residual);
   screened.criterion = information_criterion(mean_squares(residual), goodness_.fitted, fitted.free.size()) -
                        unaided_[static_cast<std::size_t>(stage)];
   screened.seconds += stopwatch.seconds();
 }
 
-template <class Family>
-std::vector<ChannelFit> Screening<Family>::mean_squares(const Eigen::VectorXd& residual) const {
+std::vector<ChannelFit> Screening::mean_squares(const Eigen::VectorXd& residual) const {
   const std::vector<double> square = evaluator_.squares_by_channel(residual);
   std::vector<ChannelFit> part(square.size());
   for (const Stretch& s : evaluator_.stretches()) {
@@ -378,8 +360,5 @@ std::vector<ChannelFit> Screening<Family>::mean_squares(const Eigen::VectorXd& r
   }
   return part;
 }
-
-template class Screening<SimplexFamily>;
-template class Screening<DirectFamily>;
 
 }  // namespace hotfire::explain

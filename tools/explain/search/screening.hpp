@@ -14,10 +14,9 @@
 namespace hotfire::explain {
 
 /// A candidate added to the current model, fitted while all that was free before moves linearly.
-template <class Family>
 struct Screened {
   Candidate candidate;
-  Fitted<Family> fitted;
+  Fitted fitted;
   /// BIC less that of the current model, whose own parameters were moved by the same linear fits; negative is better.
   double criterion = 0.0;
   double seconds = 0.0;
@@ -37,19 +36,17 @@ struct Watch {
 ///
 /// Three stages: a scan of starts, short fits of all from their best starts, a full fit of the best names; the hopeless ones
 /// stop there.
-template <class Family>
 class Screening {
  public:
-  Screening(const Evaluator<Family>& evaluator, const Fitted<Family>& current, const Scales& scales, unsigned threads);
+  Screening(const Evaluator& evaluator, const Fitted& current, const Scales& scales, unsigned threads);
 
   /// Screens candidates and returns those that could be simulated, best first.
-  std::vector<Screened<Family>> run(const std::vector<Candidate>& candidates, const std::string& stage,
-                                    const Watch& watch) const;
+  std::vector<Screened> run(const std::vector<Candidate>& candidates, const std::string& stage, const Watch& watch) const;
 
   /// Fits an effect once more, from the best of its usual starts and of each of its parameters set a factor of five up and
   /// down from `own`: the way out of a local minimum. Not good if none ends clearly below `own`. The current model is to
   /// hold the effect with these values fixed.
-  Screened<Family> restart(const Candidate& candidate, const std::vector<double>& own, const Watch& watch) const;
+  Screened restart(const Candidate& candidate, const std::vector<double>& own, const Watch& watch) const;
 
  private:
   enum class Stage { scan, short_fit, full_fit };
@@ -62,8 +59,8 @@ class Screening {
 
   /// The channel whose spectrum says where a frequency starts.
   std::size_t first_used() const { return evaluator_.data().used.front() ? 0 : 1; }
-  Fitted<Family> with_candidate(const Candidate& candidate) const;
-  std::vector<Start> scan(Fitted<Family> fitted, const std::vector<std::vector<double>>& points) const;
+  Fitted with_candidate(const Candidate& candidate) const;
+  std::vector<Start> scan(Fitted fitted, const std::vector<std::vector<double>>& points) const;
   /// The channel that shows a sinusoid: a sensor's own shows in that sensor alone.
   std::size_t channel_of_sinusoid(const Candidate& candidate) const {
     return candidate.name == model::UnlistedRipple::name ? static_cast<std::size_t>(candidate.option) : first_used();
@@ -71,17 +68,16 @@ class Screening {
   /// Where the sinusoids of the candidates start, by channel.
   std::vector<std::vector<double>> sharpened_for(const std::vector<Candidate>& candidates) const;
   /// `sharpened`: where a sinusoid starts, by channel.
-  Screened<Family> start(const Candidate& candidate, const std::vector<std::vector<double>>& sharpened) const;
-  void start_from_siblings(std::vector<Screened<Family>>& screened, const std::vector<std::string>& names,
-                           const Watch& watch) const;
+  Screened start(const Candidate& candidate, const std::vector<std::vector<double>>& sharpened) const;
+  void start_from_siblings(std::vector<Screened>& screened, const std::vector<std::string>& names, const Watch& watch) const;
   /// Continues the fit of a candidate, as a stage does.
-  void improve(Screened<Family>& screened, Stage stage) const;
-  Eigen::VectorXd residuals_at_frozen(const Fitted<Family>& fitted) const;
+  void improve(Screened& screened, Stage stage) const;
+  Eigen::VectorXd residuals_at_frozen(const Fitted& fitted) const;
   double eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const;
   std::vector<ChannelFit> mean_squares(const Eigen::VectorXd& residual) const;
 
-  const Evaluator<Family>& evaluator_;
-  Fitted<Family> current_;  ///< tempered as this evaluator's rows are coloured
+  const Evaluator& evaluator_;
+  Fitted current_;  ///< tempered as this evaluator's rows are coloured
   const Scales& scales_;
   unsigned threads_;
   Frozen frozen_;
@@ -96,8 +92,5 @@ class Screening {
   /// BIC of the current model where its own parameters go in each stage without a candidate.
   std::array<double, kStages> unaided_{};
 };
-
-extern template class Screening<SimplexFamily>;
-extern template class Screening<DirectFamily>;
 
 }  // namespace hotfire::explain

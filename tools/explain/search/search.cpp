@@ -29,50 +29,42 @@ namespace {
 constexpr double kRankingPeriod = 2e-3;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
 /// were thinned by.
-template <class Family>
-constexpr bool kRankedCoarsely = !std::is_same_v<Family, DirectFamily>;
+bool is_ranked_coarsely(const ModelFile& model) { return is_hydraulic_axis(model.parameters); }
 
-template <class Family>
 Dataset for_ranking(const Dataset& data, const ModelFile& model) {
-  if constexpr (kRankedCoarsely<Family>) {
-    return thinned(data, kRankingPeriod * servo_time(std::get<PlainParameters<Family>>(model.parameters)));
-  } else {
-    return data;
-  }
+  return is_ranked_coarsely(model)
+             ? thinned(data, kRankingPeriod * servo_time(std::get<SimplexParameters>(model.parameters)))
+             : data;
 }
 
 /// The state of one search.
-template <class Family>
 class Search {
  public:
   Search(const Dataset& data, const ModelFile& model, const SearchOptions& options)
       : data_(data),
         model_(model),
         options_(options),
-        thin_(for_ranking<Family>(data, model)),
+        thin_(for_ranking(data, model)),
         fine_(data, Resolution::fine),
-        coarse_(thin_, kRankedCoarsely<Family> ? Resolution::coarse : Resolution::fine,
-                kRankedCoarsely<Family> ? Resolution::rough : Resolution::fine),
+        coarse_(thin_, is_ranked_coarsely(model) ? Resolution::coarse : Resolution::fine,
+                is_ranked_coarsely(model) ? Resolution::rough : Resolution::fine),
         rough_(thin_, Resolution::rough),
-        refiner_(data, kRankedCoarsely<Family> ? rough_ : coarse_, coarse_, fine_, scales_, options.threads, options.watch),
+        scales_(scales_of(model.parameters, data)),
+        refiner_(data, is_ranked_coarsely(model) ? rough_ : coarse_, coarse_, fine_, scales_, options.threads,
+                 options.watch),
         unlisted_(data, refiner_, coarse_, scales_, options, result_) {}
 
-  SearchResult<Family> run() {
-    if constexpr (std::is_same_v<Family, DirectFamily>) {
-      scales_ = scales_of(data_);
-    } else {
-      scales_ = scales_of(std::get<PlainParameters<Family>>(model_.parameters));
-    }
-    Fitted<Family> start;
-    start.base = std::get<PlainParameters<Family>>(model_.parameters);
-    start.free = declared_parameters<Family>(start.base, model_.tolerance);
+  SearchResult run() {
+    Fitted start;
+    start.base = model_.parameters;
+    start.free = declared_parameters(start.base, model_.tolerance);
     start.u.assign(start.free.size(), 0.0);
     for (const FreeParameter& state : initial_states(data_, scales_, start.u)) {
       start.free.push_back(state);
     }
     start.temper.assign(data_.channels.size(), 1.0);
     result_.declared = assess(fine_, options_.threads, start);
-    if constexpr (std::is_same_v<Family, SimplexFamily>) {
+    if (is_hydraulic_axis(start.base)) {
       refuse_impossible_channels(data_, result_.declared.prediction);
     }
     options_.watch.progress("calibrating the declared parameters within their tolerances");
@@ -88,7 +80,7 @@ class Search {
     }
     if (!result_.kept.empty() && !options_.watch.interrupted()) {
       settle();
-      for (const Rival<Family>& rival : earlier_rivals_) {
+      for (const Rival& rival : earlier_rivals_) {
         compare_with_earlier_rival(rival);
       }
     }
@@ -110,20 +102,20 @@ class Search {
   /// One round, of the effects at the sites where one signal explains what is missing, or of all where none does. False if
   /// no candidate is supported.
   bool add_effect(int round, const Located& where) {
-    const Fitted<Family>& current = result_.explained.model;
-    std::vector<Candidate> candidates = all_candidates<Family>(data_);
+    const Fitted& current = result_.explained.model;
+    std::vector<Candidate> candidates = all_candidates(current.base, data_);
     std::erase_if(candidates, [&](const Candidate& c) {
-      return current.base.effects.active[c.effect] || !has_what_it_carries<Family>(current.base, c) || goes_in_and_out(c) ||
+      return is_active(current.base, c.effect) || !has_what_it_carries(current.base, c) || goes_in_and_out(c) ||
              is_measured_load(data_, c.site) || where.refutes(c.site);
     });
     if (candidates.empty()) {
       return false;
     }
-    const Evaluator<Family> evaluator = refiner_.for_screening(current);
-    const Screening<Family> screening(evaluator, current, scales_, options_.threads);
+    const Evaluator evaluator = refiner_.for_screening(current);
+    const Screening screening(evaluator, current, scales_, options_.threads);
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
-    Round<Family> fits(round, data_, refiner_, result_.explained, std::move(screened), options_.watch);
-    RoundResult<Family> found = fits.run();
+    Round fits(round, data_, refiner_, result_.explained, std::move(screened), options_.watch);
+    RoundResult found = fits.run();
     result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());
     if (!found.kept) {
       return false;
@@ -169,13 +161,13 @@ class Search {
   }
 
   /// The effect to take out, by its place, and the model without it.
-  std::pair<std::size_t, Assessed<Family>> without_harm() {
+  std::pair<std::size_t, Assessed> without_harm() {
     if (result_.kept.size() == 1) {
       return {0, result_.calibrated};
     }
-    std::optional<std::pair<std::size_t, Assessed<Family>>> best;
+    std::optional<std::pair<std::size_t, Assessed>> best;
     for (std::size_t i = 0; i < result_.kept.size(); ++i) {
-      Assessed<Family> rest = refiner_.without(result_.explained.model, result_.kept[i].trial.candidate);
+      Assessed rest = refiner_.without(result_.explained.model, result_.kept[i].trial.candidate);
       const bool is_last = i + 1 == result_.kept.size();
       const bool is_harmless = rest.good() && harm_of(data_, rest.prediction, result_.calibrated.prediction).empty();
       const bool leaves_least =
@@ -195,11 +187,11 @@ class Search {
   }
 
   /// The declared model within its tolerances: fast records are dear, so the way there is made on thinned ones.
-  Assessed<Family> calibrated(const Fitted<Family>& declared) const {
+  Assessed calibrated(const Fitted& declared) const {
     if (fine_.fit_rows() == coarse_.fit_rows()) {
       return refiner_.settled(declared);
     }
-    const Assessed<Family> near = refiner_.ranked(declared, kRanking);
+    const Assessed near = refiner_.ranked(declared, kRanking);
     return refiner_.settled(near.good() ? near.model : declared);
   }
 
@@ -213,7 +205,7 @@ class Search {
     const int round = result_.trials.back().round;
     for (Kept& kept : result_.kept) {
       Candidate law = kept.trial.candidate;
-      Assessed<Family> simple = refiner_.by_simplest_law(result_.explained, law);
+      Assessed simple = refiner_.by_simplest_law(result_.explained, law);
       if (label(law) != label(kept.trial.candidate)) {
         give_law(kept.trial.candidate, {law, std::move(simple)}, round, words::LawChange::simpler);
       }
@@ -221,14 +213,14 @@ class Search {
     // Of effects that explain most of the error, a ripple may be as high as what they leave.
     const double height =
         std::max(policy().near_noise, policy().little_explained * excess_over_noise(data_, result_.calibrated.prediction));
-    Assessed<Family> beyond = refiner_.over_ripples(result_.explained, height);
+    Assessed beyond = refiner_.over_ripples(result_.explained, height);
     if (excess_over_noise(data_, beyond.prediction) < excess_over_noise(data_, result_.explained.prediction)) {
       take(refiner_.settled(beyond.model));
     }
   }
 
   /// Another fit of what was found, if it could be simulated.
-  void take(Assessed<Family> model) {
+  void take(Assessed model) {
     if (model.good()) {
       result_.explained = std::move(model);
     }
@@ -237,7 +229,7 @@ class Search {
   /// What an effect looked like while another was missing may be a local minimum now.
   void polish_earlier(int round) {
     for (std::size_t i = 0; i + 1 < result_.kept.size(); ++i) {
-      Assessed<Family> again = refiner_.from_other_starts(round, result_.explained, result_.kept[i].trial.candidate);
+      Assessed again = refiner_.from_other_starts(round, result_.explained, result_.kept[i].trial.candidate);
       if (Goodness::combined(again.goodness.fitted) < Goodness::combined(result_.explained.goodness.fitted)) {
         take(refiner_.settled(again.model));
       }
@@ -247,7 +239,7 @@ class Search {
 
   /// Gives an effect that was kept before a law with more parameters, if that is clearly better now.
   void take_richer_law(int round, Candidate& candidate) {
-    for (OfLaw<Family>& richer : refiner_.of_richer_laws(round, result_.explained, candidate)) {
+    for (OfLaw& richer : refiner_.of_richer_laws(round, result_.explained, candidate)) {
       Trial trial;
       compare(trial, richer.model, result_.explained, richer.model.goodness.fitted);
       if (is_supported(trial)) {
@@ -259,7 +251,7 @@ class Search {
 
   /// Whether what explained the records as well as an effect that was kept before still does with the later ones: it may be
   /// separated from it now, either way.
-  void compare_with_earlier_rival(const Rival<Family>& rival) {
+  void compare_with_earlier_rival(const Rival& rival) {
     const auto kept =
         std::ranges::find_if(result_.kept, [&](const Kept& k) { return k.trial.candidate.effect == rival.kept.effect; });
     const bool is_in = std::ranges::any_of(result_.kept, [&](const Kept& k) {
@@ -271,7 +263,7 @@ class Search {
     }
     Candidate& candidate = kept->trial.candidate;
     options_.watch.progress(fmt::format("is {} still as good as {}", label(rival.other), label(candidate)));
-    Assessed<Family> with = refiner_.in_place_of(result_.explained.model, candidate, rival.other, rival.model);
+    Assessed with = refiner_.in_place_of(result_.explained.model, candidate, rival.other, rival.model);
     if (!with.good()) {
       return;
     }
@@ -297,7 +289,7 @@ class Search {
       trial.decision = "tied";
       trial.reason = words::text(words::LawChange::rival_tied, label(candidate));
       if (!result_.rival) {
-        result_.rival = Rival<Family>{candidate, rival.other, std::move(with.model)};
+        result_.rival = Rival{candidate, rival.other, std::move(with.model)};
       }
     } else {
       trial.reason = words::text(words::LawChange::rival_separated, label(candidate));
@@ -306,7 +298,7 @@ class Search {
   }
 
   /// Gives an effect that was kept another law, and says why.
-  void give_law(Candidate& candidate, OfLaw<Family> other, int round, words::LawChange why) {
+  void give_law(Candidate& candidate, OfLaw other, int round, words::LawChange why) {
     if (!other.model.good()) {
       return;
     }
@@ -334,7 +326,7 @@ class Search {
           std::string(words::text(i == newest ? words::Reason::superfluous_newest : words::Reason::superfluous_earlier))};
       options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
       const Stopwatch stopwatch;
-      Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);
+      Assessed rest = refiner_.without(result_.explained.model, trial.candidate);
       if (rest.good()) {
         compare(trial, rest, result_.explained, rest.goodness.fitted);
       }
@@ -359,25 +351,21 @@ class Search {
   const ModelFile& model_;
   const SearchOptions& options_;
   const Dataset thin_;
-  Evaluator<Family> fine_;
-  Evaluator<Family> coarse_;
-  Evaluator<Family> rough_;
+  Evaluator fine_;
+  Evaluator coarse_;
+  Evaluator rough_;
   Scales scales_;
-  Refiner<Family> refiner_;
-  SearchResult<Family> result_;
-  std::vector<Rival<Family>> earlier_rivals_;  ///< of effects that were kept before the last
-  bool is_settled_ = true;                     ///< what was found was fitted with fine steps
-  UnlistedStage<Family> unlisted_;
+  Refiner refiner_;
+  SearchResult result_;
+  std::vector<Rival> earlier_rivals_;  ///< of effects that were kept before the last
+  bool is_settled_ = true;             ///< what was found was fitted with fine steps
+  UnlistedStage unlisted_;
 };
 
 }  // namespace
 
-template <class Family>
-SearchResult<Family> search(const Dataset& data, const ModelFile& model, const SearchOptions& options) {
-  return Search<Family>(data, model, options).run();
+SearchResult search(const Dataset& data, const ModelFile& model, const SearchOptions& options) {
+  return Search(data, model, options).run();
 }
-
-template SearchResult<SimplexFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
-template SearchResult<DirectFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
 
 }  // namespace hotfire::explain

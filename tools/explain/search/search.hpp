@@ -13,14 +13,13 @@
 
 namespace hotfire::explain {
 
-template <class Family>
 struct SearchResult {
-  Assessed<Family> declared;
-  Assessed<Family> calibrated;
-  Assessed<Family> explained;
+  Assessed declared;
+  Assessed calibrated;
+  Assessed explained;
   std::vector<Kept> kept;
   std::vector<Trial> trials;
-  std::optional<Rival<Family>> rival;    ///< of an effect that is kept, the last if that has one
+  std::optional<Rival> rival;            ///< of an effect that is kept, the last if that has one
   std::vector<Candidate> not_supported;  ///< effects of the declared model without which the error is the same
   Located located;       ///< where what the explained model is still missing acts; no places where nothing is
   Intervals profiles;    ///< of the explained model's parameters whose error is no parabola
@@ -40,10 +39,6 @@ struct SearchOptions {
 /// Calibrates the declared model within its tolerances, then adds effects one by one while the data support them: every
 /// candidate is screened, the best are fitted jointly with everything else, and one is kept if it lowers the BIC and the
 /// error on held-out blocks. An effect that a later one makes superfluous is taken out again.
-template <class Family>
-SearchResult<Family> search(const Dataset& data, const ModelFile& model, const SearchOptions& options);
-
-extern template SearchResult<SimplexFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
-extern template SearchResult<DirectFamily> search(const Dataset&, const ModelFile&, const SearchOptions&);
+SearchResult search(const Dataset& data, const ModelFile& model, const SearchOptions& options);
 
 }  // namespace hotfire::explain

@@ -23,7 +23,7 @@ constexpr double kReach = 100.0;
 /// The effect of the model that is a term at the form's site.
 std::optional<Candidate> candidate_of(const Form& form) {
   std::optional<Candidate> candidate;
-  const PlainParameters<SimplexFamily> neutral;
+  const SimplexParameters neutral;
   model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
     if constexpr (requires { E::is_term; }) {
       if (E::site == form.site && E::sensor_channel == form.channel) {
@@ -46,10 +46,10 @@ std::optional<Candidate> candidate_of(const Form& form) {
 }
 
 /// Puts a form's values into the term's parameters.
-void set_values(PlainParameters<SimplexFamily>& parameters, const Candidate& candidate, const ScoredForm& scored) {
+void set_values(ModelParameters& parameters, const Candidate& candidate, const ScoredForm& scored) {
   const Form& form = scored.form;
   const Eigen::VectorXd& coefficients = scored.score.coefficients;
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+  visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
     if constexpr (requires { E::is_term; }) {
       if (index != candidate.effect) {
         return;
@@ -70,16 +70,16 @@ void set_values(PlainParameters<SimplexFamily>& parameters, const Candidate& can
 }
 
 /// The coordinates of a term that a fit moves, each about the value that it has in `parameters`.
-std::vector<FreeParameter> free_parameters(const PlainParameters<SimplexFamily>& parameters, const Candidate& candidate,
-                                           const Form& form, const Scales& scales) {
-  std::vector<FreeParameter> free = effect_parameters<SimplexFamily>(parameters, candidate, scales);
+std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, const Candidate& candidate, const Form& form,
+                                           const Scales& scales) {
+  std::vector<FreeParameter> free = effect_parameters(parameters, candidate, scales);
   std::erase_if(free, [&](const FreeParameter& p) {
     const bool is_unused_gain = p.address.field == "gain" && !form.points.empty();
     // A sampling period has no derivative.
     return is_unused_gain || (form.memory.kind == model::Memory::hold && p.address.field == "time");
   });
   std::vector<double> values;
-  model::visit_values(parameters, [&](const double& value) { values.push_back(value); });
+  visit_values(parameters, [&](const double& value) { values.push_back(value); });
   double largest = 0.0;
   for (const FreeParameter& p : free) {
     largest = p.is_ordinate() ? std::max(largest, std::abs(values[p.index])) : largest;
@@ -100,16 +100,15 @@ std::vector<FreeParameter> free_parameters(const PlainParameters<SimplexFamily>&
   return free;
 }
 
-std::optional<Screened<SimplexFamily>> start_of(const Fitted<SimplexFamily>& around, const ScoredForm& scored,
-                                                const Scales& scales) {
+std::optional<Screened> start_of(const Fitted& around, const ScoredForm& scored, const Scales& scales) {
   const std::optional<Candidate> candidate = candidate_of(scored.form);
-  if (!candidate || around.base.effects.active[candidate->effect] || !scored.score.coefficients.allFinite()) {
+  if (!candidate || is_active(around.base, candidate->effect) || !scored.score.coefficients.allFinite()) {
     return std::nullopt;
   }
-  Screened<SimplexFamily> start;
+  Screened start;
   start.candidate = *candidate;
   start.fitted = around;
-  activate<SimplexFamily>(start.fitted.base, *candidate);
+  activate(start.fitted.base, *candidate);
   set_values(start.fitted.base, *candidate, scored);
   Eigen::Index declared = 0;
   for (std::size_t k = 0; k < around.free.size(); ++k) {
@@ -118,7 +117,7 @@ std::optional<Screened<SimplexFamily>> start_of(const Fitted<SimplexFamily>& aro
     }
   }
   std::vector<double> values;
-  model::visit_values(start.fitted.base, [&](const double& value) { values.push_back(value); });
+  visit_values(start.fitted.base, [&](const double& value) { values.push_back(value); });
   for (const FreeParameter& p : free_parameters(start.fitted.base, *candidate, scored.form, scales)) {
     start.fitted.u.push_back(p.coordinate(std::clamp(values[p.index], p.lower, p.upper)));
     start.fitted.free.push_back(p);
@@ -130,11 +129,10 @@ std::optional<Screened<SimplexFamily>> start_of(const Fitted<SimplexFamily>& aro
 
 }  // namespace
 
-std::vector<Screened<SimplexFamily>> propose_terms(const Dataset& data, const Fitted<SimplexFamily>& around,
-                                                   const Located& located, const Scales& scales, unsigned threads,
-                                                   const Watch& watch) {
+std::vector<Screened> propose_terms(const Dataset& data, const Fitted& around, const Located& located, const Scales& scales,
+                                    unsigned threads, const Watch& watch) {
   const Dataset thin = thinned_to_rows(data, kMostRows);
-  std::vector<Screened<SimplexFamily>> proposals;
+  std::vector<Screened> proposals;
   const LatentProblem problem = latent_problem(thin, around, threads);
   if (problem.flows.empty()) {
     return proposals;

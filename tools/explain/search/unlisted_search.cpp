@@ -26,8 +26,7 @@ namespace hotfire::explain {
 namespace {
 
 /// Sets how a term of unknown law does against the model that it is tried beside, and says so.
-template <class Family>
-void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<Family>& beside) {
+void compare_and_say(Trial& trial, const Assessed& with, const Assessed& beside) {
   compare(trial, with, beside, with.goodness.fitted);
   trial.reason = words::leaves(trial.held_out_ratio);
 }
@@ -36,9 +35,8 @@ void compare_and_say(Trial& trial, const Assessed<Family>& with, const Assessed<
 constexpr std::size_t kTermFinalists = 2;
 /// True if a term on a signal makes it fall where it is asked to rise. No amplifier and no valve does: such a table imitates
 /// something that it does not depend on, and an axis that meets it beyond these records sticks where it falls.
-template <class Family>
-bool falls_as_it_rises(const Fitted<Family>& model, const Candidate& candidate) {
-  const auto table = table_of<Family>(Evaluator<Family>::with_values(model.base, model.free, model.u), candidate);
+bool falls_as_it_rises(const Fitted& model, const Candidate& candidate) {
+  const auto table = table_of(model.parameters(), candidate);
   if (!table || table->x_name != "value") {
     return false;
   }
@@ -52,17 +50,16 @@ bool falls_as_it_rises(const Fitted<Family>& model, const Candidate& candidate) 
 /// Proposed terms in the order of what they leave as they were proposed, simulated: the order of a linear regression is
 /// often wrong near its top, and a term that it proposes may make the axis run away. Those that leave no less than the model
 /// without them are not among them.
-std::vector<Screened<SimplexFamily>> by_simulation(const Evaluator<SimplexFamily>& evaluator,
-                                                   const Fitted<SimplexFamily>& around,
-                                                   std::vector<Screened<SimplexFamily>> proposals, unsigned threads) {
-  const auto left_by = [&](const Fitted<SimplexFamily>& model) {
+std::vector<Screened> by_simulation(const Evaluator& evaluator, const Fitted& around, std::vector<Screened> proposals,
+                                    unsigned threads) {
+  const auto left_by = [&](const Fitted& model) {
     Prediction prediction;
     return evaluator.predict(model.base, model.free, model.u, threads, prediction)
                ? Goodness::combined(goodness(evaluator.data(), prediction).fitted)
                : std::numeric_limits<double>::infinity();
   };
   const double without = left_by(around);
-  for (Screened<SimplexFamily>& proposal : proposals) {
+  for (Screened& proposal : proposals) {
     proposal.criterion = left_by(proposal.fitted);
   }
   std::erase_if(proposals, [&](const auto& proposal) { return !(proposal.criterion < without); });
@@ -80,7 +77,7 @@ std::vector<Screened<SimplexFamily>> by_simulation(const Evaluator<SimplexFamily
 }
 
 /// How many of them are fitted: one of every site, and two at least.
-std::size_t terms_to_fit(const std::vector<Screened<SimplexFamily>>& proposals) {
+std::size_t terms_to_fit(const std::vector<Screened>& proposals) {
   std::set<std::string> sites;
   for (const auto& proposal : proposals) {
     sites.insert(proposal.candidate.site);
@@ -90,12 +87,11 @@ std::size_t terms_to_fit(const std::vector<Screened<SimplexFamily>>& proposals) 
 
 /// Fits the first `most` of what was screened with everything else, and files all of them. Those behind one that leaves no
 /// more than noise are not fitted: they promised less.
-template <class Family>
-void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& beside,
-                   std::span<const double> frozen, std::vector<Screened<Family>> screened, std::size_t most,
-                   const Effort& effort, int round, const Watch& watch, UnlistedSearch<Family>& result) {
+void fit_finalists(const Dataset& data, const Refiner& refiner, const Assessed& beside, std::span<const double> frozen,
+                   std::vector<Screened> screened, std::size_t most, const Effort& effort, int round, const Watch& watch,
+                   UnlistedSearch& result) {
   std::size_t fitted = 0;
-  for (Screened<Family>& s : screened) {
+  for (Screened& s : screened) {
     Trial trial{round, s.candidate, false,     s.criterion,
                 1.0,   s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
     double left = std::numeric_limits<double>::infinity();
@@ -104,16 +100,14 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
       ++fitted;
       watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
       const Stopwatch stopwatch;
-      Assessed<Family> finalist = refiner.of_screened(s.fitted, frozen, effort);
+      Assessed finalist = refiner.of_screened(s.fitted, frozen, effort);
       trial.seconds += stopwatch.seconds();
       if (finalist.good()) {
         compare_and_say(trial, finalist, beside);
         left = excess_over_noise(data, finalist.prediction);
         if (falls_as_it_rises(finalist.model, s.candidate)) {
           trial.reason += words::text(words::Reason::falls_as_it_rises);
-        } else if (feeds_energy<Family>(
-                       Evaluator<Family>::with_values(finalist.model.base, finalist.model.free, finalist.model.u),
-                       s.candidate)) {
+        } else if (feeds_energy(finalist.model.parameters(), s.candidate)) {
           trial.reason += words::text(words::Reason::feeds_energy);
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
@@ -127,8 +121,7 @@ void fit_finalists(const Dataset& data, const Refiner<Family>& refiner, const As
 }
 
 /// Marks the terms at other sites that the records do not separate from the best.
-template <class Family>
-void mark_tied_sites(UnlistedSearch<Family>& result) {
+void mark_tied_sites(UnlistedSearch& result) {
   const double most = std::max(policy().visible, result.left[*result.best] / policy().clearly_less);
   for (std::size_t i = 0; i < result.trials.size(); ++i) {
     Trial& trial = result.trials[i];
@@ -141,24 +134,20 @@ void mark_tied_sites(UnlistedSearch<Family>& result) {
 
 }  // namespace
 
-template <class Family>
-bool UnlistedSearch<Family>::leaves_less_than(double share) const {
+bool UnlistedSearch::leaves_less_than(double share) const {
   return best && trials[*best].delta_criterion < -policy().strong_evidence && trials[*best].held_out_ratio < share;
 }
 
-template <class Family>
-bool UnlistedSearch<Family>::reaches_noise(const Dataset& data) const {
+bool UnlistedSearch::reaches_noise(const Dataset& data) const {
   return best && excess_over_noise(data, model.prediction) < policy().nothing_left;
 }
 
-template <class Family>
-UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family>& refiner, const Assessed<Family>& beside,
-                                       const Located& located, const Scales& scales, unsigned threads, const Watch& watch,
-                                       int round) {
-  const Fitted<Family> around = is_within_tolerances(beside.model) ? beside.model : with_declared_values(beside.model);
-  const Evaluator<Family> evaluator = refiner.for_screening(around);
-  UnlistedSearch<Family> result;
-  if constexpr (std::is_same_v<Family, SimplexFamily>) {
+UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, const Assessed& beside, const Located& located,
+                               const Scales& scales, unsigned threads, const Watch& watch, int round) {
+  const Fitted around = is_within_tolerances(beside.model) ? beside.model : with_declared_values(beside.model);
+  const Evaluator evaluator = refiner.for_screening(around);
+  UnlistedSearch result;
+  if (is_hydraulic_axis(around.base)) {
     auto proposals = propose_terms(evaluator.data(), around, located, scales, threads, watch);
     proposals = by_simulation(evaluator, around, std::move(proposals), threads);
     const std::size_t wanted = terms_to_fit(proposals);
@@ -166,10 +155,10 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
   }
   // A law that somebody has named is one more hypothesis as long as the grammar leaves more than noise.
   if (!result.reaches_noise(data)) {
-    const Screening<Family> screening(evaluator, around, scales, threads);
-    std::vector<Candidate> candidates = unlisted_candidates<Family>(data);
+    const Screening screening(evaluator, around, scales, threads);
+    std::vector<Candidate> candidates = unlisted_candidates(around.base, data);
     std::erase_if(candidates, [&](const Candidate& candidate) {
-      return around.base.effects.active[candidate.effect] || !located.allows(candidate.site) ||
+      return is_active(around.base, candidate.effect) || !located.allows(candidate.site) ||
              is_measured_load(data, candidate.site);
     });
     auto screened = screening.run(candidates, "unlisted", watch);
@@ -179,13 +168,13 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
   if (result.best) {
     mark_tied_sites(result);
     Trial& best = result.trials[*result.best];
-    Assessed<Family> settled = refiner.settled(result.model.model);
+    Assessed settled = refiner.settled(result.model.model);
     if (settled.good()) {
       compare_and_say(best, settled, beside);
       result.model = std::move(settled);
     }
     if (is_periodic(best.candidate)) {
-      Assessed<Family> common = refiner.settled(with_common_phase(data, result.model.model, best.candidate));
+      Assessed common = refiner.settled(with_common_phase(data, result.model.model, best.candidate));
       if (common.good() && criterion_change(common, result.model, result.model.goodness.fitted) <= 0.0) {
         compare_and_say(best, common, beside);
         result.model = std::move(common);
@@ -194,14 +183,5 @@ UnlistedSearch<Family> search_unlisted(const Dataset& data, const Refiner<Family
   }
   return result;
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                                                                \
-  template struct UnlistedSearch<Family>;                                                                          \
-  template UnlistedSearch<Family> search_unlisted(const Dataset&, const Refiner<Family>&, const Assessed<Family>&, \
-                                                  const Located&, const Scales&, unsigned, const Watch&, int);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

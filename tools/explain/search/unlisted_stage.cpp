@@ -31,8 +31,7 @@ bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names)
 
 }  // namespace
 
-template <class Family>
-void UnlistedStage<Family>::replace_names_that_explain_little() {
+void UnlistedStage::replace_names_that_explain_little() {
   if (left_by_listed() <= policy().little_explained || !is_worth_a_table() || options_.watch.interrupted()) {
     return;
   }
@@ -42,8 +41,7 @@ void UnlistedStage<Family>::replace_names_that_explain_little() {
   }
 }
 
-template <class Family>
-void UnlistedStage<Family>::finish() {
+void UnlistedStage::finish() {
   if (is_worth_a_table() && !options_.watch.interrupted()) {
     refuse_misplaced_names();
     look_instead();
@@ -58,8 +56,7 @@ void UnlistedStage<Family>::finish() {
 }
 
 /// True if more than noise is left, or less by declared parameters far from their declaration.
-template <class Family>
-bool UnlistedStage<Family>::is_worth_a_table() const {
+bool UnlistedStage::is_worth_a_table() const {
   return data_.knows_unlisted() && !reaches_noise(data_, result_.explained) &&
          (excess_over_noise(data_, result_.explained.prediction) > policy().visible ||
           !is_within_tolerances(result_.explained.model));
@@ -67,46 +64,37 @@ bool UnlistedStage<Family>::is_worth_a_table() const {
 
 /// True if a model leaves less than `share` of what the explained one leaves beyond noise. Noise itself cannot be explained:
 /// near it the whole error hardly falls.
-template <class Family>
-bool UnlistedStage<Family>::leaves_clearly_less(const Assessed<Family>& model, double share) const {
+bool UnlistedStage::leaves_clearly_less(const Assessed& model, double share) const {
   const double left = excess_over_noise(data_, result_.explained.prediction);
   return left > policy().visible && excess_over_noise(data_, model.prediction) < share * left &&
          held_out_ratio(model, result_.explained) < policy().held_out_less;
 }
 
 /// The share of what the listed effects leave that a term of unknown law has to stay below.
-template <class Family>
-double UnlistedStage<Family>::advantage() const {
+double UnlistedStage::advantage() const {
   return !result_.kept.empty() && left_by_listed() > policy().little_explained ? policy().held_out_less
                                                                                : policy().clearly_less;
 }
 
-template <class Family>
-Located UnlistedStage<Family>::locate_about(const Assessed<Family>& model) const {
-  if constexpr (std::is_same_v<Family, SimplexFamily>) {
-    options_.watch.progress("locating what is missing");
-    return locate(coarse_.data(), is_within_tolerances(model.model) ? model.model : with_declared_values(model.model),
-                  options_.threads);
-  } else {
+Located UnlistedStage::locate_about(const Assessed& model) const {
+  if (!is_hydraulic_axis(model.model.base)) {
     return {};
   }
+  options_.watch.progress("locating what is missing");
+  return locate(coarse_.data(), is_within_tolerances(model.model) ? model.model : with_declared_values(model.model),
+                options_.threads);
 }
 
-template <class Family>
-const Located& UnlistedStage<Family>::located() {
+const Located& UnlistedStage::located() {
   if (!located_) {
     located_ = locate_about(result_.calibrated);
   }
   return *located_;
 }
 
-template <class Family>
-Located UnlistedStage<Family>::locate_explained() {
-  return result_.kept.empty() ? located() : locate_about(result_.explained);
-}
+Located UnlistedStage::locate_explained() { return result_.kept.empty() ? located() : locate_about(result_.explained); }
 
-template <class Family>
-void UnlistedStage<Family>::take_out_names(const std::string& why) {
+void UnlistedStage::take_out_names(const std::string& why) {
   const int round = result_.next_round();
   for (const Kept& kept : result_.kept) {
     Trial trial{round, kept.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", why};
@@ -119,8 +107,7 @@ void UnlistedStage<Family>::take_out_names(const std::string& why) {
 }
 
 /// One signal at a likely place explains all that is missing: names elsewhere imitate it.
-template <class Family>
-void UnlistedStage<Family>::refuse_misplaced_names() {
+void UnlistedStage::refuse_misplaced_names() {
   const bool misplaced = std::ranges::any_of(
       result_.kept, [&](const Kept& kept) { return located().is_single && !located().allows(kept.trial.candidate.site); });
   if (misplaced) {
@@ -129,8 +116,7 @@ void UnlistedStage<Family>::refuse_misplaced_names() {
 }
 
 /// Searches for a term of unknown law instead of the listed effects: once, since it is beside the calibrated model.
-template <class Family>
-void UnlistedStage<Family>::look_instead() {
+void UnlistedStage::look_instead() {
   if (!instead_) {
     instead_ = search_unlisted(data_, refiner_, result_.calibrated, located(), scales_, options_.threads, options_.watch,
                                result_.next_round());
@@ -141,8 +127,7 @@ void UnlistedStage<Family>::look_instead() {
 
 /// A term of unknown law takes the place of the listed effects where it leaves clearly less on held-out data: listed effects
 /// that imitate it would be wrong names.
-template <class Family>
-void UnlistedStage<Family>::take_instead_if_better() {
+void UnlistedStage::take_instead_if_better() {
   const double listed = left_by_listed();
   const bool is_same = instead_->best && is_curve_of_the_same(instead_->trials[*instead_->best].candidate, result_.kept);
   const double share = is_same ? policy().little_explained : advantage();
@@ -162,8 +147,7 @@ void UnlistedStage<Family>::take_instead_if_better() {
   keep(*instead_, instead_trials_);
 }
 
-template <class Family>
-void UnlistedStage<Family>::keep(const UnlistedSearch<Family>& found, std::size_t first_trial) {
+void UnlistedStage::keep(const UnlistedSearch& found, std::size_t first_trial) {
   Trial& best = result_.trials[first_trial + *found.best];
   best.decision = "kept";
   Kept kept{best, {}};
@@ -177,29 +161,26 @@ void UnlistedStage<Family>::keep(const UnlistedSearch<Family>& found, std::size_
 }
 
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
-template <class Family>
-void UnlistedStage<Family>::add_beside() {
-  if constexpr (std::is_same_v<Family, SimplexFamily>) {
-    while (!result_.kept.empty() && static_cast<int>(result_.kept.size()) < options_.most_effects &&
-           excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
-      const UnlistedSearch<Family> beside = search_unlisted(data_, refiner_, result_.explained, locate_explained(), scales_,
-                                                            options_.threads, options_.watch, result_.next_round());
-      const std::size_t first = result_.trials.size();
-      result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
-      if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||
-          !harm_of(data_, beside.model.prediction, result_.calibrated.prediction).empty()) {
-        return;
-      }
-      result_.rival.reset();
-      keep(beside, first);
+void UnlistedStage::add_beside() {
+  while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
+         static_cast<int>(result_.kept.size()) < options_.most_effects &&
+         excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
+    const UnlistedSearch beside = search_unlisted(data_, refiner_, result_.explained, locate_explained(), scales_,
+                                                  options_.threads, options_.watch, result_.next_round());
+    const std::size_t first = result_.trials.size();
+    result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
+    if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||
+        !harm_of(data_, beside.model.prediction, result_.calibrated.prediction).empty()) {
+      return;
     }
+    result_.rival.reset();
+    keep(beside, first);
   }
 }
 
 /// A name beside a term of unknown law that hardly leaves more without it is the term's.
-template <class Family>
-void UnlistedStage<Family>::drop_light_names() {
-  const auto unlisted = [](const Kept& kept) { return is_unlisted<Family>(kept.trial.candidate); };
+void UnlistedStage::drop_light_names() {
+  const auto unlisted = [&](const Kept& kept) { return is_unlisted(result_.explained.model.base, kept.trial.candidate); };
   if (std::ranges::none_of(result_.kept, unlisted)) {
     return;
   }
@@ -215,7 +196,7 @@ void UnlistedStage<Family>::drop_light_names() {
                 0.0,
                 "taken out",
                 std::string(words::text(words::Reason::beside_unlisted))};
-    Assessed<Family> rest = refiner_.without(result_.explained.model, trial.candidate);
+    Assessed rest = refiner_.without(result_.explained.model, trial.candidate);
     if (!rest.good()) {
       continue;
     }
@@ -223,25 +204,21 @@ void UnlistedStage<Family>::drop_light_names() {
     if (policy().clearly_less * trial.held_out_ratio < 1.0) {
       result_.trials.push_back(std::move(trial));
       result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
-      Assessed<Family> settled = refiner_.settled(rest.model);
+      Assessed settled = refiner_.settled(rest.model);
       result_.explained = settled.good() ? std::move(settled) : std::move(rest);
     }
   }
 }
 
 /// Names that leave most of the error, and far more than noise, are not what is missing: saying less is no error.
-template <class Family>
-void UnlistedStage<Family>::drop_names_that_explain_little() {
-  const bool names_alone = !result_.kept.empty() && std::ranges::none_of(result_.kept, [](const Kept& kept) {
-    return is_unlisted<Family>(kept.trial.candidate);
+void UnlistedStage::drop_names_that_explain_little() {
+  const bool names_alone = !result_.kept.empty() && std::ranges::none_of(result_.kept, [&](const Kept& kept) {
+    return is_unlisted(result_.explained.model.base, kept.trial.candidate);
   });
   if (names_alone && left_by_listed() > policy().little_explained &&
       excess_over_noise(data_, result_.explained.prediction) > policy().near_noise) {
     take_out_names(words::leaves_far_above_noise(left_by_listed()));
   }
 }
-
-template class UnlistedStage<SimplexFamily>;
-template class UnlistedStage<DirectFamily>;
 
 }  // namespace hotfire::explain

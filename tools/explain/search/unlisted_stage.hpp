@@ -10,12 +10,11 @@ namespace hotfire::explain {
 
 /// The part of a search that knows no names: where the missing term acts, terms of unknown law there, instead of listed
 /// effects or beside them, and which names the records do not bear.
-template <class Family>
 class UnlistedStage {
  public:
   /// Works on `result`; all are to outlive it.
-  UnlistedStage(const Dataset& data, const Refiner<Family>& refiner, const Evaluator<Family>& coarse, const Scales& scales,
-                const SearchOptions& options, SearchResult<Family>& result)
+  UnlistedStage(const Dataset& data, const Refiner& refiner, const Evaluator& coarse, const Scales& scales,
+                const SearchOptions& options, SearchResult& result)
       : data_(data), refiner_(refiner), coarse_(coarse), scales_(scales), options_(options), result_(result) {}
 
   /// Ends a search early: where the names so far explain little and one term of unknown law leaves only noise, it takes
@@ -39,8 +38,8 @@ class UnlistedStage {
   bool is_worth_a_table() const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
   double advantage() const;
-  bool leaves_clearly_less(const Assessed<Family>& model, double share) const;
-  Located locate_about(const Assessed<Family>& model) const;
+  bool leaves_clearly_less(const Assessed& model, double share) const;
+  Located locate_about(const Assessed& model) const;
   const Located& located();
   void take_out_names(const std::string& why);
   void refuse_misplaced_names();
@@ -49,20 +48,17 @@ class UnlistedStage {
   void add_beside();
   void drop_light_names();
   void drop_names_that_explain_little();
-  void keep(const UnlistedSearch<Family>& found, std::size_t first_trial);
+  void keep(const UnlistedSearch& found, std::size_t first_trial);
 
   const Dataset& data_;
-  const Refiner<Family>& refiner_;
-  const Evaluator<Family>& coarse_;
+  const Refiner& refiner_;
+  const Evaluator& coarse_;
   const Scales& scales_;
   const SearchOptions& options_;
-  SearchResult<Family>& result_;
-  std::optional<Located> located_;                 ///< about the calibrated model, once it was asked for
-  std::optional<UnlistedSearch<Family>> instead_;  ///< beside the calibrated model, once it was searched for
-  std::size_t instead_trials_ = 0;                 ///< where its trials are among all
+  SearchResult& result_;
+  std::optional<Located> located_;         ///< about the calibrated model, once it was asked for
+  std::optional<UnlistedSearch> instead_;  ///< beside the calibrated model, once it was searched for
+  std::size_t instead_trials_ = 0;         ///< where its trials are among all
 };
-
-extern template class UnlistedStage<SimplexFamily>;
-extern template class UnlistedStage<DirectFamily>;
 
 }  // namespace hotfire::explain

@@ -18,29 +18,28 @@ constexpr double kStillFalling = 0.95;
 
 }  // namespace
 
-template <class Family>
-Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted) {
-  Assessed<Family> assessed{fitted, {}, {}};
+Assessed assess(const Evaluator& fine, unsigned threads, const Fitted& fitted) {
+  Assessed assessed{fitted, {}, {}};
   fine.predict(fitted.base, fitted.free, fitted.u, threads, assessed.prediction, assessed.zeros);
   assessed.goodness = goodness(fine.data(), assessed.prediction);
   return assessed;
 }
 
-template <class Family>
-Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
-                         Fitted<Family> fitted, const Effort& effort) {
+Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned threads, Fitted fitted, const Effort& effort) {
+  Assessed failed;
+  failed.model.base = fitted.base;
   Prediction prediction;
   if (!evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
-    return {};
+    return failed;
   }
-  fitted.temper = temper_of<Family>(evaluator, evaluator.residuals(prediction));
+  fitted.temper = temper_of(evaluator, evaluator.residuals(prediction));
   double left = Goodness::combined(goodness(evaluator.data(), prediction).fitted);
   for (int pass = 0; pass < effort.passes; ++pass) {
     if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, effort.slopes, nullptr}) ||
         !evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
-      return {};
+      return failed;
     }
-    const Temper next = temper_of<Family>(evaluator, evaluator.residuals(prediction));
+    const Temper next = temper_of(evaluator, evaluator.residuals(prediction));
     double change = 0.0;
     for (std::size_t c = 0; c < next.size(); ++c) {
       change = std::max(change, std::abs(std::log(next[c] / fitted.temper[c])));
@@ -54,13 +53,11 @@ Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Fam
   return assess(fine, threads, fitted);
 }
 
-template <class Family>
-bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed) {
+bool reaches_noise(const Dataset& data, const Assessed& assessed) {
   return excess_over_noise(data, assessed.prediction) <= (assessed.model.chaotic ? policy().chaotic : policy().immaterial);
 }
 
-template <class Family>
-Moved farthest_from_declared(const Fitted<Family>& model) {
+Moved farthest_from_declared(const Fitted& model) {
   Moved farthest;
   for (std::size_t k = 0; k < model.free.size(); ++k) {
     const double tolerances = std::abs(model.free[k].surprise(model.u[k]));
@@ -71,27 +68,23 @@ Moved farthest_from_declared(const Fitted<Family>& model) {
   return farthest;
 }
 
-template <class Family>
-bool is_within_tolerances(const Fitted<Family>& model) {
+bool is_within_tolerances(const Fitted& model) {
   return farthest_from_declared(model).tolerances <= policy().farthest_from_declared;
 }
 
-template <class Family>
-bool is_complete(const Dataset& data, const Assessed<Family>& assessed) {
+bool is_complete(const Dataset& data, const Assessed& assessed) {
   return reaches_noise(data, assessed) && is_within_tolerances(assessed.model);
 }
 
-template <class Family>
-Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate) {
-  Fitted<Family> rest = model;
-  rest.base = Evaluator<Family>::with_values(rest.base, rest.free, rest.u);
-  rest.base.effects.active[candidate.effect] = false;
+Fitted without_effect(const Fitted& model, const Candidate& candidate) {
+  Fitted rest = model;
+  rest.base = rest.parameters();
+  set_active(rest.base, candidate.effect, false);
   drop_parameters(rest, [&](const FreeParameter& parameter) { return parameter.is_of_effect(candidate.effect); });
   return rest;
 }
 
-template <class Family>
-Fitted<Family> with_declared_values(Fitted<Family> model) {
+Fitted with_declared_values(Fitted model) {
   for (std::size_t k = 0; k < model.free.size(); ++k) {
     if (model.free[k].is_declared()) {
       model.u[k] = 0.0;
@@ -100,8 +93,7 @@ Fitted<Family> with_declared_values(Fitted<Family> model) {
   return model;
 }
 
-template <class Family>
-bool is_far_from_declared(const Fitted<Family>& model) {
+bool is_far_from_declared(const Fitted& model) {
   double count = 0.0;
   double square = 0.0;
   for (std::size_t k = 0; k < model.free.size(); ++k) {
@@ -113,42 +105,19 @@ bool is_far_from_declared(const Fitted<Family>& model) {
   return square > count;
 }
 
-template <class Family>
-Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second) {
+Assessed better_of(Assessed first, Assessed second) {
   const bool better =
       second.good() && Goodness::combined(second.goodness.fitted) < Goodness::combined(first.goodness.fitted);
   return better ? std::move(second) : std::move(first);
 }
 
-template <class Family>
-double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
-                        const std::vector<ChannelFit>& effective) {
+double criterion_change(const Assessed& with, const Assessed& without, const std::vector<ChannelFit>& effective) {
   return information_criterion(with.goodness.fitted, effective, with.model.free.size()) -
          information_criterion(without.goodness.fitted, effective, without.model.free.size());
 }
 
-template <class Family>
-double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without) {
+double held_out_ratio(const Assessed& with, const Assessed& without) {
   return error_ratio(with.goodness.held_out, without.goodness.held_out);
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                                                                   \
-  template Assessed<Family> assess(const Evaluator<Family>&, unsigned, const Fitted<Family>&);                        \
-  template Assessed<Family> refined(const Evaluator<Family>&, const Evaluator<Family>&, unsigned, Fitted<Family>,     \
-                                    const Effort&);                                                                   \
-  template bool reaches_noise(const Dataset&, const Assessed<Family>&);                                               \
-  template Moved farthest_from_declared(const Fitted<Family>&);                                                       \
-  template bool is_within_tolerances(const Fitted<Family>&);                                                          \
-  template bool is_complete(const Dataset&, const Assessed<Family>&);                                                 \
-  template Fitted<Family> without_effect(const Fitted<Family>&, const Candidate&);                                    \
-  template Fitted<Family> with_declared_values(Fitted<Family>);                                                       \
-  template bool is_far_from_declared(const Fitted<Family>&);                                                          \
-  template Assessed<Family> better_of(Assessed<Family>, Assessed<Family>);                                            \
-  template double criterion_change(const Assessed<Family>&, const Assessed<Family>&, const std::vector<ChannelFit>&); \
-  template double held_out_ratio(const Assessed<Family>&, const Assessed<Family>&);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

@@ -10,9 +10,8 @@
 namespace hotfire::explain {
 
 /// A fitted model with what it predicts and how well.
-template <class Family>
 struct Assessed {
-  Fitted<Family> model;
+  Fitted model;
   Prediction prediction;
   Goodness goodness;
   Zeros zeros{};  ///< of the records under this model
@@ -35,18 +34,14 @@ inline constexpr Effort kFinal{30, 3, 1e-5};                      ///< what the 
 inline constexpr Effort kAllRows{16, 1, 1e-5};                    ///< a small move: to the rows that were held out
 
 /// A model with what it predicts under fine steps.
-template <class Family>
-Assessed<Family> assess(const Evaluator<Family>& fine, unsigned threads, const Fitted<Family>& fitted);
+Assessed assess(const Evaluator& fine, unsigned threads, const Fitted& fitted);
 
 /// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper converges, assessed
 /// under fine steps on every row. Not good() if the start or the end can't be simulated.
-template <class Family>
-Assessed<Family> refined(const Evaluator<Family>& evaluator, const Evaluator<Family>& fine, unsigned threads,
-                         Fitted<Family> fitted, const Effort& effort);
+Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned threads, Fitted fitted, const Effort& effort);
 
 /// True if every channel's residual is noise but for a part that the sensor could not show.
-template <class Family>
-bool reaches_noise(const Dataset& data, const Assessed<Family>& assessed);
+bool reaches_noise(const Dataset& data, const Assessed& assessed);
 
 /// The declared parameter that is furthest from its declaration: its key, and how many tolerances off. Zero and no key where
 /// none is free.
@@ -54,20 +49,17 @@ struct Moved {
   std::string key;
   double tolerances = 0.0;
 };
-template <class Family>
-Moved farthest_from_declared(const Fitted<Family>& model);
+Moved farthest_from_declared(const Fitted& model);
 
 /// True if no declared parameter had to go so far from its declaration that it compensates for something.
-template <class Family>
-bool is_within_tolerances(const Fitted<Family>& model);
+bool is_within_tolerances(const Fitted& model);
 
 /// True if a model reaches the noise within its tolerances: there is nothing to search for.
-template <class Family>
-bool is_complete(const Dataset& data, const Assessed<Family>& assessed);
+bool is_complete(const Dataset& data, const Assessed& assessed);
 
 /// Takes the free parameters of which `unwanted` is true out of a model.
-template <class Family, class F>
-void drop_parameters(Fitted<Family>& model, F&& unwanted) {
+template <class F>
+void drop_parameters(Fitted& model, F&& unwanted) {
   for (std::size_t k = model.free.size(); k-- > 0;) {
     if (unwanted(model.free[k])) {
       model.free.erase(model.free.begin() + static_cast<std::ptrdiff_t>(k));
@@ -77,30 +69,23 @@ void drop_parameters(Fitted<Family>& model, F&& unwanted) {
 }
 
 /// A model without one of its effects, the other parameters where they are.
-template <class Family>
-Fitted<Family> without_effect(const Fitted<Family>& model, const Candidate& candidate);
+Fitted without_effect(const Fitted& model, const Candidate& candidate);
 
 /// A model with its declared parameters as declared, the effects where they are: a calibration that had to compensate for a
 /// missing effect is further from the truth than the declaration.
-template <class Family>
-Fitted<Family> with_declared_values(Fitted<Family> model);
+Fitted with_declared_values(Fitted model);
 
 /// True if the declared parameters are further from their declaration than its tolerances, in the mean: a calibration of no
 /// model that is right.
-template <class Family>
-bool is_far_from_declared(const Fitted<Family>& model);
+bool is_far_from_declared(const Fitted& model);
 
 /// Whichever leaves less on the rows that a fit sees; the first if the second could not be simulated.
-template <class Family>
-Assessed<Family> better_of(Assessed<Family> first, Assessed<Family> second);
+Assessed better_of(Assessed first, Assessed second);
 
 /// BIC of one model less that of another, on given effective samples.
-template <class Family>
-double criterion_change(const Assessed<Family>& with, const Assessed<Family>& without,
-                        const std::vector<ChannelFit>& effective);
+double criterion_change(const Assessed& with, const Assessed& without, const std::vector<ChannelFit>& effective);
 
 /// Held-out error of one model over that of another, as `error_ratio` counts it.
-template <class Family>
-double held_out_ratio(const Assessed<Family>& with, const Assessed<Family>& without);
+double held_out_ratio(const Assessed& with, const Assessed& without);
 
 }  // namespace hotfire::explain

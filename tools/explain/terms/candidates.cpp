@@ -25,9 +25,9 @@ constexpr double kWeakPrior = 2.302585;
 constexpr double kOrdinatePrior = 100.0;
 
 /// Calls `f(index, effect's values)` for one effect of the list.
-template <class Parameters, class F>
+template <IsModelParameters Parameters, class F>
 void visit_effect(Parameters& parameters, std::size_t wanted, F&& f) {
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+  visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
     if (index == wanted) {
       f.template operator()<E>(values);
     }
@@ -47,10 +47,9 @@ double van_der_corput(std::size_t n, std::size_t base) {
 }
 
 /// Adds the ordinates of the candidate's table, if it has one with points. `index` is that of the first table's first.
-template <class Parameters>
-void append_ordinates(const Parameters& base, const Candidate& candidate, const Scales& scales, std::size_t index,
+void append_ordinates(const ModelParameters& base, const Candidate& candidate, const Scales& scales, std::size_t index,
                       std::vector<FreeParameter>& free) {
-  model::visit_effects(base, [&]<class E>(std::size_t effect, const auto& values) {
+  visit_effects(base, [&]<class E>(std::size_t effect, const auto& values) {
     using Values = std::remove_cvref_t<decltype(values)>;
     if constexpr (requires { Values::tables(); }) {
       for (const auto& field : Values::tables()) {
@@ -96,11 +95,9 @@ double start_coordinate(const FreeParameter& parameter, std::size_t k, std::size
 
 }  // namespace
 
-template <class Family>
-std::vector<Candidate> all_candidates(const Dataset& data) {
+std::vector<Candidate> all_candidates(const ModelParameters& plant, const Dataset& data) {
   std::vector<Candidate> candidates;
-  const PlainParameters<Family> neutral;
-  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto& values) {
+  visit_effects(plant, [&]<class E>(std::size_t index, const auto& values) {
     if constexpr (requires { E::is_unlisted; }) {
       return;
     }
@@ -133,15 +130,13 @@ std::vector<Candidate> all_candidates(const Dataset& data) {
   return candidates;
 }
 
-template <class Family>
-std::vector<Candidate> laws_of(const Dataset& data, const Candidate& candidate) {
-  std::vector<Candidate> laws = all_candidates<Family>(data);
+std::vector<Candidate> laws_of(const ModelParameters& plant, const Dataset& data, const Candidate& candidate) {
+  std::vector<Candidate> laws = all_candidates(plant, data);
   std::erase_if(laws, [&](const Candidate& law) { return law.effect != candidate.effect || law.site != candidate.site; });
   return laws;
 }
 
-template <class Family>
-bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate) {
+bool has_what_it_carries(const ModelParameters& parameters, const Candidate& candidate) {
   std::string_view carried;
   visit_effect(parameters, candidate.effect, [&]<class E>(const auto&) {
     if constexpr (requires { E::carries; }) {
@@ -149,15 +144,14 @@ bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candid
     }
   });
   bool active = carried.empty();
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, const auto&) {
-    active = active || (E::name == carried && parameters.effects.active[index]);
+  visit_effects(parameters, [&]<class E>(std::size_t index, const auto&) {
+    active = active || (E::name == carried && is_active(parameters, index));
   });
   return active;
 }
 
-template <class Family>
-bool has_law(const PlainParameters<Family>& parameters, const Candidate& candidate) {
-  bool has = parameters.effects.active[candidate.effect];
+bool has_law(const ModelParameters& parameters, const Candidate& candidate) {
+  bool has = is_active(parameters, candidate.effect);
   visit_effect(parameters, candidate.effect, [&]<class E>(const auto& values) {
     if constexpr (E::options.size() > 0) {
       has = has && values.option == candidate.option;
@@ -166,15 +160,13 @@ bool has_law(const PlainParameters<Family>& parameters, const Candidate& candida
   return has;
 }
 
-template <class Family>
-std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,
-                                               const std::map<std::string, double>& tolerance) {
+std::vector<FreeParameter> declared_parameters(const ModelParameters& base, const std::map<std::string, double>& tolerance) {
   std::vector<FreeParameter> free;
   std::size_t index = 0;
-  model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double& value) {
+  visit_parameters(base, [&](const model::Key& key, const auto& field, const double& value) {
     const Address address{key, field.name};
     const auto found = tolerance.find(address.key());
-    const bool is_declared = !key.is_effect || base.effects.active[key.effect_index];
+    const bool is_declared = !key.is_effect || is_active(base, key.effect_index);
     if (is_declared && found != tolerance.end() && value != 0.0) {
       FreeParameter parameter = FreeParameter::at(index, address, field.unit);
       parameter.scale = FreeParameter::Scale::tolerance;
@@ -191,12 +183,10 @@ std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& ba
   return free;
 }
 
-template <class Family>
-std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base, const Candidate& candidate,
-                                             const Scales& scales) {
+std::vector<FreeParameter> effect_parameters(const ModelParameters& base, const Candidate& candidate, const Scales& scales) {
   std::vector<FreeParameter> free;
   std::size_t index = 0;
-  model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
+  visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
     if (key.is_effect && key.effect_index == candidate.effect && model::is_searched(field, candidate.option)) {
       FreeParameter parameter = FreeParameter::at(index, {key, field.name}, field.unit);
       const double size = size_of_unit(field.unit, scales);
@@ -283,8 +273,7 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
   return starts;
 }
 
-template <class Family>
-void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
+void activate(ModelParameters& parameters, const Candidate& candidate) {
   visit_effect(parameters, candidate.effect, [&]<class E>(auto& values) {
     values.option = candidate.option;
     if constexpr (requires { values.choices(); }) {
@@ -293,22 +282,7 @@ void activate(PlainParameters<Family>& parameters, const Candidate& candidate) {
       }
     }
   });
-  parameters.effects.active[candidate.effect] = true;
+  set_active(parameters, candidate.effect, true);
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                                                               \
-  template std::vector<Candidate> all_candidates<Family>(const Dataset&);                                         \
-  template std::vector<Candidate> laws_of<Family>(const Dataset&, const Candidate&);                              \
-  template bool has_what_it_carries<Family>(const PlainParameters<Family>&, const Candidate&);                    \
-  template bool has_law<Family>(const PlainParameters<Family>&, const Candidate&);                                \
-  template std::vector<FreeParameter> declared_parameters<Family>(const PlainParameters<Family>&,                 \
-                                                                  const std::map<std::string, double>&);          \
-  template std::vector<FreeParameter> effect_parameters<Family>(const PlainParameters<Family>&, const Candidate&, \
-                                                                const Scales&);                                   \
-  template void activate<Family>(PlainParameters<Family>&, const Candidate&);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

@@ -20,32 +20,24 @@ struct Candidate {
   std::vector<int> choices{};  ///< what else the effect has to choose, in its order; empty: its defaults
 };
 
-/// Every variant of every effect of the family that the finder tries: all but tables (a table is what `unlisted` is for) and
-/// sensor variants of channels that no record has.
-template <class Family>
-std::vector<Candidate> all_candidates(const Dataset& data);
+/// Every variant of every effect of `plant` that the finder tries, whatever its values: all but tables (a table is what
+/// `unlisted` is for) and sensor variants of channels that no record has.
+std::vector<Candidate> all_candidates(const ModelParameters& plant, const Dataset& data);
 
 /// The laws of a candidate's effect at the same site, its own among them.
-template <class Family>
-std::vector<Candidate> laws_of(const Dataset& data, const Candidate& candidate);
+std::vector<Candidate> laws_of(const ModelParameters& plant, const Dataset& data, const Candidate& candidate);
 
 /// False for an effect that carries another one (`Effect` in model/declaration/effect.hpp) which is not active.
-template <class Family>
-bool has_what_it_carries(const PlainParameters<Family>& parameters, const Candidate& candidate);
+bool has_what_it_carries(const ModelParameters& parameters, const Candidate& candidate);
 
 /// True if a candidate's effect is active in these parameters with the candidate's law.
-template <class Family>
-bool has_law(const PlainParameters<Family>& parameters, const Candidate& candidate);
+bool has_law(const ModelParameters& parameters, const Candidate& candidate);
 
 /// The declared parameters, of parts and of active effects, that have a tolerance, in the order of the model's keys.
-template <class Family>
-std::vector<FreeParameter> declared_parameters(const PlainParameters<Family>& base,
-                                               const std::map<std::string, double>& tolerance);
+std::vector<FreeParameter> declared_parameters(const ModelParameters& base, const std::map<std::string, double>& tolerance);
 
 /// The parameters of an effect that its variant uses.
-template <class Family>
-std::vector<FreeParameter> effect_parameters(const PlainParameters<Family>& base, const Candidate& candidate,
-                                             const Scales& scales);
+std::vector<FreeParameter> effect_parameters(const ModelParameters& base, const Candidate& candidate, const Scales& scales);
 
 /// Initial position and velocity of every experiment that does not start at rest, with what its first rows say of them as
 /// prior.
@@ -56,7 +48,6 @@ std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& sca
 std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& own, const std::vector<double>& frequencies);
 
 /// Activates a candidate's effect in parameters, with its option.
-template <class Family>
-void activate(PlainParameters<Family>& parameters, const Candidate& candidate);
+void activate(ModelParameters& parameters, const Candidate& candidate);
 
 }  // namespace hotfire::explain

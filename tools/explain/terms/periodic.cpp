@@ -17,9 +17,7 @@ constexpr int kPhases = 6;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// Squared residuals of every record at a point; infinite where it can't be simulated.
-template <class Family>
-std::vector<double> cost_by_record(const Evaluator<Family>& evaluator, const Fitted<Family>& model,
-                                   const std::vector<double>& u) {
+std::vector<double> cost_by_record(const Evaluator& evaluator, const Fitted& model, const std::vector<double>& u) {
   const std::size_t records = evaluator.data().experiments.size();
   Prediction prediction;
   if (!evaluator.predict(model.base, model.free, u, 1, prediction)) {
@@ -36,9 +34,8 @@ std::vector<double> cost_by_record(const Evaluator<Family>& evaluator, const Fit
 
 /// A sinusoid's own coordinates at a frequency and a factor of its typical amplitude, each record's clock at the best of the
 /// phases tried. Records do not depend on each other's clock: one simulation tries a phase on all of them.
-template <class Family>
-std::vector<double> at_best_phases(const Evaluator<Family>& evaluator, const Fitted<Family>& model, std::size_t own_first,
-                                   double frequency, double factor) {
+std::vector<double> at_best_phases(const Evaluator& evaluator, const Fitted& model, std::size_t own_first, double frequency,
+                                   double factor) {
   const std::span<const FreeParameter> own = std::span(model.free).subspan(own_first);
   const std::size_t records = evaluator.data().experiments.size();
   std::vector<double> best(records, 0.0);
@@ -71,11 +68,10 @@ std::vector<double> at_best_phases(const Evaluator<Family>& evaluator, const Fit
 }
 
 /// The phase of an effect's sinusoid as a free parameter.
-template <class Family>
-FreeParameter phase_of(const PlainParameters<Family>& base, const Candidate& candidate) {
+FreeParameter phase_of(const ModelParameters& base, const Candidate& candidate) {
   FreeParameter phase;
   std::size_t index = 0;
-  model::visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
+  visit_parameters(base, [&](const model::Key& key, const auto& field, const double&) {
     if (key.is_effect && key.effect_index == candidate.effect && field.name == "phase") {
       phase = FreeParameter::at(index, {key, field.name}, field.unit);
       phase.lower = field.lower;
@@ -107,8 +103,7 @@ std::vector<FreeParameter> clocks(const Dataset& data) {
   return free;
 }
 
-template <class Family>
-std::vector<std::vector<double>> periodic_starts(const Evaluator<Family>& evaluator, const Fitted<Family>& with_candidate,
+std::vector<std::vector<double>> periodic_starts(const Evaluator& evaluator, const Fitted& with_candidate,
                                                  std::size_t own_first, const std::vector<double>& frequencies) {
   std::vector<std::vector<double>> starts;
   for (const double frequency : frequencies) {
@@ -119,8 +114,7 @@ std::vector<std::vector<double>> periodic_starts(const Evaluator<Family>& evalua
   return starts;
 }
 
-template <class Family>
-Fitted<Family> with_common_phase(const Dataset& data, const Fitted<Family>& fitted, const Candidate& candidate) {
+Fitted with_common_phase(const Dataset& data, const Fitted& fitted, const Candidate& candidate) {
   double frequency = 0.0;
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {
     if (fitted.free[k].is_of_effect(candidate.effect) && fitted.free[k].address.field == "frequency") {
@@ -135,20 +129,11 @@ Fitted<Family> with_common_phase(const Dataset& data, const Fitted<Family>& fitt
       mean += std::polar(static_cast<double>(experiment.rows()), kTurn * frequency * late);
     }
   }
-  Fitted<Family> common = fitted;
+  Fitted common = fitted;
   drop_parameters(common, [](const FreeParameter& parameter) { return parameter.is_clock(); });
-  common.free.push_back(phase_of<Family>(fitted.base, candidate));
+  common.free.push_back(phase_of(fitted.base, candidate));
   common.u.push_back(common.free.back().coordinate(std::arg(mean)));
   return common;
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                                                                  \
-  template std::vector<std::vector<double>> periodic_starts<Family>(const Evaluator<Family>&, const Fitted<Family>&, \
-                                                                    std::size_t, const std::vector<double>&);        \
-  template Fitted<Family> with_common_phase<Family>(const Dataset&, const Fitted<Family>&, const Candidate&);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

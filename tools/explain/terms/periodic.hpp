@@ -17,13 +17,11 @@ bool is_periodic(const Candidate& candidate);
 std::vector<FreeParameter> clocks(const Dataset& data);
 
 /// Starts for a sinusoid: at each of the frequencies, with the clock of every record at the best of six phases.
-template <class Family>
-std::vector<std::vector<double>> periodic_starts(const Evaluator<Family>& evaluator, const Fitted<Family>& with_candidate,
+std::vector<std::vector<double>> periodic_starts(const Evaluator& evaluator, const Fitted& with_candidate,
                                                  std::size_t own_first, const std::vector<double>& frequencies);
 
 /// `fitted` with one phase of its sinusoid at time zero of every record, the mean of theirs (over a circle, by rows), free
 /// in place of the clocks: what a record that nobody has seen is predicted by.
-template <class Family>
-Fitted<Family> with_common_phase(const Dataset& data, const Fitted<Family>& fitted, const Candidate& candidate);
+Fitted with_common_phase(const Dataset& data, const Fitted& fitted, const Candidate& candidate);
 
 }  // namespace hotfire::explain

@@ -11,6 +11,7 @@
 #include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/curve_points.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
+#include "tools/explain/terms/unlisted.hpp"
 
 namespace hotfire::explain {
 
@@ -96,9 +97,9 @@ void take_state(Extents& extents, const model::Direct<double>&, const model::Dir
   extents.rate.take(state.y(1));
 }
 
-template <class Family>
-Extents extents_of(const Dataset& data, const PlainParameters<Family>& parameters) {
-  using Plant = typename Family::template Plant<double>;
+template <class Parameters>
+Extents extents_under(const Dataset& data, const Parameters& parameters) {
+  using Plant = PlantOf<Parameters, double>;
   Extents extents;
   for (const Experiment& experiment : data.experiments) {
     const int steps = model::steps_per_period<Plant>(parameters, experiment.period);
@@ -129,6 +130,10 @@ Extents extents_of(const Dataset& data, const PlainParameters<Family>& parameter
   return extents;
 }
 
+Extents extents_of(const Dataset& data, const ModelParameters& parameters) {
+  return std::visit([&](const auto& own) { return extents_under(data, own); }, parameters);
+}
+
 template <class Table>
 void lay_points(Table& table, Extent extent, bool is_rate) {
   if (!(extent.high > extent.low)) {
@@ -146,9 +151,9 @@ void lay_points(Table& table, Extent extent, bool is_rate) {
 }
 
 /// Over the readings of one channel: where what the model leaves of it bends.
-template <class Family, class Table>
-void lay_points_by_reading(Table& table, const Dataset& data, const Fitted<Family>& current, std::size_t channel) {
-  const Evaluator<Family> evaluator(data, Resolution::coarse);
+template <class Table>
+void lay_points_by_reading(Table& table, const Dataset& data, const Fitted& current, std::size_t channel) {
+  const Evaluator evaluator(data, Resolution::coarse);
   Prediction prediction;
   if (!evaluator.predict(current.base, current.free, current.u, 1, prediction)) {
     return;
@@ -214,23 +219,20 @@ void lay_beyond(Table& table, Extent extent) {
 
 }  // namespace
 
-template <class Family>
-void lay_table(PlainParameters<Family>& parameters, const Candidate& candidate, const Dataset& data,
-               const Fitted<Family>& current) {
+void lay_table(ModelParameters& parameters, const Candidate& candidate, const Dataset& data, const Fitted& current) {
   visit_table(parameters, candidate, [&]<class E>(const auto& field, auto& table) {
     if constexpr (std::is_same_v<E, model::UnlistedReading>) {
-      lay_points_by_reading<Family>(table, data, current, static_cast<std::size_t>(candidate.option));
+      lay_points_by_reading(table, data, current, static_cast<std::size_t>(candidate.option));
     } else {
-      const auto now = Evaluator<Family>::with_values(current.base, current.free, current.u);
-      lay_points(table, extents_of<Family>(data, now).of(E::site, field.x_name), field.x_name.ends_with("rate"));
+      const auto now = current.parameters();
+      lay_points(table, extents_of(data, now).of(E::site, field.x_name), field.x_name.ends_with("rate"));
     }
   });
 }
 
-template <class Family>
-Fitted<Family> reaching_over(const Dataset& data, const Fitted<Family>& fitted, const Candidate& candidate) {
-  Fitted<Family> wide = fitted;
-  const auto now = Evaluator<Family>::with_values(fitted.base, fitted.free, fitted.u);
+Fitted reaching_over(const Dataset& data, const Fitted& fitted, const Candidate& candidate) {
+  Fitted wide = fitted;
+  const auto now = fitted.parameters();
   visit_table(wide.base, candidate, [&]<class E>(const auto& field, auto& table) {
     const auto is_own = [&](const FreeParameter& p) {
       return p.is_ordinate() && p.is_of_effect(candidate.effect) && p.address.field == field.y_name;
@@ -240,8 +242,9 @@ Fitted<Family> reaching_over(const Dataset& data, const Fitted<Family>& fitted, 
     if (table.points < 2 || first == wide.free.end() || !candidate.choices.empty()) {
       return;
     }
-    visit_table(now, candidate, [&]<class>(const auto&, const auto& fitted_table) { table.y = fitted_table.y; });
-    lay_beyond(table, extents_of<Family>(data, now).of(E::site, field.x_name));
+    const std::vector<double> fitted_y = table_of(now, candidate)->y;
+    std::copy(fitted_y.begin(), fitted_y.end(), table.y.begin());
+    lay_beyond(table, extents_of(data, now).of(E::site, field.x_name));
     FreeParameter ordinate = *first;
     const auto at = first - wide.free.begin();
     const auto behind = std::find_if_not(first, wide.free.end(), is_own) - wide.free.begin();
@@ -257,13 +260,5 @@ Fitted<Family> reaching_over(const Dataset& data, const Fitted<Family>& fitted, 
   });
   return wide;
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                                                                   \
-  template void lay_table<Family>(PlainParameters<Family>&, const Candidate&, const Dataset&, const Fitted<Family>&); \
-  template Fitted<Family> reaching_over<Family>(const Dataset&, const Fitted<Family>&, const Candidate&);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

@@ -10,9 +10,9 @@ namespace hotfire::explain {
 
 /// Calls `f.template operator()<E>(field, table)` with the table that an unlisted candidate's effect E uses in `parameters`;
 /// not at all where its law has none.
-template <class Parameters, class F>
+template <IsModelParameters Parameters, class F>
 void visit_table(Parameters& parameters, const Candidate& candidate, F&& f) {
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+  visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
     using Values = std::remove_cvref_t<decltype(values)>;
     if constexpr (requires {
                     E::is_unlisted;
@@ -30,13 +30,10 @@ void visit_table(Parameters& parameters, const Candidate& candidate, F&& f) {
 /// Lays the points of an unlisted candidate's table over the range that `current` runs through on the rows that a fit sees:
 /// evenly over a position, a pressure or time; closer about zero over a rate, where friction bends; over a sensor's own
 /// reading where what `current` leaves there bends, since a sensor shows its error itself. All ordinates are zero.
-template <class Family>
-void lay_table(PlainParameters<Family>& parameters, const Candidate& candidate, const Dataset& data,
-               const Fitted<Family>& current);
+void lay_table(ModelParameters& parameters, const Candidate& candidate, const Dataset& data, const Fitted& current);
 
 /// `fitted` with the table of an unlisted candidate reaching over every row of `data`, which may go beyond those that it was
 /// laid over: further points as far apart as they are at that end, as many as a table can hold, with the value at the end.
-template <class Family>
-Fitted<Family> reaching_over(const Dataset& data, const Fitted<Family>& fitted, const Candidate& candidate);
+Fitted reaching_over(const Dataset& data, const Fitted& fitted, const Candidate& candidate);
 
 }  // namespace hotfire::explain

@@ -19,7 +19,7 @@ constexpr double kSmallOfCurve = 1e-3;
 constexpr double kMostOfCurve = 10.0;
 
 /// The largest ordinate of a term's table; nothing if it has no points.
-double largest_ordinate(const PlainParameters<SimplexFamily>& parameters, const Candidate& candidate) {
+double largest_ordinate(const ModelParameters& parameters, const Candidate& candidate) {
   double largest = 0.0;
   visit_table(parameters, candidate, [&]<class>(const auto&, const auto& table) {
     for (int i = 0; i < table.points; ++i) {
@@ -29,7 +29,7 @@ double largest_ordinate(const PlainParameters<SimplexFamily>& parameters, const 
   return largest;
 }
 
-void raise(PlainParameters<SimplexFamily>& parameters, const Candidate& candidate, double by) {
+void raise(ModelParameters& parameters, const Candidate& candidate, double by) {
   visit_table(parameters, candidate, [&]<class>(const auto&, auto& table) {
     std::for_each_n(table.y.begin(), table.points, [by](double& y) { y += by; });
   });
@@ -37,22 +37,23 @@ void raise(PlainParameters<SimplexFamily>& parameters, const Candidate& candidat
 
 }  // namespace
 
-std::optional<Fitted<SimplexFamily>> with_least_zeros(const Dataset& data, const Zeros& zeros,
-                                                      const Fitted<SimplexFamily>& fitted, const Candidate& candidate) {
-  const PlainParameters<SimplexFamily> plant = Evaluator<SimplexFamily>::with_values(fitted.base, fitted.free, fitted.u);
+std::optional<Fitted> with_least_zeros(const Dataset& data, const Zeros& zeros, const Fitted& fitted,
+                                       const Candidate& candidate) {
+  const ModelParameters plant = fitted.parameters();
   const double size = largest_ordinate(plant, candidate);
   if (!(size > 0.0)) {
     return std::nullopt;
   }
   const double small = kSmallOfCurve * size;
-  PlainParameters<SimplexFamily> raised = plant;
+  ModelParameters raised = plant;
   raise(raised, candidate, small);
   const double step = data.experiments.front().period;
-  const std::optional<double> constant = common_shift(data, zeros, shift_at_rest(plant, raised, small, step)).amount;
+  const auto shift = shift_at_rest(std::get<SimplexParameters>(plant), std::get<SimplexParameters>(raised), small, step);
+  const std::optional<double> constant = common_shift(data, zeros, shift).amount;
   if (!constant || !(std::abs(*constant) <= kMostOfCurve * size)) {
     return std::nullopt;
   }
-  Fitted<SimplexFamily> moved = fitted;
+  Fitted moved = fitted;
   raise(moved.base, candidate, *constant);
   Eigen::VectorXd of_mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(moved.free.size()));
   double ordinates = 0.0;

@@ -14,7 +14,7 @@ namespace hotfire::explain {
 /// zeros of its own, which take up whatever a curve adds everywhere. `zeros` are those of the fitted model. The intervals of
 /// the curve are then those of its shape, the constant given. Nothing where the candidate has no curve, or its constant
 /// moves nothing at rest.
-std::optional<Fitted<SimplexFamily>> with_least_zeros(const Dataset& data, const Zeros& zeros,
-                                                      const Fitted<SimplexFamily>& fitted, const Candidate& candidate);
+std::optional<Fitted> with_least_zeros(const Dataset& data, const Zeros& zeros, const Fitted& fitted,
+                                       const Candidate& candidate);
 
 }  // namespace hotfire::explain

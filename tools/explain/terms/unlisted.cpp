@@ -31,21 +31,17 @@ bool is_curve_over_own_rate(const Candidate& candidate) {
 
 }  // namespace
 
-template <class Family>
-bool is_unlisted(const Candidate& candidate) {
+bool is_unlisted(const ModelParameters& plant, const Candidate& candidate) {
   bool result = false;
-  const PlainParameters<Family> neutral;
-  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
+  visit_effects(plant, [&]<class E>(std::size_t index, const auto&) {
     result = result || (index == candidate.effect && is_unlisted_effect<E>());
   });
   return result;
 }
 
-template <class Family>
-std::vector<Candidate> unlisted_candidates(const Dataset& data) {
+std::vector<Candidate> unlisted_candidates(const ModelParameters& plant, const Dataset& data) {
   std::vector<Candidate> candidates;
-  const PlainParameters<Family> neutral;
-  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
+  visit_effects(plant, [&]<class E>(std::size_t index, const auto&) {
     if constexpr (is_unlisted_effect<E>() && !requires { E::is_term; }) {
       for (std::size_t option = 0; option < E::options.size(); ++option) {
         if (model::needs_other_axis<E>(static_cast<int>(option)) && !data.has_other_axis()) {
@@ -66,15 +62,12 @@ std::vector<Candidate> unlisted_candidates(const Dataset& data) {
   return candidates;
 }
 
-template <class Family>
-void activate_unlisted(PlainParameters<Family>& parameters, const Candidate& candidate, const Dataset& data,
-                       const Fitted<Family>& current) {
-  activate<Family>(parameters, candidate);
+void activate_unlisted(ModelParameters& parameters, const Candidate& candidate, const Dataset& data, const Fitted& current) {
+  activate(parameters, candidate);
   lay_table(parameters, candidate, data, current);
 }
 
-template <class Family>
-std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, const Candidate& candidate) {
+std::optional<FittedTable> table_of(const ModelParameters& parameters, const Candidate& candidate) {
   std::optional<FittedTable> result;
   visit_table(parameters, candidate, [&]<class>(const auto& field, const auto& table) {
     if (table.points > 0) {
@@ -90,9 +83,8 @@ std::optional<FittedTable> table_of(const PlainParameters<Family>& parameters, c
   return result;
 }
 
-template <class Family>
-bool feeds_energy(const PlainParameters<Family>& parameters, const Candidate& candidate) {
-  const auto table = table_of<Family>(parameters, candidate);
+bool feeds_energy(const ModelParameters& parameters, const Candidate& candidate) {
+  const auto table = table_of(parameters, candidate);
   if (!table || table->x.empty()) {
     return false;
   }
@@ -110,16 +102,5 @@ bool feeds_energy(const PlainParameters<Family>& parameters, const Candidate& ca
   }
   return in > policy().scatter * out;
 }
-
-#define HOTFIRE_INSTANTIATE(Family)                                                                       \
-  template bool feeds_energy<Family>(const PlainParameters<Family>&, const Candidate&);                   \
-  template bool is_unlisted<Family>(const Candidate&);                                                    \
-  template std::optional<FittedTable> table_of<Family>(const PlainParameters<Family>&, const Candidate&); \
-  template std::vector<Candidate> unlisted_candidates<Family>(const Dataset&);                            \
-  template void activate_unlisted<Family>(PlainParameters<Family>&, const Candidate&, const Dataset&, const Fitted<Family>&);
-
-HOTFIRE_INSTANTIATE(SimplexFamily)
-HOTFIRE_INSTANTIATE(DirectFamily)
-#undef HOTFIRE_INSTANTIATE
 
 }  // namespace hotfire::explain

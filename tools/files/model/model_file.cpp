@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 #include "tools/files/model/model_group.hpp"
 #include "tools/files/model/model_layout.hpp"
+#include "tools/files/model/plant_of.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 #include "tools/files/text/toml_source.hpp"
@@ -67,19 +70,27 @@ const toml::table* table_of(const TomlSource& source, std::string_view name) {
   return node != nullptr ? &source.table(*node, name) : nullptr;
 }
 
+/// Every topology of the variant, quoted.
+template <class... Parameters>
+std::string topologies_of(const std::variant<Parameters...>&) {
+  std::string names;
+  ((names += (names.empty() ? "\"" : ", \"") + std::string(PlantOf<Parameters, double>::topology) + "\""), ...);
+  return names;
+}
+
+/// Gives the variant the reference parameters of a topology. False if it has no plant of that name.
+template <class... Parameters>
+bool choose(std::string_view topology, std::variant<Parameters...>& parameters) {
+  return ((PlantOf<Parameters, double>::topology == topology && (parameters = Parameters{}, true)) || ...);
+}
+
 void choose_topology(const TomlSource& source, ModelFile& model) {
-  const std::string allowed = fmt::format("allowed where one axis is asked for: \"{}\", \"{}\"",
-                                          model::Simplex<double>::topology, model::Direct<double>::topology);
+  const std::string allowed = "allowed for a model of one axis: " + topologies_of(model.parameters);
   const toml::node* node = source.root().get("topology");
   if (node == nullptr) {
     source.refuse_missing(source.root(), "topology", "missing; " + allowed);
   }
-  const std::string topology = source.text(*node, "topology");
-  if (topology == model::Simplex<double>::topology) {
-    model.parameters = SimplexParameters{};
-  } else if (topology == model::Direct<double>::topology) {
-    model.parameters = DirectParameters{};
-  } else {
+  if (!choose(source.text(*node, "topology"), model.parameters)) {
     source.refuse(*node, "topology", "not a topology that this takes; " + allowed);
   }
 }

@@ -2,15 +2,12 @@
 #include "tools/files/model/model_layout.hpp"
 
 #include "tools/files/model/key_groups.hpp"
+#include "tools/files/model/plant_of.hpp"
 
 namespace hotfire {
 
-ModelLayout layout_of(SimplexParameters& parameters) { return layout_of_plant<model::Simplex<double>>(parameters); }
-
-ModelLayout layout_of(DirectParameters& parameters) { return layout_of_plant<model::Direct<double>>(parameters); }
-
 ModelLayout layout_of(ModelFile& model) {
-  return std::visit([](auto& parameters) { return layout_of(parameters); }, model.parameters);
+  return std::visit([](auto& own) { return layout_of_plant<PlantOf<decltype(own), double>>(own); }, model.parameters);
 }
 
 }  // namespace hotfire

@@ -78,8 +78,6 @@ struct ModelLayout {
   std::vector<KeyGroup> effects;
 };
 
-ModelLayout layout_of(SimplexParameters& parameters);
-ModelLayout layout_of(DirectParameters& parameters);
 ModelLayout layout_of(ModelFile& model);
 
 }  // namespace hotfire

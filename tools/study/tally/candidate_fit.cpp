@@ -14,10 +14,9 @@ namespace hotfire::study {
 
 namespace {
 
-using Family = explain::SimplexFamily;
-
-explain::Candidate candidate_named(const explain::Dataset& data, const std::string& name, const std::string& law) {
-  const std::vector<explain::Candidate> all = explain::all_candidates<Family>(data);
+explain::Candidate candidate_named(const ModelFile& model, const explain::Dataset& data, const std::string& name,
+                                   const std::string& law) {
+  const std::vector<explain::Candidate> all = explain::all_candidates(model.parameters, data);
   const auto found =
       std::find_if(all.begin(), all.end(), [&](const auto& c) { return c.name == name && c.option_name == law; });
   if (found != all.end()) {
@@ -40,23 +39,23 @@ CandidateFit fit_candidate(const std::filesystem::path& folder, const std::strin
   }
   explain::Dataset data = explain::make_dataset(model, given_records(folder / "given"));
   explain::fit_every_row(data);
-  const explain::Candidate candidate = candidate_named(data, name, law);
+  const explain::Candidate candidate = candidate_named(model, data, name, law);
 
   const explain::Stopwatch stopwatch;
-  explain::Fitted<Family> start;
-  start.base = std::get<SimplexParameters>(model.parameters);
-  explain::activate<Family>(start.base, candidate);
-  start.free = explain::declared_parameters<Family>(start.base, model.tolerance);
+  explain::Fitted start;
+  start.base = model.parameters;
+  explain::activate(start.base, candidate);
+  start.free = explain::declared_parameters(start.base, model.tolerance);
   start.u.assign(start.free.size(), 0.0);
-  for (const explain::FreeParameter& own : explain::effect_parameters<Family>(start.base, candidate, {})) {
+  for (const explain::FreeParameter& own : explain::effect_parameters(start.base, candidate, {})) {
     start.free.push_back(own);
     start.u.push_back(own.coordinate(own.unit_size));
   }
   // As the search does: first with half as many steps.
-  const explain::Evaluator<Family> coarse(data, explain::Resolution::coarse);
-  const explain::Evaluator<Family> fine(data, explain::Resolution::fine);
-  const explain::Assessed<Family> ranked = explain::refined(coarse, fine, threads, start, explain::kRanking);
-  const explain::Assessed<Family> fitted =
+  const explain::Evaluator coarse(data, explain::Resolution::coarse);
+  const explain::Evaluator fine(data, explain::Resolution::fine);
+  const explain::Assessed ranked = explain::refined(coarse, fine, threads, start, explain::kRanking);
+  const explain::Assessed fitted =
       ranked.good() ? explain::refined(fine, fine, threads, ranked.model, explain::kFinal) : ranked;
   if (!fitted.good()) {
     throw FileError(fmt::format("{}: the model with {} can't be simulated", folder.string(), explain::label(candidate)));
@@ -66,7 +65,7 @@ CandidateFit fit_candidate(const std::filesystem::path& folder, const std::strin
   result.processor_seconds = stopwatch.processor_seconds();
   result.name = folder.filename().string();
   result.candidate = explain::label(candidate);
-  model.parameters = explain::Evaluator<Family>::with_values(fitted.model.base, fitted.model.free, fitted.model.u);
+  model.parameters = fitted.model.parameters();
   result.after = errors_of(model, load_record(folder / "kept/score_noisefree.csv"), model.noise);
   return result;
 }
