@@ -45,6 +45,37 @@ TEST(EquivalentStiffness, OfACubicSpringIsThatOfItsEnergy) {
   DOUBLES_EQUAL(2e7 + 0.5 * 1e13 * most * most, equivalent_stiffness(cubic, cubic(most), 1e8), 10.0);
 }
 
+// f = a x + b x^3 about x0: f(x0 + u) - f0 = s u + 3 b x0 u^2 + b u^3 with s = a + 3 b x0^2, whose integral is known.
+TEST(EquivalentStiffness, AboutABiasIsThatOfTheEnergyOnBothSidesOfIt) {
+  const double a = 2e7;
+  const double b = 1e13;
+  const SpringCurve cubic = [=](double x) { return a * x + b * x * x * x; };
+  const double start = 1.5e-3;
+  const double bias = cubic(start);
+  const double force = 4e4;
+  const auto way_to = [&](double target) {
+    double low = -1e-2;
+    double high = 1e-2;
+    for (int i = 0; i < 200; ++i) {
+      const double middle = 0.5 * (low + high);
+      (cubic(middle) < target ? low : high) = middle;
+    }
+    return low - start;
+  };
+  double work = 0.0;
+  double squares = 0.0;
+  for (const double u : {way_to(bias + force), way_to(bias - force)}) {
+    work += (a + 3.0 * b * start * start) * u * u / 2.0 + b * start * u * u * u + b * u * u * u * u / 4.0;
+    squares += u * u;
+  }
+  DOUBLES_EQUAL(2.0 * work / squares, equivalent_stiffness_about(cubic, bias, force, 2e9), 1e-3 * a * 1e-3);
+  // A small swing sees the slope at the bias, whatever its sign, and no bias is eq. 7.
+  const double slope = a + 3.0 * b * start * start;
+  DOUBLES_EQUAL(slope, equivalent_stiffness_about(cubic, bias, 1.0, 2e9), 1e-6 * slope);
+  DOUBLES_EQUAL(slope, equivalent_stiffness_about(cubic, -bias, 1.0, 2e9), 1e-6 * slope);
+  DOUBLES_EQUAL(equivalent_stiffness(cubic, force, 2e9), equivalent_stiffness_about(cubic, 0.0, force, 2e9), 0.0);
+}
+
 TEST(EquivalentStiffness, OfASofterSpringGivesALoadResonanceThatRisesToTheLinearOne) {
   // Soft up to 1 kN, then 1.2e8 N/m.
   const SpringCurve soft = [](double x) { return x < 2e-5 ? 5e7 * x : 1e3 + 1.2e8 * (x - 2e-5); };

@@ -130,7 +130,8 @@ class Drawing {
   void draw_legend() {
     double x = kLeft;
     for (const Curve& curve : chart_.panels.front().curves) {
-      if (!curve.label.empty()) {
+      const bool is_named = std::find(labels_.begin(), labels_.end(), curve.label) != labels_.end();
+      if (!curve.label.empty() && !is_named) {
         add("<text x=\"{:.0f}\" y=\"36\" fill=\"{}\">{}</text>\n", x, colour_of(curve.label), escaped(curve.label));
         x += 20.0 + 6.6 * static_cast<double>(curve.label.size());
       }

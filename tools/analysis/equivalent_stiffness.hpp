@@ -17,6 +17,13 @@ double peak_sine_force(double inertia, double moment_arm, double amplitude, doub
 /// x_max.
 double equivalent_stiffness(const SpringCurve& curve, double force, double stiffest);
 
+/// The same about a bias load f0, "centered about the nominal load" [SD 2.2]: the spring constant that stores as much as the
+/// curve does on the way from x0, f(x0) = f0, up to f0 + force and down to f0 - force,
+///   K = 2 / (a^2 + b^2) (integral_0^a f(x0 + u) - f0 du + integral_0^b f0 - f(x0 - u) du),
+///   f(x0 + a) = f0 + force, f(x0 - b) = f0 - force.
+/// Without bias it is eq. 7.
+double equivalent_stiffness_about(const SpringCurve& curve, double bias, double force, double stiffest);
+
 /// Stiffness of two springs in series, 1 / (1 / one + 1 / other) [N/m] [SD eq. 3, 9].
 double in_series(double one, double other);
 
@@ -41,9 +48,9 @@ double load_frequency(const LoadResonance& load, double total);
 /// K_T. A relative error of f comes out twice as large and by 1 + K_n / (K_T R^2) more, one of J by that alone.
 double total_stiffness(const LoadResonance& load, double frequency);
 
-/// The load resonance [Hz] of an engine that swings with `amplitude` [rad], with the actuator's stiffness equivalent to its
-/// curve up to the peak force of that swing at that very frequency [SD eq. 2-7, 10]. Amplitude zero gives the slope of the
-/// curve at rest.
-double load_resonance(const LoadResonance& load, const SpringCurve& curve, double amplitude);
+/// The load resonance [Hz] of an engine that swings with `amplitude` [rad] about a `bias` load of its actuator [N], with the
+/// actuator's stiffness equivalent to its curve within the peak force of that swing at that very frequency [SD eq. 2-7, 10].
+/// Amplitude zero gives the slope of the curve at the bias.
+double load_resonance(const LoadResonance& load, const SpringCurve& curve, double amplitude, double bias = 0.0);
 
 }  // namespace hotfire::analysis

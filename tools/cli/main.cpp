@@ -3,8 +3,10 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +18,8 @@
 namespace hotfire {
 
 namespace {
+
+disperse::CommandOutcome captured(const std::vector<std::string>& words);
 
 int complain(const std::string& problem, ExitStatus status) {
   std::cerr << "hotfire: " << problem << '\n';
@@ -71,11 +75,10 @@ std::string problem_of(const CLI::App& program, const CLI::ParseError& error) {
 }
 
 /// The words of the command line as a shell would take them again.
-std::string typed_line(int argc, char** argv) {
+std::string typed_line(const std::vector<std::string>& words) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
   std::string line = "hotfire";
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
+  for (const std::string& word : words) {
     if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
       line += " " + word;
       continue;
@@ -89,7 +92,7 @@ std::string typed_line(int argc, char** argv) {
   return line;
 }
 
-int run(int argc, char** argv) {
+int run(std::vector<std::string> words) {
   CLI::App program{
       "Hotfire identifies the effects that a declared model is missing, from test records, and runs the explained model.",
       "hotfire"};
@@ -99,19 +102,22 @@ int run(int argc, char** argv) {
       "Example: hotfire check declared.toml steps.csv\nExit status: 0 good, 1 the verdict is bad, 2 wrong use, 3 hardware, "
       "4 real-time contract not met, 5 interlock, 6 bad data.");
   add_new(program);
-  add_explain(program, typed_line(argc, argv));
+  add_explain(program, typed_line(words));
   add_check(program);
   add_convert(program);
   add_import(program);
   add_simulate(program);
+  add_disperse(program, captured);
   add_export(program);
   add_sweep(program);
   add_step(program);
   add_stiffness(program);
   add_hammer(program);
   add_quiescent(program);
+  add_response(program);
   add_strings(program);
   add_findings(program);
+  add_nastran(program);
   add_reduce(program);
   add_header(program);
   add_plant(program);
@@ -126,7 +132,9 @@ int run(int argc, char** argv) {
     command->set_version_flag("--version", HOTFIRE_VERSION);
   }
   try {
-    program.parse(argc, argv);
+    // The parser takes them from the back.
+    std::reverse(words.begin(), words.end());
+    program.parse(words);
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();
   } catch (const CLI::Success& help_or_version) {
@@ -139,16 +147,41 @@ int run(int argc, char** argv) {
   return static_cast<int>(ExitStatus::good);
 }
 
+/// Runs a command line, whatever happens, and gives its exit status.
+int status_of(const std::vector<std::string>& words) {
+  try {
+    return run(words);
+  } catch (const FileError& error) {
+    return complain(error.what(), ExitStatus::bad_data);
+  } catch (const std::exception& error) {
+    return complain(std::string{"internal error: "} + error.what(), ExitStatus::bad_verdict);
+  }
+}
+
+/// What a stream is given while this exists.
+class Captured {
+ public:
+  explicit Captured(std::ostream& stream) : stream_(stream), before_(stream.rdbuf(text_.rdbuf())) {}
+  ~Captured() { stream_.rdbuf(before_); }
+  Captured(const Captured&) = delete;
+  Captured& operator=(const Captured&) = delete;
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+  std::ostream& stream_;
+  std::streambuf* before_;
+};
+
+disperse::CommandOutcome captured(const std::vector<std::string>& words) {
+  const Captured printed(std::cout);
+  const Captured complained(std::cerr);
+  const int status = status_of(words);
+  return {status, printed.text(), complained.text()};
+}
+
 }  // namespace
 
 }  // namespace hotfire
 
-int main(int argc, char** argv) {
-  try {
-    return hotfire::run(argc, argv);
-  } catch (const hotfire::FileError& error) {
-    return hotfire::complain(error.what(), hotfire::ExitStatus::bad_data);
-  } catch (const std::exception& error) {
-    return hotfire::complain(std::string{"internal error: "} + error.what(), hotfire::ExitStatus::bad_verdict);
-  }
-}
+int main(int argc, char** argv) { return hotfire::status_of({argv + std::min(argc, 1), argv + argc}); }

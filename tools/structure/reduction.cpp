@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "tools/files/text/error.hpp"
+#include "tools/structure/port_response.hpp"
 
 namespace hotfire {
 
@@ -49,8 +50,7 @@ std::vector<double> weights_of(const std::vector<double>& grid) {
 /// A mode's response per generalised force beyond its static one, 1 / (w_k^2 - w^2 + 2 i zeta w_k w) - 1 / w_k^2.
 Complex dynamic_part(const ModeSet& modes, int k, double frequency) {
   const double own = 2.0 * std::numbers::pi * modes.frequency(k);
-  const double w = 2.0 * std::numbers::pi * frequency;
-  return 1.0 / Complex(own * own - w * w, 2.0 * modes.damping_ratio(k) * own * w) - 1.0 / (own * own);
+  return mode_response(modes, k, frequency) - 1.0 / (own * own);
 }
 
 /// The band's response of every attach point to its own force, and each mode's share of it.

@@ -71,7 +71,7 @@ analysis::Chart time_chart(const std::string& title, const Record& record, const
 }
 
 analysis::Chart stiffness_chart(const std::string& title, const std::vector<SineStiffness>& stiffnesses,
-                                const LoadSpring& spring) {
+                                const LoadSpring& spring, double bias) {
   constexpr int kPoints = 60;
   analysis::Panel frequency{"load resonance [Hz]", {{"test", {}, {}, true}, {"eq. 4-7", {}, {}}, {"asymptote", {}, {}}}};
   analysis::Panel stiffness = frequency;
@@ -89,7 +89,7 @@ analysis::Chart stiffness_chart(const std::string& title, const std::vector<Sine
   }
   // The responses come in order of amplitude.
   for (const double amplitude : spaced(0.5 * stiffnesses.front().amplitude, 2.0 * stiffnesses.back().amplitude, kPoints)) {
-    const ResonanceStiffness expected = expected_stiffness(spring, amplitude);
+    const ResonanceStiffness expected = expected_stiffness(spring, amplitude, bias);
     add(1, amplitude, expected.frequency, expected.actuator);
     add(2, amplitude, asymptote(spring), spring.loaded);
   }

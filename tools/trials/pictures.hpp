@@ -19,9 +19,9 @@ analysis::Chart bode_chart(const std::string& title, const std::vector<ChannelSw
 analysis::Chart time_chart(const std::string& title, const Record& record, const std::string& axis);
 
 /// Load resonance and stiffness of the actuator over the amplitude of the sines: what the test has as dots, what the force
-/// curve expects [SD eq. 4-7] and what that rises to as lines. At least one amplitude.
+/// curve expects about a bias load [N] [SD eq. 4-7] and what that rises to as lines. At least one amplitude.
 analysis::Chart stiffness_chart(const std::string& title, const std::vector<SineStiffness>& stiffnesses,
-                                const LoadSpring& spring);
+                                const LoadSpring& spring, double bias = 0.0);
 
 /// Densities over frequency between `lowest` and `highest` [Hz], each over its largest, in decibels.
 analysis::Chart spectrum_chart(const std::string& title, const std::vector<std::string>& labels,

@@ -91,13 +91,13 @@ LoadSpring load_spring_of(const VehicleFile& model, const std::string& axis) {
       model.parameters);
 }
 
-std::vector<SineStiffness> sine_stiffnesses(const std::vector<ChannelSweep>& sweeps, const LoadSpring& spring) {
+std::vector<SineStiffness> sine_stiffnesses(const std::vector<ChannelSweep>& sweeps, const LoadSpring& spring, double bias) {
   std::vector<SineStiffness> stiffnesses;
   for (const ChannelSweep& sweep : sweeps) {
     if (sweep.channel != "piston" || sweep.amplitude <= 0.0) {
       continue;
     }
-    SineStiffness own{sweep.amplitude, {}, expected_stiffness(spring, sweep.amplitude)};
+    SineStiffness own{sweep.amplitude, {}, expected_stiffness(spring, sweep.amplitude, bias)};
     if (sweep.notch) {
       own.test = stiffness_at(spring.load, sweep.amplitude, sweep.notch->frequency);
     }
@@ -106,8 +106,8 @@ std::vector<SineStiffness> sine_stiffnesses(const std::vector<ChannelSweep>& swe
   return stiffnesses;
 }
 
-ResonanceStiffness expected_stiffness(const LoadSpring& spring, double amplitude) {
-  return stiffness_at(spring.load, amplitude, analysis::load_resonance(spring.load, spring.actuator, amplitude));
+ResonanceStiffness expected_stiffness(const LoadSpring& spring, double amplitude, double bias) {
+  return stiffness_at(spring.load, amplitude, analysis::load_resonance(spring.load, spring.actuator, amplitude, bias));
 }
 
 double asymptote(const LoadSpring& spring) {

@@ -43,11 +43,13 @@ struct SineStiffness {
 };
 
 /// Equivalent stiffness by amplitude from the responses of a stepped sine: the piston's notch is at its zeros, the load
-/// resonance [SD eq. 1-2]. Empty for a broadband command, whose amplitude is not that of a sine.
-std::vector<SineStiffness> sine_stiffnesses(const std::vector<ChannelSweep>& sweeps, const LoadSpring& spring);
+/// resonance [SD eq. 1-2]. `bias` is the load of the actuator that the sines swing about [N]. Empty for a broadband command,
+/// whose amplitude is not that of a sine.
+std::vector<SineStiffness> sine_stiffnesses(const std::vector<ChannelSweep>& sweeps, const LoadSpring& spring,
+                                            double bias = 0.0);
 
-/// What the force curve expects of sines of an amplitude [rad] [SD eq. 4-7].
-ResonanceStiffness expected_stiffness(const LoadSpring& spring, double amplitude);
+/// What the force curve expects of sines of an amplitude [rad] about a bias load of the actuator [N] [SD eq. 4-7].
+ResonanceStiffness expected_stiffness(const LoadSpring& spring, double amplitude, double bias = 0.0);
 
 /// The load resonance with the actuator as stiff as under a large load [Hz]: what `expected_stiffness` rises to.
 double asymptote(const LoadSpring& spring);

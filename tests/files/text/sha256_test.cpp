@@ -17,6 +17,10 @@ TEST(Sha256, is_that_of_the_standard) {
                sha256_of(scratch.write("a", std::string(1'000'000, 'a'))).c_str());
 }
 
+TEST(Sha256, of_a_text_is_that_of_a_file_with_the_same_bytes) {
+  STRCMP_EQUAL(sha256_of(scratch.write("abc", "abc")).c_str(), sha256_of_text("abc").c_str());
+}
+
 TEST(Sha256, of_a_file_that_is_not_there_is_refused_with_its_name) {
   test::expect_message(test::refusal([&] { sha256_of(scratch.path("none")); }), {"none", "SHA-256"});
 }

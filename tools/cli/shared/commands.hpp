@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "tools/disperse/dispersion.hpp"
+
 namespace hotfire {
 
 /// False for a command of the build or of a shell, which --help and the reference do not list.
@@ -14,6 +16,8 @@ inline bool is_listed(const CLI::App* command) { return !command->get_group().em
 void add_check(CLI::App& program);
 void add_controller(CLI::App& program);
 void add_convert(CLI::App& program);
+/// `run` runs a command line of the program itself, and keeps what it prints.
+void add_disperse(CLI::App& program, const disperse::CommandRunner& run);
 void add_doctor(CLI::App& program);
 void add_export(CLI::App& program);
 void add_explain(CLI::App& program, const std::string& typed);  ///< `typed`: the command line, for its report
@@ -21,10 +25,12 @@ void add_findings(CLI::App& program);
 void add_hammer(CLI::App& program);
 void add_header(CLI::App& program);
 void add_import(CLI::App& program);
+void add_nastran(CLI::App& program);
 void add_new(CLI::App& program);
 void add_quiescent(CLI::App& program);
 void add_lab(CLI::App& program);
 void add_reduce(CLI::App& program);
+void add_response(CLI::App& program);
 void add_simulate(CLI::App& program);
 void add_plant(CLI::App& program);
 void add_reference(CLI::App& program);  ///< hidden: what makes the man pages and the completion of a shell

@@ -26,6 +26,7 @@ struct StiffnessOptions {
   double from = 0.0;                                          ///< [Hz]; 0: by the model
   double to = 0.0;
   int count = 60;
+  double bias = 0.0;  ///< load of the actuator that the sines swing about [N]
 };
 
 trials::LoadSpring spring_of_trial(const TrialOptions& options) {
@@ -37,7 +38,7 @@ trials::LoadSpring spring_of_trial(const TrialOptions& options) {
 /// can expect, from no load to a large one.
 trials::SweepGoal goal_of(const StiffnessOptions& options, const trials::LoadSpring& spring) {
   trials::SweepGoal goal{.axis = options.trial.axis, .moment_arm = spring.load.moment_arm};
-  goal.lowest = options.from > 0.0 ? options.from : 0.75 * trials::expected_stiffness(spring, 0.0).frequency;
+  goal.lowest = options.from > 0.0 ? options.from : 0.75 * trials::expected_stiffness(spring, 0.0, options.bias).frequency;
   goal.highest = options.to > 0.0 ? options.to : 1.35 * trials::asymptote(spring);
   if (goal.lowest >= goal.highest) {
     throw UsageError(
@@ -48,9 +49,10 @@ trials::SweepGoal goal_of(const StiffnessOptions& options, const trials::LoadSpr
 
 /// Throws FileError for a record that no stiffness can be read from, and says the remedy.
 std::vector<trials::SineStiffness> stiffnesses_of(const Record& record, const std::string& name,
-                                                  const trials::SweepGoal& goal, const trials::LoadSpring& spring) {
+                                                  const trials::SweepGoal& goal, const trials::LoadSpring& spring,
+                                                  double bias) {
   trials::required_channel(record, "piston", goal.axis);
-  auto stiffnesses = trials::sine_stiffnesses(trials::analyse_sweep(record, goal), spring);
+  auto stiffnesses = trials::sine_stiffnesses(trials::analyse_sweep(record, goal), spring, bias);
   if (stiffnesses.empty()) {
     throw FileError(fmt::format(
         "{}: {} is no stepped sine, and an equivalent stiffness is that of one amplitude; allowed: sines of three "
@@ -93,15 +95,18 @@ void run_stiffness(const StiffnessOptions& options) {
     for (const double amplitude : options.amplitudes) {
       bands.push_back({trials::radians(amplitude), trials::spaced(goal.lowest, goal.highest, options.count)});
     }
-    return simulate_command(options.trial, trials::stepped_sines(bands));
+    return simulate_command(options.trial, trials::stepped_sines(bands), options.bias * spring.load.moment_arm);
   });
-  const std::vector<trials::SineStiffness> stiffnesses = stiffnesses_of(record, name_of_trial(options.trial), goal, spring);
+  const std::vector<trials::SineStiffness> stiffnesses =
+      stiffnesses_of(record, name_of_trial(options.trial), goal, spring, options.bias);
   draw_if_wanted(options.trial, [&] {
     return trials::stiffness_chart(fmt::format("Equivalent stiffness of {}", name_of_trial(options.trial)), stiffnesses,
-                                   spring);
+                                   spring, options.bias);
   });
   if (options.trial.json) {
-    std::cout << trials::to_json(stiffnesses, spring).dump(2) << '\n';
+    nlohmann::ordered_json json = trials::to_json(stiffnesses, spring);
+    json["bias"] = options.bias;
+    std::cout << json.dump(2) << '\n';
   } else {
     print(stiffnesses, spring);
   }
@@ -132,9 +137,14 @@ void add_stiffness(CLI::App& program) {
   command->add_option("--count", options->count, "frequencies of a sweep")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
+  command
+      ->add_option("--bias", options->bias,
+                   "constant load of the actuator that the sines swing about [N]: the test on a model runs under its torque")
+      ->capture_default_str();
   command->footer(
       "Example: hotfire stiffness --model lab.toml --picture stiffness.svg\n"
       "         hotfire stiffness --model lab.toml --record sines.csv --axis pitch\n"
+      "         hotfire stiffness --model lab.toml --bias 20000\n"
       "The notch is the load resonance, which has the total stiffness in it; the model's load stiffness taken out leaves "
       "the\n"
       "actuator's. The next column is the value of the model's force curve at that amplitude.");

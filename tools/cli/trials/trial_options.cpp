@@ -58,9 +58,12 @@ std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options) {
   return options.thrust ? with_thrust(std::move(vehicle), *options.thrust) : vehicle;
 }
 
-Record simulate_command(const TrialOptions& options, std::vector<double> command) {
+Record simulate_command(const TrialOptions& options, std::vector<double> command, double torque) {
   const std::optional<VehicleFile> vehicle = vehicle_of_trial(options);
-  const Record inputs = trials::command_record(std::move(command), trials::channel_of("command", options.axis));
+  Record inputs = trials::command_record(std::move(command), trials::channel_of("command", options.axis));
+  if (torque != 0.0) {
+    inputs.channels.push_back({trials::channel_of("torque", options.axis), "N.m", std::vector<double>(inputs.rows, torque)});
+  }
   return vehicle ? simulate(*vehicle, inputs) : simulate(load_model(options.model), inputs);
 }
 

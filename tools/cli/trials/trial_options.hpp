@@ -40,8 +40,8 @@ std::string name_of_trial(const TrialOptions& options);
 std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options);
 
 /// Runs the model of the options, of one axis or several, on a command to its axis. Throws UsageError for a model of several
-/// axes and none that is named.
-Record simulate_command(const TrialOptions& options, std::vector<double> command);
+/// axes and none that is named. `torque` is a constant one on the engine beside the command [N m].
+Record simulate_command(const TrialOptions& options, std::vector<double> command, double torque = 0.0);
 
 /// The moment arm of the model's axis [m].
 double moment_arm_of_trial(const TrialOptions& options);
