@@ -41,6 +41,16 @@ TEST(Progress, of_a_command_with_a_time_limit_the_line_has_the_longest_time_left
   STRCMP_EQUAL("\r\x1b[K[####################] 1 min 1 s, at most 0 s left: writing", to.str().c_str());
 }
 
+TEST(Progress, of_a_share_and_a_time_limit_the_shorter_time_left_is_said) {
+  Progress progress(to, true, 60.0, clock());
+  now = 15.0;
+  progress.say("round 1", 0.5);
+  STRCMP_EQUAL("\r\x1b[K[##########..........] 50 %, about 15 s left: round 1", to.str().c_str());
+  to.str("");
+  progress.say("round 1", 0.1);
+  STRCMP_EQUAL("\r\x1b[K[##..................] 10 %, at most 45 s left: round 1", to.str().c_str());
+}
+
 TEST(Progress, in_a_log_a_short_command_leaves_nothing_and_a_long_one_a_line_every_ten_seconds) {
   {
     Progress progress(to, false, std::nullopt, clock());
@@ -52,6 +62,13 @@ TEST(Progress, in_a_log_a_short_command_leaves_nothing_and_a_long_one_a_line_eve
     }
   }
   STRCMP_EQUAL("[ 10.0 s] working\n[ 20.0 s] working\n[ 30.0 s] working\n", to.str().c_str());
+}
+
+TEST(Progress, in_a_log_the_bar_and_the_time_left_are_those_of_a_terminal) {
+  Progress progress(to, false, std::nullopt, clock());
+  now = 30.0;
+  progress.say("F9", 0.25);
+  STRCMP_EQUAL("[#####...............] 25 %, about 1 min 30 s left: F9\n", to.str().c_str());
 }
 
 TEST(Progress, a_terminal_has_an_empty_line_behind_it) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 
 #include "tests/files/expect.hpp"
@@ -87,16 +88,57 @@ TEST(Command, a_misspelt_word_is_wrong_use_and_named_with_the_nearest_known_one)
 
 TEST(Command, without_what_it_needs_is_wrong_use) {
   LONGS_EQUAL(2, status_of(""));
+  expect_message(err, {"missing: a command", "'hotfire new rig'"});
   LONGS_EQUAL(2, status_of("check"));
   expect_message(err, {"hotfire: missing: FILE;", "'hotfire check --help'"});
   LONGS_EQUAL(2, status_of("explain"));
-  STRCMP_EQUAL("hotfire: missing: --model, --out, records; see 'hotfire explain --help'\n", err.c_str());
+  STRCMP_EQUAL(
+      "hotfire: missing: --model, --out, records; 'hotfire new rig' makes a project that has them; see 'hotfire explain "
+      "--help'\n",
+      err.c_str());
   LONGS_EQUAL(2, status_of("simulate --model m --input i --output o --fit-start=-3"));
+}
+
+TEST(Command, keys_describes_a_table_an_effect_and_a_key) {
+  LONGS_EQUAL(0, status_of("keys"));
+  expect_message(out, {"servovalve", "gimbal_friction", "at engine_torque"});
+  LONGS_EQUAL(0, status_of("keys gimbal_friction servovalve.rated_flow"));
+  expect_message(out, {"[effects.gimbal_friction]", "law = \"coulomb\"", "coulomb_torque = ", "N.m",
+                       "of vibrated_lugre only", "[servovalve]\nrated_flow = 0.003155 m^3/s, allowed: "});
+  CHECK(out.find("position_gain") == std::string::npos);
+  LONGS_EQUAL(0, status_of("keys --topology taos --json gimbal"));
+  expect_message(out, {"\"table\": \"gimbal\"", "\"key\": \"thrust\"", "\"unit\": \"N\""});
+  LONGS_EQUAL(2, status_of("keys servovalve.rated_flwo"));
+  expect_message(err, {"rated_flwo", "servovalve.rated_flow", "'hotfire keys --topology simplex'"});
+}
+
+TEST(Command, every_key_that_keys_names_is_taken_by_a_model_file_with_its_reference_value) {
+  // The table of a declared part as `keys` prints it is one of a model file, up to the unit of each line.
+  LONGS_EQUAL(0, status_of("keys servovalve actuator structure engine"));
+  std::string text = "schema = 1\ntopology = \"simplex\"\n";
+  std::istringstream lines(out);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("[")) {
+      text += line + "\n";
+    } else if (!line.starts_with(" ")) {
+      text += line.substr(0, line.find_first_of(" ,", line.find(" = ") + 3)) + "\n";
+    }
+  }
+  CHECK(std::count(text.begin(), text.end(), '\n') > 20);
+  LONGS_EQUAL(0, status_of("check " + scratch.write("keys.toml", text).string()));
+}
+
+TEST(Command, a_file_that_is_not_there_is_named_with_the_one_that_may_be_meant) {
+  const std::string path = model();
+  LONGS_EQUAL(6, status_of("check " + path.substr(0, path.size() - 5) + "s.toml"));
+  expect_message(err, {"goods.toml: cannot be opened", "did you mean \"", "/good.toml\"?"});
+  LONGS_EQUAL(6, status_of("convert " + record() + " " + scratch.path("none").string() + "/run.mf4"));
+  expect_message(err, {"cannot be written", "mkdir -p ", "/none"});
 }
 
 TEST(Command, help_has_an_example_and_every_command_prints_its_version) {
   for (const std::string command : {"", "check ", "simulate ", "sweep ", "step ", "stiffness ", "hammer ", "quiescent ",
-                                    "strings ", "findings ", "import ", "header "}) {
+                                    "strings ", "findings ", "import ", "header ", "keys "}) {
     LONGS_EQUAL(0, status_of(command + "--help"));
     expect_message(out, {"Example: hotfire"});
     LONGS_EQUAL(0, status_of(command + "--version"));

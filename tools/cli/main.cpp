@@ -49,6 +49,9 @@ int complain_of_use(const CLI::App& program, const std::string& problem) {
   return complain(problem + "; see '" + name + " --help'", ExitStatus::wrong_use);
 }
 
+/// What `explain` requires: a command without any of it comes from a user without a project.
+constexpr std::size_t kWordsOfExplain = 3;
+
 /// The words that a command requires and was not given, all of them: the parser complains of the first.
 std::vector<std::string> missing_words(const CLI::App& command) {
   std::vector<std::string> words;
@@ -66,8 +69,14 @@ std::string problem_of(const CLI::App& program, const CLI::ParseError& error) {
   const std::vector<std::string> strangers = program.remaining(true);
   if (strangers.empty() || command.get_allow_extras()) {
     const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    if (is_missing && &command == &program) {
+      return "missing: a command; 'hotfire new rig' makes a project to begin with";
+    }
     const std::vector<std::string> missing = is_missing ? missing_words(command) : std::vector<std::string>{};
-    return missing.empty() ? error.what() : fmt::format("missing: {}", fmt::join(missing, ", "));
+    const bool has_project = command.get_name() != "explain" || missing.size() < kWordsOfExplain;
+    return missing.empty() ? error.what()
+                           : fmt::format("missing: {}{}", fmt::join(missing, ", "),
+                                         has_project ? "" : "; 'hotfire new rig' makes a project that has them");
   }
   // A misspelt word also leaves out something that is required, which is what the parser complains of.
   const std::vector<std::string> known = known_words(command);
@@ -103,6 +112,7 @@ int run(std::vector<std::string> words) {
       "4 real-time contract not met, 5 interlock, 6 bad data.");
   add_new(program);
   add_explain(program, typed_line(words));
+  add_keys(program);
   add_check(program);
   add_convert(program);
   add_import(program);

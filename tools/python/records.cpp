@@ -66,11 +66,8 @@ const Channel& channel_of(const Record& record, const std::string& name) {
 }
 
 py::array_t<double> time_of(const Record& record) {
-  py::array_t<double> time(static_cast<py::ssize_t>(record.rows));
-  for (std::size_t row = 0; row < record.rows; ++row) {
-    time.mutable_data()[row] = record.start + static_cast<double>(row) * record.period;
-  }
-  return time;
+  const std::vector<double> times = times_of(record);
+  return py::array_t<double>(static_cast<py::ssize_t>(times.size()), times.data());
 }
 
 }  // namespace

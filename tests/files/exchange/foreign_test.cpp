@@ -3,6 +3,8 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -14,6 +16,7 @@
 
 #include "tools/files/exchange/mdf4.hpp"
 #include "tools/files/exchange/mdf4_blocks.hpp"
+#include "tools/files/import/guess.hpp"
 
 #include "tests/files/expect.hpp"
 #include "tests/files/scratch.hpp"
@@ -144,7 +147,7 @@ TEST(Foreign, MdfThatItsProgramBrokeOffIsReadUpToTheLastWholeRow) {
   const auto channels = channels_of(bytes);
   UNSIGNED_LONGS_EQUAL(700, channels.back().values.size());
   DOUBLES_EQUAL(record.channels.back().values[699], channels.back().values[699], 0.0);
-  put<std::uint16_t>(bytes, mdf4::kUnfinalisedFlags, 1U << 4U);
+  put<std::uint16_t>(bytes, mdf4::kUnfinalisedFlags, 1U << 7U);
   expect_message(refusal_of(bytes), {"not finalised", "the program that has recorded it"});
 }
 
@@ -215,17 +218,130 @@ TEST(Foreign, MdfIntegersOfAnyBitsAndByteOrderWithALinearConversion) {
   }
   DOUBLES_EQUAL(10.0 + 0.5 * 9007199254740992.0, channels_of(bytes).back().values.front(), 0.0);
   put(bytes, values, kLargestExact + 1);
-  expect_message(refusal_of(bytes), {"engine", "beyond 2^53"});
+  STRCMP_CONTAINS("beyond 2^53", channels_of(bytes).back().problem.c_str());
   put<std::uint32_t>(bytes, data + 8, 12);
   put<std::uint8_t>(bytes, data + 3, 3);
   put(bytes, data + 2, mdf4::DataType::float_little);
-  expect_message(refusal_of(bytes), {"engine", "data type 4 of 12 bits"});
+  STRCMP_CONTAINS("data type 4 of 12 bits", channels_of(bytes).back().problem.c_str());
   put<std::uint8_t>(bytes, data + 3, 0);
   put<std::uint32_t>(bytes, data + 8, 32);
   put(bytes, values, 0.75F);
   DOUBLES_EQUAL(10.375, channels_of(bytes).back().values.front(), 0.0);
   put(bytes, end + law, std::uint8_t{7});
-  expect_message(refusal_of(bytes), {"engine", "a conversion of type 7"});
+  // What cannot be read is of matter only where it is wanted.
+  const auto channels = channels_of(bytes);
+  STRCMP_CONTAINS("a conversion of type 7", channels.back().problem.c_str());
+  CHECK(channels[1].values == record.channels[0].values);
+  ImportMap map;
+  map.columns = {{"time", "time", "s"}, {"command", "command", "rad"}};
+  const auto changed = scratch.path("changed.mf4");
+  CHECK(import_record(changed, map, scratch.path("imported.csv")).find("command")->values == record.channels[0].values);
+  map.columns.push_back({"engine", "engine", "rad"});
+  expect_message(refusal([&] { import_record(changed, map, scratch.path("imported.csv")); }),
+                 {"changed.mf4", "\"engine\" for engine", "a conversion of type 7"});
+}
+
+TEST(Foreign, MdfRationalConversionIsTheQuotientOfItsPolynomials) {
+  std::string bytes = mdf();
+  const std::uint64_t end = bytes.size();
+  const std::size_t law = mdf4::kBlockHeader + 4 * mdf4::kLink;
+  std::string conversion = "##CC" + std::string(law - 4 + 24 + 6 * sizeof(double), '\0');
+  put<std::uint64_t>(conversion, 8, conversion.size());
+  put<std::uint64_t>(conversion, 16, 4);
+  put(conversion, law, mdf4::ConversionType::rational);
+  const std::array p{1.0, 2.0, 3.0, 0.0, 0.5, 4.0};
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    put(conversion, law + 24 + i * sizeof(double), p[i]);
+  }
+  bytes += conversion;
+  put<std::uint64_t>(bytes, place_of(bytes, "CN") + mdf4::kBlockHeader + mdf4::kConversion * mdf4::kLink, end);
+  const double x = record.channels.back().values[7];
+  DOUBLES_EQUAL((x * x + 2.0 * x + 3.0) / (0.5 * x + 4.0), channels_of(bytes).back().values[7], 0.0);
+}
+
+TEST(Foreign, MdfValueThatItsInvalidationBitTakesBackIsMissing) {
+  std::string bytes = mdf();
+  // A ninth byte group: one byte of bits behind the doubles of each row, of which bit 3 is that of the last channel.
+  const std::size_t doubles = 4 * sizeof(double);
+  std::string rows;
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    rows += bytes.substr(place_of(bytes, "DT") + mdf4::kBlockHeader + row * doubles, doubles);
+    rows += row == 5 ? '\x08' : '\x77';
+  }
+  const std::uint64_t end = bytes.size();
+  std::string block = "##DT" + std::string(20, '\0') + rows;
+  put<std::uint64_t>(block, 8, block.size());
+  bytes += block;
+  const std::size_t group = place_of(bytes, "CG") + mdf4::kBlockHeader + 6 * mdf4::kLink;
+  put<std::uint32_t>(bytes, group + 28, 1);
+  put<std::uint64_t>(bytes, place_of(bytes, "DG") + mdf4::kBlockHeader + mdf4::kDataBlock * mdf4::kLink, end);
+  const std::size_t data = place_of(bytes, "CN") + mdf4::kBlockHeader + 8 * mdf4::kLink;
+  put<std::uint32_t>(bytes, data + 12, mdf4::kHasInvalidBit);
+  put<std::uint32_t>(bytes, data + 16, 3);
+  const auto values = channels_of(bytes).back().values;
+  CHECK(std::isnan(values[5]));
+  UNSIGNED_LONGS_EQUAL(1, std::ranges::count_if(values, [](double value) { return std::isnan(value); }));
+  DOUBLES_EQUAL(record.channels.back().values[6], values[6], 0.0);
+  put<std::uint32_t>(bytes, data + 16, 8);
+  expect_message(refusal_of(bytes), {"invalidation bit", "engine", "damaged"});
+}
+
+TEST(Foreign, MdfRowsWithIdsAreThoseOfTheirGroup) {
+  std::string bytes = mdf();
+  const std::size_t row_bytes = 4 * sizeof(double);
+  const std::string plain = bytes.substr(place_of(bytes, "DT") + mdf4::kBlockHeader, record.rows * row_bytes);
+  // Between the rows stand texts of a second group, each behind its length.
+  const std::size_t group = place_of(bytes, "CG");
+  const std::uint64_t texts_at = bytes.size();
+  std::string texts = "##CG" + std::string(4 + 16 + 6 * mdf4::kLink + 32, '\0');
+  put<std::uint64_t>(texts, 8, texts.size());
+  put<std::uint64_t>(texts, 16, 6);
+  put<std::uint64_t>(texts, mdf4::kBlockHeader + 6 * mdf4::kLink, 9);
+  put<std::uint16_t>(texts, mdf4::kBlockHeader + 6 * mdf4::kLink + 16, mdf4::kRowsOfAnyLength);
+  bytes += texts;
+  put<std::uint64_t>(bytes, group + mdf4::kBlockHeader, texts_at);
+  std::string rows;
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    rows += std::string("\0\0", 2) + plain.substr(row * row_bytes, row_bytes);
+    rows += row % 3 == 0 ? std::string("\x09\0\x02\0\0\0ab", 8) : std::string();
+  }
+  const auto with_rows = [&](const std::string& data) {
+    std::string whole = bytes;
+    std::string block = "##DT" + std::string(20, '\0') + data;
+    put<std::uint64_t>(block, 8, block.size());
+    put<std::uint64_t>(whole, place_of(whole, "DG") + mdf4::kBlockHeader + mdf4::kDataBlock * mdf4::kLink, whole.size());
+    put<std::uint8_t>(whole, place_of(whole, "DG") + mdf4::kBlockHeader + 4 * mdf4::kLink, 2);
+    return whole + block;
+  };
+  const auto channels = channels_of(with_rows(rows));
+  CHECK(channels[1].values == record.channels[0].values);
+  CHECK(channels[3].values == record.channels[2].values);
+  expect_message(refusal_of(with_rows(rows.substr(0, rows.size() - row_bytes))), {"1000 rows, and bytes for 999"});
+  std::string stray = rows;
+  stray[0] = 5;
+  expect_message(refusal_of(with_rows(stray)), {"id 5", "damaged"});
+  // Cut anywhere, in the middle of an id or of a length: refused for the rows that are missing, and read to no other end.
+  for (std::size_t cut = 1; cut < 3 * row_bytes; ++cut) {
+    CHECK(!refusal_of(with_rows(rows.substr(0, rows.size() - 8 - cut))).empty());
+  }
+  std::string without_ids = with_rows(rows);
+  put<std::uint8_t>(without_ids, place_of(without_ids, "DG") + mdf4::kBlockHeader + 4 * mdf4::kLink, 0);
+  expect_message(refusal_of(without_ids), {"several groups", "damaged"});
+}
+
+TEST(Foreign, FirstMapOfAForeignFileHasItsChannelsWithTheirUnits) {
+  record = record_of({"command", "stroke of \"the\" ram", "note"});
+  record.channels[1].unit = "mm";
+  for (const std::string extension : {".mf4", ".h5"}) {
+    const auto path = scratch.path("foreign" + extension);
+    write_foreign(record, path);
+    const auto map_path = scratch.write("map.toml", guessed_map(path));
+    const ImportMap map = load_import_map(map_path, ImportSource::table);
+    const Record imported = import_record(path, map, scratch.path("imported.csv"));
+    CHECK(imported.find("command")->values == record.channels[0].values);
+    DOUBLES_EQUAL(1e-3 * record.channels[1].values[9], imported.find("piston")->values[9], 1e-12);
+    CHECK(imported.find("note") == nullptr);
+  }
 }
 
 TEST(Foreign, MdfThatIsDamagedAnywhereIsRefusedOrReadAndNothingElse) {

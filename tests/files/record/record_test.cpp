@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <tuple>
 
 #include "tests/files/expect.hpp"
 #include "tests/files/scratch.hpp"
@@ -101,6 +102,20 @@ TEST(Record, written_and_read_back_has_the_same_bits) {
     STRCMP_EQUAL(record.channels[i].unit.c_str(), again.channels[i].unit.c_str());
     MEMCMP_EQUAL(record.channels[i].values.data(), again.channels[i].values.data(), record.rows * sizeof(double));
   }
+}
+
+TEST(Record, times_of_a_whole_rate_or_a_period_in_nanoseconds_are_their_decimal_digits) {
+  // Rate or period, and the start in periods: 1 kHz, 3 kHz, 610.3515625 Hz, 20 kHz.
+  for (const auto& [ticks, step, first] :
+       {std::tuple{1e3, 1.0, 250.0}, {3e3, 1.0, 0.0}, {1e9, 1638400.0, 0.0}, {2e4, 1.0, 7.0}}) {
+    const Record record{{}, "", first / ticks, step / ticks, 5000, {}};
+    const std::vector<double> times = times_of(record);
+    for (std::size_t row = 0; row < record.rows; ++row) {
+      DOUBLES_EQUAL((first + static_cast<double>(row) * step) / ticks, times[row], 0.0);
+    }
+  }
+  const std::vector<double> odd = times_of({{}, "", 0.1, 1e-3 / 3.1415, 100, {}});
+  DOUBLES_EQUAL(0.1 + 99 * 1e-3 / 3.1415, odd.back(), 1e-15);
 }
 
 TEST(Record, is_written_whole_or_not_at_all) {

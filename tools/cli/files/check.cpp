@@ -114,14 +114,14 @@ Json describe(const std::filesystem::path& path) {
            : is_vehicle(path)    ? describe_vehicle(path)
                                  : describe_model(path);
   }
-  if (path.extension() == ".csv" || path.extension() == ".log" || is_recording(path)) {
+  if (path.extension() == ".csv" || path.extension() == ".log" || is_foreign(path) || is_recording(path)) {
     return describe_record(path);
   }
   throw FileError(
       fmt::format("{}: the extension \"{}\" is unknown; allowed: .toml (a model, a profile or a CAN schedule), .csv "
                   "(a record), .log "
-                  "(a candump log), a recording of 'hotfire plant --record'",
-                  path.string(), path.extension().string()));
+                  "(a candump log), {} (a record of another program), a recording of 'hotfire plant --record'",
+                  path.string(), path.extension().string(), fmt::join(foreign_extensions(), ", ")));
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -202,7 +202,7 @@ void add_check(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("check",
                                              "Check model files, profiles and CAN schedules (.toml), records (.csv, candump "
-                                             ".log) and recordings: what each is, or what is "
+                                             ".log, .mf4, .h5, .mat) and recordings: what each is, or what is "
                                              "wrong, where, and the remedy");
   command->add_option("FILE", options->files, "model files, profiles, CAN schedules and records")->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");

@@ -33,7 +33,7 @@ void add_import(CLI::App& program) {
   command->add_option("--map", options->map, "map: the column of each channel (.toml)");
   command->add_option("--dbc", options->dbc, "for a candump log: the description of its frames (.dbc)");
   command->add_option("--output", options->output, "record to write (.csv)");
-  command->add_flag("--guess", options->guess, "print a first map of a text log, and write no file");
+  command->add_flag("--guess", options->guess, "print a first map of the file, and write no file");
   command
       ->add_option("--exclude", options->excluded,
                    "FROM-TO [s]: a drop-out, where values and rows may be missing; then name it to explain")
@@ -51,7 +51,9 @@ void add_import(CLI::App& program) {
       return;
     }
     if (options->map.empty() || options->output.empty()) {
-      throw UsageError("give --map and --output; 'hotfire import SOURCE --guess' prints a map for a text log to start from");
+      throw UsageError(fmt::format("missing: {}; 'hotfire import {} --guess > map.toml' begins a map",
+                                   options->map.empty() ? options->output.empty() ? "--map, --output" : "--map" : "--output",
+                                   options->source));
     }
     const ImportMap map = load_import_map(options->map, import_source(options->source, options->dbc));
     std::vector<DropOut> drop_outs;

@@ -6,6 +6,7 @@
 
 #include "tools/cli/reference/realtime_help.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/model_keys.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
@@ -40,6 +41,9 @@ std::vector<std::string> allowed_values(const CLI::Option& option) {
 }
 
 std::vector<std::string> values_of(const CLI::Option& option) {
+  if (option.get_type_name() == kKeyType) {
+    return key_words();
+  }
   std::vector<std::string> allowed = allowed_values(option);
   if (!allowed.empty()) {
     return allowed;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <malloc.h>
+
 #include <csignal>
 #include <iostream>
 #include <memory>
@@ -14,10 +16,16 @@ namespace {
 struct WatchOptions {
   std::string file;
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8137;
+  unsigned port = 8137;
 };
 
+/// Blocks of this size and more go back to the system as soon as they are free [bytes]: glibc's own first value, which it
+/// raises to the largest block that it has seen. The server would keep the memory of the largest answer, that to a page
+/// which asks late.
+constexpr int kReturnedBlock = 128 * 1024;
+
 void watch_until_stopped(const WatchOptions& options) {
+  mallopt(M_MMAP_THRESHOLD, kReturnedBlock);
   sigset_t stops;
   sigemptyset(&stops);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -26,7 +34,7 @@ void watch_until_stopped(const WatchOptions& options) {
   // Before any thread is started, so that all of them leave these signals to this one.
   pthread_sigmask(SIG_BLOCK, &stops, nullptr);
   const watch::Watcher watcher(options.file);
-  const watch::Server server(watcher, options.address, options.port);
+  const watch::Server server(watcher, options.address, static_cast<std::uint16_t>(options.port));
   std::cout << server.url() << std::endl;
   std::cerr << "hotfire: open this address in a browser; Ctrl-C ends the page, not the program that it shows\n";
   int signal = 0;
@@ -42,7 +50,9 @@ void add_watch(CLI::App& program) {
       ->add_option("FILE", options->file,
                    "live-view file: the FILE of --watch of the running program, which may start later")
       ->required();
-  command->add_option("--port", options->port, "TCP port of the page; 0: any free port; default 8137");
+  command->add_option("--port", options->port, "TCP port of the page; 0: any free port")
+      ->check(CLI::Range(0U, 65535U))
+      ->capture_default_str();
   command->add_option("--address", options->address,
                       "IP address at which the page is served; default 127.0.0.1: this machine only. Anyone who "
                       "reaches another one can read it");

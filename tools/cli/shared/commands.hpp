@@ -25,6 +25,7 @@ void add_findings(CLI::App& program);
 void add_hammer(CLI::App& program);
 void add_header(CLI::App& program);
 void add_import(CLI::App& program);
+void add_keys(CLI::App& program);
 void add_nastran(CLI::App& program);
 void add_new(CLI::App& program);
 void add_quiescent(CLI::App& program);

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <utility>
 
 namespace hotfire {
@@ -52,8 +53,11 @@ Progress::~Progress() {
 
 std::string Progress::line(double seconds, const std::string& what, std::optional<double> done) const {
   if (done) {
-    const std::string left =
-        *done < kLeastShare ? "" : fmt::format(", about {} left", in_words(seconds * (1.0 - *done) / *done));
+    const double expected = *done < kLeastShare ? std::numeric_limits<double>::infinity() : seconds * (1.0 - *done) / *done;
+    std::string left = std::isfinite(expected) ? fmt::format(", about {} left", in_words(expected)) : "";
+    if (limit_ && *limit_ - seconds < expected) {
+      left = fmt::format(", at most {} left", in_words(*limit_ - seconds));
+    }
     return fmt::format("[{}] {:.0f} %{}: {}", bar(*done), 100.0 * *done, left, what);
   }
   if (limit_) {

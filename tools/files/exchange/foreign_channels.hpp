@@ -12,6 +12,7 @@ struct ForeignChannel {
   std::string unit;  ///< as the file spells it; empty: it has none
   bool is_time = false;
   std::vector<double> values;
+  std::string problem;  ///< why its values cannot be had; empty: they can. Of matter only where the channel is wanted
 };
 
 /// Channels that were sampled together.

@@ -5,13 +5,17 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
 #include "tools/files/exchange/apart.hpp"
+#include "tools/files/exchange/exact_integer.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/near_file.hpp"
 #include "tools/files/text/whole_file.hpp"
 
 namespace hotfire {
@@ -19,8 +23,13 @@ namespace hotfire {
 namespace {
 
 constexpr const char* kUnitAttribute = "unit";
+/// What other programs call it.
+constexpr std::array<const char*, 4> kUnitAttributes{kUnitAttribute, "units", "Unit", "Units"};
 constexpr const char* kTimeDataset = "time";
 constexpr std::size_t kMostChannelBytes = std::size_t{4} << 30U;
+/// Groups within groups, and datasets of a file: links may lead back to where they are.
+constexpr int kMostGroupsWithin = 8;
+constexpr std::size_t kMostDatasets = 10'000;
 
 /// A handle of the library with the function that closes it.
 class Handle {
@@ -61,10 +70,12 @@ std::string_view take_text(std::string_view& bytes) {
 }
 
 std::string unit_of(hid_t dataset) {
-  if (H5Aexists(dataset, kUnitAttribute) <= 0) {
+  const auto* const name =
+      std::ranges::find_if(kUnitAttributes, [dataset](const char* attribute) { return H5Aexists(dataset, attribute) > 0; });
+  if (name == kUnitAttributes.end()) {
     return {};
   }
-  const Handle attribute(H5Aopen(dataset, kUnitAttribute, H5P_DEFAULT), H5Aclose);
+  const Handle attribute(H5Aopen(dataset, *name, H5P_DEFAULT), H5Aclose);
   const Handle type(H5Aget_type(attribute.id()), H5Tclose);
   if (H5Tget_class(type.id()) != H5T_STRING) {
     return {};
@@ -87,48 +98,86 @@ std::string unit_of(hid_t dataset) {
   return text.substr(0, text.find('\0'));
 }
 
-/// In the process of its own: names, units and values of every dataset, one after the other.
-std::string channels_here(const std::filesystem::path& path) {
-  be_quiet();
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.good()) {
-    throw FileError(fmt::format("{}: is no HDF5 file that can be read", path.string()));
-  }
-  H5G_info_t info{};
-  H5Gget_info(file.id(), &info);
-  std::string bytes;
-  for (hsize_t i = 0; i < info.nlinks; ++i) {
-    const ssize_t length = H5Lget_name_by_idx(file.id(), ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT);
-    std::string name(static_cast<std::size_t>(std::max<ssize_t>(length, 0)) + 1, '\0');
-    H5Lget_name_by_idx(file.id(), ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size(), H5P_DEFAULT);
-    name.pop_back();
-    const Handle dataset(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!dataset.good()) {
-      continue;  // a group, which holds other things than a record
+/// In the process of its own: group, name, unit, problem and values of every dataset, one after the other.
+class Datasets {
+ public:
+  explicit Datasets(const std::filesystem::path& path) : path_(path) {}
+
+  std::string text() {
+    be_quiet();
+    const Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    if (!file.good()) {
+      throw FileError(fmt::format("{}: is no HDF5 file that can be read", path_.string()));
     }
-    const auto refuse = [&](const std::string& problem) {
-      throw FileError(fmt::format("{}: dataset \"{}\": {}", path.string(), name, problem));
-    };
-    const Handle space(H5Dget_space(dataset.id()), H5Sclose);
-    const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+    add_group(file.id(), "", 0);
+    return std::move(bytes_);
+  }
+
+ private:
+  void add_group(hid_t group, const std::string& group_name, int nested) {
+    H5G_info_t info{};
+    H5Gget_info(group, &info);
+    for (hsize_t i = 0; i < info.nlinks; ++i) {
+      const ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT);
+      std::string name(static_cast<std::size_t>(std::max<ssize_t>(length, 0)) + 1, '\0');
+      H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size(), H5P_DEFAULT);
+      name.pop_back();
+      const Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
+      const H5I_type_t kind = object.good() ? H5Iget_type(object.id()) : H5I_BADID;
+      if (kind == H5I_GROUP && nested < kMostGroupsWithin) {
+        add_group(object.id(), group_name.empty() ? name : group_name + "/" + name, nested + 1);
+      } else if (kind == H5I_DATASET) {
+        add_dataset(object.id(), group_name, name);
+      }
+    }
+  }
+
+  void add_dataset(hid_t dataset, const std::string& group_name, const std::string& name) {
+    if (++count_ > kMostDatasets) {
+      throw FileError(fmt::format("{}: more than {} datasets", path_.string(), kMostDatasets));
+    }
+    std::vector<double> values;
+    const std::string problem = read(dataset, values);
+    put_text(bytes_, group_name);
+    put_text(bytes_, name);
+    put_text(bytes_, unit_of(dataset));
+    put_text(bytes_, problem);
+    put_text(bytes_, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
+  }
+
+  /// Why the values of a dataset cannot be had; empty: they can.
+  static std::string read(hid_t dataset, std::vector<double>& values) {
+    const Handle space(H5Dget_space(dataset), H5Sclose);
+    const Handle type(H5Dget_type(dataset), H5Tclose);
     const H5T_class_t kind = H5Tget_class(type.id());
     const hssize_t rows = H5Sget_simple_extent_npoints(space.id());
-    if (H5Sget_simple_extent_ndims(space.id()) != 1 || (kind != H5T_FLOAT && kind != H5T_INTEGER)) {
-      refuse("is no vector of numbers; allowed in the root: vectors of integers or floats, one for each channel");
+    // A column or a row of a matrix is a vector: all its other extents are 1.
+    std::array<hsize_t, H5S_MAX_RANK> extents{};
+    const int rank = H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr);
+    const bool is_vector = rank > 0 && std::ranges::count_if(extents, [](hsize_t extent) { return extent > 1; }) <= 1;
+    if (!is_vector || (kind != H5T_FLOAT && kind != H5T_INTEGER)) {
+      return "is no vector of numbers; allowed: vectors of integers or floats, one for each channel";
     }
     if (rows < 0 || static_cast<std::size_t>(rows) > kMostRows) {
-      refuse(fmt::format("{} rows; allowed: up to {}", rows, kMostRows));
+      return fmt::format("{} rows; allowed: up to {}", rows, kMostRows);
     }
-    std::vector<double> values(static_cast<std::size_t>(rows));
-    if (!values.empty() && H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-      refuse("its values cannot be read; the file is damaged");
+    values.resize(static_cast<std::size_t>(rows));
+    if (!values.empty() && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+      values.clear();
+      return "its values cannot be read; the file is damaged";
     }
-    put_text(bytes, name);
-    put_text(bytes, unit_of(dataset.id()));
-    put_text(bytes, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
+    const auto is_large = [](double value) { return std::abs(value) >= static_cast<double>(kLargestExactInteger); };
+    if (kind == H5T_INTEGER && std::ranges::any_of(values, is_large)) {
+      values.clear();
+      return "an integer of 2^53 or more, which a double may not hold";
+    }
+    return {};
   }
-  return bytes;
-}
+
+  const std::filesystem::path& path_;
+  std::string bytes_;
+  std::size_t count_ = 0;
+};
 
 /// Writes one dataset with its unit; false if the library could not.
 bool put_dataset(hid_t file, const std::string& name, const std::string& unit, const std::vector<double>& values) {
@@ -150,19 +199,23 @@ bool put_dataset(hid_t file, const std::string& name, const std::string& unit, c
 
 std::vector<ForeignGroup> read_hdf5(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) {
-    throw FileError(fmt::format("{}: is no file; allowed: an HDF5 file", path.string()));
+    throw FileError(fmt::format("{}: is no file{}; allowed: an HDF5 file", path.string(), near_file(path)));
   }
   std::string bytes;
   try {
-    bytes = run_apart([&] { return channels_here(path); }, limits_of_a_reader(kMostChannelBytes));
+    bytes = run_apart([&] { return Datasets(path).text(); }, limits_of_a_reader(kMostChannelBytes));
   } catch (const ApartError& error) {
     throw FileError(fmt::format("{}: cannot be read as an HDF5 file: {}; it is damaged", path.string(), error.what()));
   }
-  std::vector<ForeignGroup> groups(1);
+  std::vector<ForeignGroup> groups;
   for (std::string_view rest = bytes; !rest.empty();) {
-    ForeignChannel& channel = groups.front().channels.emplace_back();
+    const std::string group(take_text(rest));
+    const auto known = std::ranges::find(groups, group, &ForeignGroup::name);
+    ForeignGroup& own = known == groups.end() ? groups.emplace_back(ForeignGroup{group, {}}) : *known;
+    ForeignChannel& channel = own.channels.emplace_back();
     channel.name = take_text(rest);
     channel.unit = take_text(rest);
+    channel.problem = take_text(rest);
     channel.is_time = channel.name == kTimeDataset;
     const std::string_view values = take_text(rest);
     channel.values.resize(values.size() / sizeof(double));

@@ -19,8 +19,26 @@ inline constexpr std::string_view kFinalised = "MDF     ";
 inline constexpr std::string_view kUnfinalised = "UnFinMF ";
 inline constexpr std::size_t kUnfinalisedFlags = 60;  ///< place of the flags in the identification
 
-/// What a program that broke off has left undone.
-enum UnfinalisedFlag : std::uint16_t { kCycleCounts = 1U << 0U, kLastDataLength = 1U << 2U };
+/// What a program that broke off has left undone. Sample reductions and values of variable length are not read, and a list
+/// of data without its last links ends at the last one.
+enum UnfinalisedFlag : std::uint16_t {
+  kCycleCounts = 1U << 0U,
+  kReductionCounts = 1U << 1U,
+  kLastDataLength = 1U << 2U,
+  kLastReductionLength = 1U << 3U,
+  kLastDataList = 1U << 4U,
+  kLengthsOfAnyLength = 1U << 5U,
+  kOffsetsOfAnyLength = 1U << 6U
+};
+/// What of it is read all the same.
+inline constexpr unsigned kReadUndone = kCycleCounts | kReductionCounts | kLastDataLength | kLastReductionLength |
+                                        kLastDataList | kLengthsOfAnyLength | kOffsetsOfAnyLength;
+
+/// Flag of a channel group: its rows are values of any length, each behind its own length.
+inline constexpr unsigned kRowsOfAnyLength = 1U << 0U;
+/// Flags of a channel: none of its values holds; a bit of each row says whether its value does not.
+inline constexpr unsigned kAllInvalid = 1U << 0U;
+inline constexpr unsigned kHasInvalidBit = 1U << 1U;
 
 /// Places of the links in their blocks, from 0.
 enum HeaderLink { kFirstDataGroup, kFirstHistory };
@@ -39,6 +57,6 @@ enum class DataType : std::uint8_t {
   float_little = 4,
   float_big = 5
 };
-enum class ConversionType : std::uint8_t { identity = 0, linear = 1 };
+enum class ConversionType : std::uint8_t { identity = 0, linear = 1, rational = 2 };
 
 }  // namespace hotfire::mdf4

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
-#include <fstream>
-#include <set>
+#include <limits>
+#include <optional>
 
 #include "tools/files/exchange/exact_integer.hpp"
 #include "tools/files/exchange/mdf4.hpp"
 #include "tools/files/exchange/mdf4_blocks.hpp"
-#include "tools/files/text/error.hpp"
+#include "tools/files/exchange/mdf4_file.hpp"
 
 namespace hotfire {
 
@@ -20,350 +19,300 @@ namespace {
 
 using namespace mdf4;
 
-/// The largest file and the most data after decompression: as many rows as a record may have, of 50 channels.
-constexpr std::size_t kMostBytes = 4'000'000'000;
+/// The most channels that lie within one another, as parts of a structure.
+constexpr int kMostStructuresWithin = 16;
 
-/// The part of a file that one block is.
-struct Block {
-  std::uint64_t place = 0;
-  std::string_view name;
-  std::string_view links;
-  std::string_view data;
+/// A channel group and its rows, one after the other.
+struct Rows {
+  Block group;
+  std::uint64_t id = 0;
+  std::uint64_t cycles = 0;       ///< as its program has counted them
+  bool is_of_any_length = false;  ///< its rows are texts, each with its own length
+  std::size_t data_bytes = 0;     ///< of a row, without its invalidation bits
+  std::size_t row_bytes = 0;
+  std::string bytes;
+  std::size_t count = 0;
+};
+
+/// What a conversion makes of a raw value.
+struct Conversion {
+  ConversionType type = ConversionType::identity;
+  std::array<double, 6> p{};
+
+  double operator()(double x) const {
+    switch (type) {
+      case ConversionType::linear:
+        return p[0] + p[1] * x;
+      case ConversionType::rational:
+        return (p[0] * x * x + p[1] * x + p[2]) / (p[3] * x * x + p[4] * x + p[5]);
+      case ConversionType::identity:
+        break;
+    }
+    return x;
+  }
+};
+
+/// Where a channel's value is in a row.
+struct Field {
+  DataType type{};
+  std::size_t byte = 0;
+  std::size_t bytes = 0;
+  unsigned first_bit = 0;
+  unsigned bits = 0;
+
+  bool is_float() const { return type == DataType::float_little || type == DataType::float_big; }
+  bool is_known() const {
+    return type <= DataType::float_big && bits > 0 && bits <= 64 && first_bit < 8 &&
+           (!is_float() || (first_bit == 0 && (bits == 32 || bits == 64)));
+  }
+  /// Nothing for an integer that no double holds.
+  std::optional<double> value_at(const char* row) const {
+    std::array<unsigned char, 9> raw{};
+    const bool is_big = type == DataType::unsigned_big || type == DataType::signed_big || type == DataType::float_big;
+    for (std::size_t i = 0; i < std::min(bytes, raw.size()); ++i) {
+      raw[i] = static_cast<unsigned char>(row[byte + (is_big ? bytes - 1 - i : i)]);
+    }
+    std::uint64_t low = 0;
+    std::memcpy(&low, raw.data(), sizeof low);
+    if (is_float()) {
+      return bits == 64 ? std::bit_cast<double>(low)
+                        : static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(low)));
+    }
+    std::uint64_t value = first_bit == 0 ? low : low >> first_bit | std::uint64_t{raw[8]} << (64U - first_bit);
+    const bool is_signed = type == DataType::signed_little || type == DataType::signed_big;
+    if (bits < 64) {
+      value &= (std::uint64_t{1} << bits) - 1;
+      if (is_signed && (value >> (bits - 1) & 1U) != 0) {
+        value |= ~((std::uint64_t{1} << bits) - 1);
+      }
+    }
+    const auto as_signed = static_cast<std::int64_t>(value);
+    if (is_signed ? !is_exact(as_signed) : !is_exact(value)) {
+      return std::nullopt;
+    }
+    return is_signed ? static_cast<double>(as_signed) : static_cast<double>(value);
+  }
 };
 
 class Mdf4Reader {
  public:
-  explicit Mdf4Reader(const std::filesystem::path& path) : path_(path) {
-    std::error_code failed;
-    const std::uintmax_t size =
-        std::filesystem::is_regular_file(path, failed) ? std::filesystem::file_size(path, failed) : 0;
-    if (size < kIdentification || size > kMostBytes) {
-      refuse(fmt::format("is no MDF file of {} to {} bytes", kIdentification, kMostBytes));
-    }
-    bytes_.resize(size);
-    if (!std::ifstream(path, std::ios::binary).read(bytes_.data(), static_cast<std::streamsize>(size))) {
-      refuse("cannot be read");
-    }
-    const std::string_view kind = std::string_view(bytes_).substr(0, kFinalised.size());
-    if (kind != kFinalised && kind != kUnfinalised) {
-      refuse("does not begin as an MDF file");
-    }
-    if (bytes_[kFinalised.size()] != '4') {
-      refuse(fmt::format("is of version {}; allowed: 4", std::string(bytes_, kFinalised.size(), 4)));
-    }
-    if (kind == kUnfinalised) {
-      undone_ = number<std::uint16_t>(bytes_, kUnfinalisedFlags);
-      if ((undone_ & ~(kCycleCounts | kLastDataLength)) != 0) {
-        refuse(fmt::format("is not finalised, flags 0x{:x}; finalise it with the program that has recorded it", undone_));
-      }
-    }
-  }
+  explicit Mdf4Reader(const std::filesystem::path& path) : file_(path) {}
 
   std::vector<ForeignGroup> read() {
     std::vector<ForeignGroup> groups;
-    const Block header = block(kIdentification, "HD");
-    for (std::uint64_t at = link(header, kFirstDataGroup); at != 0;) {
-      visit(at);
-      const Block group = block(at, "DG");
-      read_group(group, groups);
-      at = link(group, kNextDataGroup);
+    const Block header = file_.block(kIdentification, "HD");
+    for (std::uint64_t at = file_.link(header, kFirstDataGroup); at != 0;) {
+      file_.visit(at);
+      const Block data_group = file_.block(at, "DG");
+      for (const Rows& rows : rows_of(data_group)) {
+        if (rows.row_bytes > 0 && !rows.is_of_any_length) {
+          ForeignGroup& group = groups.emplace_back();
+          group.name = file_.text_at(file_.link(rows.group, kAcquisitionName));
+          read_channels(file_.link(rows.group, kFirstChannel), rows, 0, group);
+        }
+      }
+      at = file_.link(data_group, kNextDataGroup);
     }
     return groups;
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& problem) const {
-    throw FileError(fmt::format("{}: {}", path_.string(), problem));
-  }
-  [[noreturn]] void refuse_at(std::uint64_t place, const std::string& problem) const {
-    refuse(fmt::format("byte {}: {}; the file is damaged", place, problem));
-  }
-  /// A block of a chain or of data is part of one thing alone: a chain that closes on itself would have no end, and data
-  /// that are used again no bound.
-  void visit(std::uint64_t place) {
-    if (!visited_.insert(place).second) {
-      refuse_at(place, "a block that is linked to twice");
+  /// The channel groups of a data group with their rows. Where there are several ("unsorted"), each row begins with the id
+  /// of its group.
+  std::vector<Rows> rows_of(const Block& data_group) {
+    std::vector<Rows> all;
+    for (std::uint64_t at = file_.link(data_group, kFirstChannelGroup); at != 0;) {
+      file_.visit(at);
+      Rows& rows = all.emplace_back();
+      rows.group = file_.block(at, "CG");
+      rows.id = file_.number<std::uint64_t>(rows.group.data, 0);
+      rows.cycles = file_.number<std::uint64_t>(rows.group.data, 8);
+      rows.is_of_any_length = (file_.number<std::uint16_t>(rows.group.data, 16) & kRowsOfAnyLength) != 0;
+      rows.data_bytes = file_.number<std::uint32_t>(rows.group.data, 24);
+      rows.row_bytes = rows.data_bytes + file_.number<std::uint32_t>(rows.group.data, 28);
+      at = file_.link(rows.group, kNextChannelGroup);
     }
-  }
-
-  template <class T>
-  T number(std::string_view bytes, std::size_t at) const {
-    T value{};
-    if (at > bytes.size() || bytes.size() - at < sizeof value) {
-      refuse("a block is too short for what it holds; the file is damaged");
+    if (all.empty()) {
+      return all;
     }
-    std::memcpy(&value, bytes.data() + at, sizeof value);
-    return value;
-  }
-
-  Block block(std::uint64_t place, std::string_view wanted = {}) const {
-    const std::string_view all = bytes_;
-    if (place > all.size() || all.size() - place < kBlockHeader || all.substr(place, 2) != "##") {
-      refuse_at(place, "no block");
-    }
-    Block found{place, all.substr(place + 2, 2), {}, {}};
-    if (!wanted.empty() && found.name != wanted) {
-      refuse_at(place, fmt::format("a block \"{}\" instead of \"{}\"", printable(found.name), wanted));
-    }
-    std::uint64_t length = number<std::uint64_t>(all, place + 8);
-    const auto links = number<std::uint64_t>(all, place + 16);
-    const std::uint64_t rest = all.size() - place;
-    // What was still being written when the program broke off goes on to the end of the file.
-    const bool is_open = found.name == "DT" && (undone_ & kLastDataLength) != 0 && (length <= kBlockHeader || length > rest);
-    length = is_open ? rest : length;
-    if (length < kBlockHeader || length > rest || links > (length - kBlockHeader) / kLink) {
-      refuse_at(place, fmt::format("a block \"{}\" that does not lie in the file", printable(found.name)));
-    }
-    found.links = all.substr(place + kBlockHeader, links * kLink);
-    found.data = all.substr(place + kBlockHeader + links * kLink, length - kBlockHeader - links * kLink);
-    return found;
-  }
-
-  static std::string printable(std::string_view text) {
-    std::string result(text);
-    std::ranges::replace_if(
-        result, [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
-    return result;
-  }
-
-  /// A link that a block does not have leads nowhere, as one that is zero.
-  std::uint64_t link(const Block& from, std::size_t which) const {
-    return (which + 1) * kLink <= from.links.size() ? number<std::uint64_t>(from.links, which * kLink) : 0;
-  }
-
-  /// A text, or what is between the tags <TX> of a comment.
-  std::string text_at(std::uint64_t place) const {
-    if (place == 0) {
-      return {};
-    }
-    const Block found = block(place);
-    std::string_view text = found.data.substr(0, found.data.find('\0'));
-    if (found.name == "MD") {
-      const std::size_t from = text.find("<TX>");
-      const std::size_t to = text.find("</TX>");
-      text = from != std::string_view::npos && to != std::string_view::npos && to > from
-                 ? text.substr(from + 4, to - from - 4)
-                 : std::string_view{};
-    } else if (found.name != "TX") {
-      refuse_at(place, "no text");
-    }
-    return std::string(text);
-  }
-
-  void read_group(const Block& data_group, std::vector<ForeignGroup>& groups) {
-    const std::uint64_t first = link(data_group, kFirstChannelGroup);
-    if (first == 0) {
-      return;
-    }
-    const Block group = block(first, "CG");
-    if (link(group, kNextChannelGroup) != 0 || number<std::uint8_t>(data_group.data, 0) != 0) {
-      refuse_at(group.place,
-                "rows of several groups in one block (unsorted): sort it with the program that has recorded it");
-    }
-    const auto cycles = number<std::uint64_t>(group.data, 8);
-    const std::size_t row_bytes = std::size_t{number<std::uint32_t>(group.data, 24)} + number<std::uint32_t>(group.data, 28);
-    if (row_bytes == 0) {
-      return;
-    }
-    const std::string rows = data_at(link(data_group, kDataBlock));
-    const std::size_t whole = rows.size() / row_bytes;
-    if ((undone_ & kCycleCounts) == 0 && cycles > whole) {
-      refuse_at(group.place, fmt::format("{} rows, and bytes for {}", cycles, whole));
-    }
-    const std::size_t count = (undone_ & kCycleCounts) != 0 ? whole : cycles;
-    ForeignGroup& result = groups.emplace_back();
-    result.name = text_at(link(group, kAcquisitionName));
-    for (std::uint64_t at = link(group, kFirstChannel); at != 0;) {
-      visit(at);
-      const Block channel = block(at, "CN");
-      result.channels.push_back(read_channel(channel, rows, row_bytes, count));
-      at = link(channel, kNextChannel);
-    }
-  }
-
-  /// All data of a group: one block, a list of blocks, or a header of a list.
-  std::string data_at(std::uint64_t place) {
-    std::string data;
-    if (place == 0) {
-      return data;
-    }
-    Block found = block(place);
-    if (found.name == "HL") {
-      found = block(link(found, 0), "DL");
-    }
-    if (found.name != "DL") {
-      append_data(found, data);
-      return data;
-    }
-    for (;;) {
-      visit(found.place);
-      for (std::size_t i = 1; i < found.links.size() / kLink; ++i) {
-        if (const std::uint64_t part = link(found, i); part != 0) {
-          append_data(block(part), data);
-        }
-      }
-      const std::uint64_t next = link(found, 0);
-      if (next == 0) {
-        return data;
-      }
-      found = block(next, "DL");
-    }
-  }
-
-  void append_data(const Block& part, std::string& data) {
-    visit(part.place);
-    if (part.name == "DT") {
-      require_room(data.size() + part.data.size(), part);
-      data += part.data;
-    } else if (part.name == "DZ") {
-      data += unzipped(part, data.size());
+    const std::size_t id_bytes = file_.number<std::uint8_t>(data_group.data, 0);
+    std::string data = file_.data_at(file_.link(data_group, kDataBlock));
+    if (id_bytes > 0) {
+      sort(data, id_bytes, all);
+    } else if (all.size() > 1) {
+      file_.refuse_at(data_group.place, "several groups, whose rows have no ids");
     } else {
-      refuse_at(part.place, fmt::format("a block \"{}\" where data are", printable(part.name)));
+      all.front().bytes = std::move(data);
     }
+    for (Rows& rows : all) {
+      count(rows);
+    }
+    return all;
   }
 
-  void require_room(std::size_t bytes, const Block& part) const {
-    if (bytes > kMostBytes) {
-      refuse_at(part.place, fmt::format("more than {} bytes of data", kMostBytes));
+  void count(Rows& rows) const {
+    if (rows.row_bytes == 0 || rows.is_of_any_length) {
+      return;
     }
+    const std::size_t whole = rows.bytes.size() / rows.row_bytes;
+    const bool is_counted = (file_.undone() & kCycleCounts) == 0;
+    if (is_counted && rows.cycles > whole) {
+      file_.refuse_at(rows.group.place, fmt::format("{} rows, and bytes for {}", rows.cycles, whole));
+    }
+    rows.count = is_counted ? rows.cycles : whole;
   }
 
-  std::string unzipped(const Block& part, std::size_t before) const {
-    constexpr std::size_t kHead = 24;
-    constexpr std::uint64_t kMostGain = 1100;  // of deflate, whose most is 1032
-    const auto kind = number<std::uint8_t>(part.data, 2);
-    const auto columns = number<std::uint32_t>(part.data, 4);
-    const auto size = number<std::uint64_t>(part.data, 8);
-    const auto stored = number<std::uint64_t>(part.data, 16);
-    if (part.data.substr(0, 2) != "DT" || kind > 1 || stored > part.data.size() - kHead || size / kMostGain > stored) {
-      refuse_at(part.place, "a compressed block that is none of rows, or whose lengths do not agree");
+  /// Gives each row to its group. What is left at the end is part of a row that was still being written.
+  void sort(const std::string& data, std::size_t id_bytes, std::vector<Rows>& all) const {
+    if (id_bytes != 1 && id_bytes != 2 && id_bytes != 4 && id_bytes != 8) {
+      file_.refuse(fmt::format("ids of rows have {} bytes; allowed: 1, 2, 4, 8; the file is damaged", id_bytes));
     }
-    require_room(before + size, part);
-    std::string bytes(size, '\0');
-    uLongf length = size;
-    if (uncompress(reinterpret_cast<Bytef*>(bytes.data()), &length, reinterpret_cast<const Bytef*>(part.data.data() + kHead),
-                   stored) != Z_OK ||
-        length != size) {
-      refuse_at(part.place, "a compressed block that does not give its length");
-    }
-    if (kind == 0 || columns == 0) {
-      return bytes;
-    }
-    // Transposed for compression: all first bytes of the rows, all second ones, ...; what is no whole row follows as it is.
-    const std::size_t rows = size / columns;
-    std::string turned = bytes;
-    for (std::size_t row = 0; row < rows; ++row) {
-      for (std::size_t column = 0; column < columns; ++column) {
-        turned[row * columns + column] = bytes[column * rows + row];
+    for (std::size_t at = 0; data.size() - at >= id_bytes;) {
+      std::uint64_t id = 0;
+      std::memcpy(&id, data.data() + at, id_bytes);
+      const auto own = std::ranges::find(all, id, &Rows::id);
+      if (own == all.end()) {
+        file_.refuse(fmt::format("a row with the id {}, which no group has; the file is damaged", id));
       }
+      at += id_bytes;
+      std::size_t size = own->row_bytes;
+      if (own->is_of_any_length) {
+        constexpr std::size_t kLength = 4;
+        if (data.size() - at < kLength) {
+          return;
+        }
+        size = kLength + file_.number<std::uint32_t>(data, at);
+      }
+      if (data.size() - at < size) {
+        return;
+      }
+      if (!own->is_of_any_length) {
+        own->bytes.append(data, at, size);
+      }
+      at += size;
     }
-    return turned;
   }
 
-  ForeignChannel read_channel(const Block& channel, const std::string& rows, std::size_t row_bytes,
-                              std::size_t count) const {
-    ForeignChannel result;
-    result.name = text_at(link(channel, kNameText));
-    result.unit = text_at(link(channel, kUnitText));
-    const auto type = number<ChannelType>(channel.data, 0);
-    const auto sync = number<SyncType>(channel.data, 1);
+  /// A chain of channels, and the parts of those that are structures.
+  void read_channels(std::uint64_t at, const Rows& rows, int nested, ForeignGroup& group) {
+    if (nested > kMostStructuresWithin) {
+      file_.refuse_at(at, fmt::format("channels within channels, more than {} deep", kMostStructuresWithin));
+    }
+    while (at != 0) {
+      file_.visit(at);
+      const Block channel = file_.block(at, "CN");
+      const std::uint64_t parts = file_.link(channel, kComposition);
+      const bool is_structure = parts != 0 && file_.block(parts).name == "CN";
+      ForeignChannel result;
+      result.name = file_.text_at(file_.link(channel, kNameText));
+      result.unit = file_.text_at(file_.link(channel, kUnitText));
+      if (parts != 0 && !is_structure) {
+        result.problem = "an array; allowed: one number a row";
+      } else {
+        read_values(channel, rows, result);
+      }
+      group.channels.push_back(std::move(result));
+      if (is_structure) {
+        read_channels(parts, rows, nested + 1, group);
+      }
+      at = file_.link(channel, kNextChannel);
+    }
+  }
+
+  void read_values(const Block& channel, const Rows& rows, ForeignChannel& result) const {
+    const auto type = file_.number<ChannelType>(channel.data, 0);
+    const auto sync = file_.number<SyncType>(channel.data, 1);
     result.is_time = (type == ChannelType::master || type == ChannelType::virtual_master) && sync == SyncType::time;
-    double offset = 0.0;
-    double factor = 1.0;
-    if (const std::uint64_t at = link(channel, kConversion); at != 0) {
-      const Block conversion = block(at, "CC");
-      const auto kind = number<ConversionType>(conversion.data, 0);
-      if (kind == ConversionType::linear) {
-        offset = number<double>(conversion.data, 24);
-        factor = number<double>(conversion.data, 32);
-      } else if (kind != ConversionType::identity) {
-        refuse(fmt::format("channel \"{}\": a conversion of type {}; allowed: 1:1 and linear. Export physical values",
-                           result.name, static_cast<int>(kind)));
-      }
-      if (result.unit.empty()) {
-        result.unit = text_at(link(conversion, kConversionUnit));
-      }
+    const Conversion conversion = conversion_of(channel, result);
+    if (!result.problem.empty()) {
+      return;
     }
     if (type == ChannelType::virtual_master) {
-      for (std::size_t row = 0; row < count; ++row) {
-        result.values.push_back(offset + factor * static_cast<double>(row));
+      for (std::size_t row = 0; row < rows.count; ++row) {
+        result.values.push_back(conversion(static_cast<double>(row)));
       }
-      return result;
+      return;
     }
+    const Field field = field_of(channel);
     if (type != ChannelType::fixed_length && type != ChannelType::master) {
-      refuse(fmt::format("channel \"{}\": type {}; allowed: values of fixed length", result.name, static_cast<int>(type)));
+      result.problem = fmt::format("a channel of type {}; allowed: values of fixed length", static_cast<int>(type));
+    } else if (!field.is_known()) {
+      result.problem = fmt::format("data type {} of {} bits; allowed: integers of up to 64 bits, floats of 32 and 64",
+                                   static_cast<int>(field.type), field.bits);
     }
-    const Field field = field_of(channel, result.name, row_bytes);
-    result.values.reserve(count);
-    for (std::size_t row = 0; row < count; ++row) {
-      const double value = field.value_at(rows.data() + row * row_bytes, *this, result.name);
-      result.values.push_back(factor == 1.0 && offset == 0.0 ? value : offset + factor * value);
+    if (!result.problem.empty()) {
+      return;
     }
-    return result;
+    if (field.byte > rows.row_bytes || field.bytes > rows.row_bytes - field.byte) {
+      file_.refuse_at(channel.place, fmt::format("channel \"{}\" lies outside its rows", result.name));
+    }
+    const auto flags = file_.number<std::uint32_t>(channel.data, 12);
+    const std::size_t invalid_bit = file_.number<std::uint32_t>(channel.data, 16);
+    const std::size_t invalid_byte = rows.data_bytes + invalid_bit / 8;
+    if ((flags & kHasInvalidBit) != 0 && invalid_byte >= rows.row_bytes) {
+      file_.refuse_at(channel.place,
+                      fmt::format("the invalidation bit of channel \"{}\" lies outside its rows", result.name));
+    }
+    result.values.reserve(rows.count);
+    for (std::size_t row = 0; row < rows.count; ++row) {
+      const char* const own = rows.bytes.data() + row * rows.row_bytes;
+      const bool is_invalid =
+          (flags & kAllInvalid) != 0 ||
+          ((flags & kHasInvalidBit) != 0 && (static_cast<unsigned char>(own[invalid_byte]) >> (invalid_bit % 8) & 1U) != 0);
+      const std::optional<double> value = field.value_at(own);
+      if (!value) {
+        result.problem = "an integer beyond 2^53, which no double holds";
+        result.values.clear();
+        return;
+      }
+      result.values.push_back(is_invalid ? std::numeric_limits<double>::quiet_NaN() : conversion(*value));
+    }
   }
 
-  /// Where a channel's value is in a row.
-  struct Field {
-    DataType type{};
-    std::size_t byte = 0;
-    std::size_t bytes = 0;
-    unsigned first_bit = 0;
-    unsigned bits = 0;
-
-    double value_at(const char* row, const Mdf4Reader& reader, const std::string& name) const {
-      std::array<unsigned char, 9> raw{};
-      const bool is_big = type == DataType::unsigned_big || type == DataType::signed_big || type == DataType::float_big;
-      for (std::size_t i = 0; i < std::min(bytes, raw.size()); ++i) {
-        raw[i] = static_cast<unsigned char>(row[byte + (is_big ? bytes - 1 - i : i)]);
-      }
-      if (type == DataType::float_little || type == DataType::float_big) {
-        std::uint64_t pattern = 0;
-        std::memcpy(&pattern, raw.data(), sizeof pattern);
-        return bits == 64 ? std::bit_cast<double>(pattern)
-                          : static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(pattern)));
-      }
-      std::uint64_t low = 0;
-      std::memcpy(&low, raw.data(), sizeof low);
-      std::uint64_t value = first_bit == 0 ? low : low >> first_bit | std::uint64_t{raw[8]} << (64U - first_bit);
-      const bool is_signed = type == DataType::signed_little || type == DataType::signed_big;
-      if (bits < 64) {
-        value &= (std::uint64_t{1} << bits) - 1;
-        if (is_signed && (value >> (bits - 1) & 1U) != 0) {
-          value |= ~((std::uint64_t{1} << bits) - 1);
-        }
-      }
-      const auto as_signed = static_cast<std::int64_t>(value);
-      if (is_signed ? !is_exact(as_signed) : !is_exact(value)) {
-        reader.refuse(fmt::format("channel \"{}\": an integer beyond 2^53, which no double holds", name));
-      }
-      return is_signed ? static_cast<double>(as_signed) : static_cast<double>(value);
+  /// The conversion of a channel; its unit is that of the channel unless that has one. Another one is the channel's problem.
+  Conversion conversion_of(const Block& channel, ForeignChannel& result) const {
+    Conversion conversion;
+    const std::uint64_t at = file_.link(channel, kConversion);
+    if (at == 0) {
+      return conversion;
     }
-  };
+    const Block block = file_.block(at, "CC");
+    if (result.unit.empty()) {
+      result.unit = file_.text_at(file_.link(block, kConversionUnit));
+    }
+    conversion.type = file_.number<ConversionType>(block.data, 0);
+    std::size_t parameters = 0;
+    switch (conversion.type) {
+      case ConversionType::identity:
+        break;
+      case ConversionType::linear:
+        parameters = 2;
+        break;
+      case ConversionType::rational:
+        parameters = 6;
+        break;
+      default:
+        result.problem = fmt::format("a conversion of type {}; allowed: 1:1, linear and rational. Export physical values",
+                                     static_cast<int>(conversion.type));
+    }
+    constexpr std::size_t kFirstParameter = 24;
+    for (std::size_t i = 0; i < parameters; ++i) {
+      conversion.p[i] = file_.number<double>(block.data, kFirstParameter + i * sizeof(double));
+    }
+    return conversion;
+  }
 
-  Field field_of(const Block& channel, const std::string& name, std::size_t row_bytes) const {
+  Field field_of(const Block& channel) const {
     Field field;
-    field.type = number<DataType>(channel.data, 2);
-    field.first_bit = number<std::uint8_t>(channel.data, 3);
-    field.byte = number<std::uint32_t>(channel.data, 4);
-    field.bits = number<std::uint32_t>(channel.data, 8);
-    const bool is_float = field.type == DataType::float_little || field.type == DataType::float_big;
-    const bool is_known = field.type <= DataType::float_big && field.bits > 0 && field.bits <= 64 && field.first_bit < 8 &&
-                          (!is_float || (field.first_bit == 0 && (field.bits == 32 || field.bits == 64)));
-    if (!is_known) {
-      refuse(fmt::format("channel \"{}\": data type {} of {} bits; allowed: integers of up to 64 bits, floats of 32 and 64",
-                         name, static_cast<int>(field.type), field.bits));
-    }
-    field.bytes = (field.first_bit + field.bits + 7) / 8;
-    if (field.byte > row_bytes || field.bytes > row_bytes - field.byte) {
-      refuse_at(channel.place, fmt::format("channel \"{}\" lies outside its rows", name));
-    }
+    field.type = file_.number<DataType>(channel.data, 2);
+    field.first_bit = file_.number<std::uint8_t>(channel.data, 3);
+    field.byte = file_.number<std::uint32_t>(channel.data, 4);
+    field.bits = file_.number<std::uint32_t>(channel.data, 8);
+    field.bytes = (std::size_t{field.first_bit} + field.bits + 7) / 8;
     return field;
   }
 
-  std::filesystem::path path_;
-  std::string bytes_;
-  unsigned undone_ = 0;
-  std::set<std::uint64_t> visited_;
+  File file_;
 };
 
 }  // namespace

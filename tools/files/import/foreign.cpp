@@ -2,7 +2,9 @@
 #include "tools/files/import/foreign.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "tools/files/exchange/hdf5.hpp"
@@ -22,8 +24,15 @@ namespace {
 
 constexpr const char* kTime = "time";
 
-bool is_matlab(const std::filesystem::path& path) { return path.extension() == ".mat"; }
-bool is_mdf4(const std::filesystem::path& path) { return path.extension() == ".mf4"; }
+/// The extension in small letters: a logger may write "0001.MF4".
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_matlab(const std::filesystem::path& path) { return extension_of(path) == ".mat"; }
+bool is_mdf4(const std::filesystem::path& path) { return extension_of(path) == ".mf4" || extension_of(path) == ".mdf"; }
 
 std::vector<ForeignGroup> groups_of(const std::filesystem::path& path) {
   return is_mdf4(path) ? read_mdf4(path) : read_hdf5(path);
@@ -41,6 +50,33 @@ std::string channel_of_variable(std::string name) {
   return name;
 }
 
+/// How a map names a channel: "GROUP/CHANNEL", where the group has a name.
+std::string full_name(const ForeignGroup& group, const ForeignChannel& channel) {
+  return group.name.empty() ? channel.name : group.name + "/" + channel.name;
+}
+
+/// The one group that has a time; of a file without, the one that has channels. Null if there is none.
+const ForeignGroup* group_of_record(const std::filesystem::path& path, const std::vector<ForeignGroup>& groups) {
+  const ForeignGroup* used = nullptr;
+  for (const bool has_time : {true, false}) {
+    for (const ForeignGroup& group : groups) {
+      const bool is_usable =
+          has_time ? std::ranges::any_of(group.channels, &ForeignChannel::is_time) : !group.channels.empty();
+      if (is_usable && used != nullptr) {
+        throw FileError(
+            fmt::format("{}: several groups of channels, \"{}\" and \"{}\"; a record has one: choose with a map, "
+                        "'hotfire import {} --guess' begins one",
+                        path.string(), used->name, group.name, path.string()));
+      }
+      used = is_usable ? &group : used;
+    }
+    if (used != nullptr) {
+      break;
+    }
+  }
+  return used;
+}
+
 /// The map of a file whose channels have the names of a record.
 ImportMap own_map(const std::filesystem::path& path, const std::vector<ForeignGroup>& groups) {
   ImportMap map;
@@ -50,20 +86,9 @@ ImportMap own_map(const std::filesystem::path& path, const std::vector<ForeignGr
       map.columns.push_back({channel_of_variable(variable.name), variable.name, known_unit(variable.unit)});
     }
   }
-  const ForeignGroup* used = nullptr;
-  for (const ForeignGroup& group : groups) {
-    if (group.channels.empty()) {
-      continue;
-    }
-    if (used != nullptr) {
-      throw FileError(
-          fmt::format("{}: several groups of channels, \"{}\" and \"{}\"; a record has one: choose with a map, "
-                      "'hotfire import --help'",
-                      path.string(), used->name, group.name));
-    }
-    used = &group;
-    for (const ForeignChannel& channel : group.channels) {
-      map.columns.push_back({channel.is_time ? kTime : channel.name, channel.name, known_unit(channel.unit)});
+  if (const ForeignGroup* used = group_of_record(path, groups)) {
+    for (const ForeignChannel& channel : used->channels) {
+      map.columns.push_back({channel.is_time ? kTime : channel.name, full_name(*used, channel), known_unit(channel.unit)});
     }
   }
   const auto time = std::ranges::find(map.columns, kTime, &ImportColumn::channel);
@@ -92,8 +117,8 @@ Found find(const std::filesystem::path& path, const std::vector<ForeignGroup>& g
   std::vector<std::string> names;
   for (const ForeignGroup& group : groups) {
     for (const ForeignChannel& channel : group.channels) {
-      const std::string full = group.name + "/" + channel.name;
-      names.push_back(channel.name);
+      const std::string full = full_name(group, channel);
+      names.push_back(column.column.find('/') == std::string::npos ? channel.name : full);
       if (column.column == channel.name || column.column == full) {
         found.push_back({&group, &channel});
       }
@@ -123,6 +148,10 @@ std::vector<std::vector<double>> columns_of(const std::filesystem::path& path, c
                       path.string(), column.column, found.group->name, map.columns.front().column, first->name));
     }
     first = found.group;
+    if (!found.channel->problem.empty()) {
+      throw FileError(fmt::format("{}: channel \"{}\" for {}: {}", path.string(), column.column, column.channel,
+                                  found.channel->problem));
+    }
     values.push_back(found.channel->values);
   }
   require_equal_rows(path, map, values);
@@ -131,15 +160,29 @@ std::vector<std::vector<double>> columns_of(const std::filesystem::path& path, c
 
 }  // namespace
 
-std::vector<std::string> foreign_extensions() { return {".mf4", ".h5", ".hdf5", ".mat"}; }
+std::vector<std::string> foreign_extensions() { return {".mf4", ".mdf", ".h5", ".hdf5", ".mat"}; }
 
 bool is_foreign(const std::filesystem::path& path) {
   const std::vector<std::string> known = foreign_extensions();
-  return std::ranges::find(known, path.extension().string()) != known.end();
+  return std::ranges::find(known, extension_of(path)) != known.end();
 }
 
 std::vector<std::vector<double>> read_foreign_columns(const std::filesystem::path& path, const ImportMap& map) {
   return is_matlab(path) ? read_matlab_columns(path, map) : columns_of(path, groups_of(path), map);
+}
+
+std::vector<ForeignGroup> foreign_groups(const std::filesystem::path& path) {
+  if (!is_matlab(path)) {
+    return groups_of(path);
+  }
+  ForeignGroup group;
+  for (const MatlabVariable& variable : read_matlab_variables(path)) {
+    ImportMap map;
+    map.columns.push_back({variable.name, variable.name, known_unit(variable.unit)});
+    group.channels.push_back(
+        {variable.name, variable.unit, variable.name == kTime, read_matlab_columns(path, map).front(), {}});
+  }
+  return {std::move(group)};
 }
 
 Record load_foreign(const std::filesystem::path& path) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/files/exchange/foreign_channels.hpp"
 #include "tools/files/import/import.hpp"
 
 namespace hotfire {
@@ -21,6 +22,10 @@ bool is_foreign(const std::filesystem::path& path);
 /// Throws FileError: what the reader of the format refuses, no time, a channel that a record cannot have, several groups
 /// with channels. A file with other names is for `hotfire import`, which the message says.
 Record load_foreign(const std::filesystem::path& path);
+
+/// The channels of a file in such a format, by groups; the numeric variables of a MATLAB file are one group. Throws
+/// FileError as the reader of the format does.
+std::vector<ForeignGroup> foreign_groups(const std::filesystem::path& path);
 
 /// Writes a record in the format of the file name's extension.
 void write_foreign(const Record& record, const std::filesystem::path& path);

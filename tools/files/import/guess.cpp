@@ -7,10 +7,13 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "tools/files/import/foreign.hpp"
+#include "tools/files/model/toml_text.hpp"
 #include "tools/files/text/csv_cells.hpp"
 #include "tools/files/text/csv_lines.hpp"
 #include "tools/files/text/error.hpp"
@@ -41,11 +44,16 @@ bool has_word(const std::string& name, std::initializer_list<std::string_view> w
 /// A column by what its rows say.
 struct Column {
   std::string name;
-  std::vector<double> values;  ///< empty: not of numbers
+  std::vector<double> values;   ///< empty: not of numbers
+  std::string given_unit = "";  ///< where the file says it beside the name
+  bool is_time = false;         ///< where the file says so
 
   bool is_numeric() const { return !values.empty(); }
   /// "mm" of "stroke [mm]" or "stroke (mm)"; empty if that is no unit.
   std::string unit() const {
+    if (!given_unit.empty() && is_known(given_unit)) {
+      return given_unit;
+    }
     for (const char* brackets : {"[]", "()"}) {
       const std::size_t open = name.find(brackets[0]);
       const std::size_t close = name.find(brackets[1], open == std::string::npos ? 0 : open);
@@ -53,14 +61,21 @@ struct Column {
         continue;
       }
       std::string unit = name.substr(open + 1, close - open - 1);
-      try {
-        require_known_unit(unit);
+      if (is_known(unit)) {
         return unit;
-      } catch (const UnitError&) {
-        continue;
       }
     }
     return "";
+  }
+
+ private:
+  static bool is_known(const std::string& unit) {
+    try {
+      require_known_unit(unit);
+      return true;
+    } catch (const UnitError&) {
+      return false;
+    }
   }
 };
 
@@ -219,7 +234,7 @@ Layout layout_of(const std::vector<std::string>& lines, const std::filesystem::p
 
 std::string time_section(const Column& column) {
   const std::string unit = column.unit();
-  return fmt::format("[time]\ncolumn = \"{}\"\nunit = \"{}\"{}\n", column.name, unit.empty() ? "s" : unit,
+  return fmt::format("[time]\ncolumn = {}\nunit = \"{}\"{}\n", toml_string(column.name), unit.empty() ? "s" : unit,
                      unit.empty() ? "                      # a guess" : "");
 }
 
@@ -227,8 +242,8 @@ std::string time_section(const Column& column) {
 std::string channel_section(const Column& column, const std::string& channel) {
   const std::string unit = column.unit();
   const char* mark = channel.empty() || unit.empty() ? "# " : "";
-  return fmt::format("{}[channels.{}]\n{}column = \"{}\"              # {}\n{}unit = \"{}\"\n", mark,
-                     channel.empty() ? "NAME" : channel, mark, column.name, range_of(column), mark,
+  return fmt::format("{}[channels.{}]\n{}column = {}              # {}\n{}unit = \"{}\"\n", mark,
+                     channel.empty() ? "NAME" : channel, mark, toml_string(column.name), range_of(column), mark,
                      unit.empty() ? "?" : unit);
 }
 
@@ -247,8 +262,8 @@ Sections sections_of(const std::vector<Column>& columns) {
     }
     const std::string name = lower(column.name);
     const bool counts = has_word(name, {"sample", "index", "number", "no.", "row"}) || name == "no" || name == "n";
-    if (rises_evenly(column.values) && (counts || sections.time.empty())) {
-      if (!counts) {
+    if (column.is_time || (rises_evenly(column.values) && (counts || sections.time.empty()))) {
+      if (column.is_time || !counts) {
         sections.time = time_section(column);
       }
       continue;
@@ -278,26 +293,64 @@ std::string csv_section(const Layout& layout) {
     text += fmt::format("skip_lines = {}\n", layout.header);
   }
   if (layout.has_events) {
-    text += fmt::format("events = \"{}\"\n", layout.columns.back().name);
+    text += fmt::format("events = {}\n", toml_string(layout.columns.back().name));
   }
   return text;
+}
+
+std::string head_of(const std::filesystem::path& source) {
+  return fmt::format("# A proposal for {}: check every unit, sign and scale, and the zero of every channel.\nschema = 1\n",
+                     source.filename().string());
+}
+
+constexpr const char* kChannelsComment =
+    "# A channel is one of command, current, piston, engine, load_pressure, torque, force, position.\n";
+
+/// Of a file with channels of its own: the group with the most channels, and a comment on each other one, since channels of
+/// several groups were sampled apart.
+std::string map_of_groups(const std::filesystem::path& source) {
+  const std::vector<ForeignGroup> groups = foreign_groups(source);
+  const auto has_numbers = [](const ForeignChannel& channel) { return !channel.values.empty(); };
+  const auto numbers = [&](const ForeignGroup& group) { return std::ranges::count_if(group.channels, has_numbers); };
+  const auto most = std::ranges::max_element(groups, {}, numbers);
+  if (most == groups.end() || numbers(*most) == 0) {
+    throw FileError(fmt::format("{}: no channel with numbers", source.string()));
+  }
+  std::string others;
+  std::vector<Column> columns;
+  for (const ForeignGroup& group : groups) {
+    for (const ForeignChannel& channel : group.channels) {
+      const std::string name = group.name.empty() ? channel.name : group.name + "/" + channel.name;
+      if (&group == &*most && channel.problem.empty()) {
+        columns.push_back({name, channel.values, channel.unit, channel.is_time});
+      } else {
+        others += fmt::format("# not proposed: {} [{}]{}\n", toml_string(name), toml_string(channel.unit),
+                              channel.problem.empty() ? ", of another group" : ": " + channel.problem);
+      }
+    }
+  }
+  // A time that the file declares is the time, wherever it is.
+  std::ranges::stable_sort(columns, std::greater<>(), &Column::is_time);
+  const Sections sections = sections_of(columns);
+  return head_of(source) + (sections.time.empty() ? period_by({}) : sections.time) + kChannelsComment + sections.channels +
+         others;
 }
 
 }  // namespace
 
 std::string guessed_map(const std::filesystem::path& source) {
+  if (is_foreign(source)) {
+    return map_of_groups(source);
+  }
   const std::vector<std::string> lines = first_lines(source);
   const Layout layout = layout_of(lines, source);
   const Sections sections = sections_of(layout.columns);
-  std::string text =
-      fmt::format("# A proposal for {}: check every unit, sign and scale, and the zero of every channel.\nschema = 1\n",
-                  source.filename().string());
+  std::string text = head_of(source);
   if (sections.time.empty()) {
     text += period_by({lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(layout.header)});
   }
   text += sections.time + csv_section(layout);
-  text += "# A channel is one of command, current, piston, engine, load_pressure, torque, force, position.\n";
-  return text + sections.channels;
+  return text + kChannelsComment + sections.channels;
 }
 
 }  // namespace hotfire

@@ -122,7 +122,9 @@ KnownChannel known_channel(const CsvLines& lines, std::size_t column, std::strin
     return *found;
   }
   const std::vector<std::string_view> names = known_names();
-  lines.refuse(fmt::format("column {} \"{}\": unknown channel; {}", column, shown(name), suggestion(shown(name), names)));
+  lines.refuse(fmt::format(
+      "column {} \"{}\": unknown channel; {}. 'hotfire import FILE --guess' begins a map of a file with other names", column,
+      shown(name), suggestion(shown(name), names)));
 }
 
 Column read_column(const CsvLines& lines, std::size_t number, std::string_view cell) {

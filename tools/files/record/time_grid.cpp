@@ -71,8 +71,9 @@ std::size_t first_uneven_row(const Grid& grid, double period) {
   if (interval > 1.5 * usual) {
     grid.refuse(blamed,
                 fmt::format("a gap of {:.0f} rows, the period is {:.6g} s; allowed: uniform sampling (fill the gap or cut "
-                            "the record there; explain and import bridge a gap that --exclude names)",
-                            std::round(interval / usual) - 1.0, usual));
+                            "the record there; explain bridges it with --exclude {}@{:.6g}-{:.6g})",
+                            std::round(interval / usual) - 1.0, usual, grid.path.filename().string(), grid.times[blamed - 1],
+                            grid.times[blamed]));
   }
   grid.refuse(blamed,
               fmt::format("interval {:.6g} s where the period is {:.6g} s; allowed: uniform sampling, within {:.2g} s",

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/near_file.hpp"
 
 namespace hotfire {
 
@@ -34,7 +35,8 @@ CsvLines::CsvLines(std::string_view text, std::filesystem::path name)
 CsvLines::CsvLines(std::filesystem::path path, File file)
     : path_(std::move(path)), file_(std::move(file)), buffer_(kFirstBlock) {
   if (!file_) {
-    throw FileError(fmt::format("{}: cannot be opened: {}", path_.string(), std::generic_category().message(errno)));
+    const std::string why = std::generic_category().message(errno);
+    throw FileError(fmt::format("{}: cannot be opened: {}{}", path_.string(), why, near_file(path_)));
   }
   if (fill() == 0) {
     throw FileError(

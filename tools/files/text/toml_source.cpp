@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/near_file.hpp"
 #include "tools/files/text/toml_keys.hpp"
 #include "tools/files/text/units.hpp"
 
@@ -24,7 +25,8 @@ constexpr std::size_t kLargestFile = 1 << 20;
 std::string read_small_file(const std::filesystem::path& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file{std::fopen(path.c_str(), "rb"), std::fclose};
   if (!file) {
-    throw FileError(fmt::format("{}: cannot be opened: {}", path.string(), std::generic_category().message(errno)));
+    const std::string why = std::generic_category().message(errno);
+    throw FileError(fmt::format("{}: cannot be opened: {}{}", path.string(), why, near_file(path)));
   }
   constexpr std::size_t kPiece = 1 << 14;
   std::string content;

@@ -68,7 +68,12 @@ void WholeFile::commit() {
 }
 
 void WholeFile::fail() const {
-  throw FileError(fmt::format("{}: cannot be written: {}", target_.string(), std::generic_category().message(errno)));
+  const std::string why = std::generic_category().message(errno);
+  std::error_code ignored;
+  const std::filesystem::path folder = target_.parent_path();
+  const bool needs_folder = !folder.empty() && !std::filesystem::exists(folder, ignored);
+  throw FileError(fmt::format("{}: cannot be written: {}{}", target_.string(), why,
+                              needs_folder ? fmt::format("; make its folder: mkdir -p {}", folder.string()) : ""));
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view text) {
