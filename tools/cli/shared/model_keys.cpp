@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "tools/files/model/key_groups.hpp"
+#include "tools/files/model/plant_of.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 #include "tools/structure/vehicle_file.hpp"
@@ -95,7 +96,7 @@ template <class Parameters>
 std::vector<KeyTable> tables_of() {
   Parameters parameters;
   std::vector<KeyTable> tables;
-  add_layout(layout_of(parameters), tables);
+  add_layout(layout_of_plant<PlantOf<Parameters, double>>(parameters), tables);
   return tables;
 }
 
