@@ -150,7 +150,8 @@ TEST(TwoAxes, WhatExplainDoesNotTakeIsRefusedWithTheRemedy) {
   };
   const std::string taos = "schema = 1\ntopology = \"taos\"\n";
   test::expect_message(
-      refused(taos + "[gimbal.friction]\ncoulomb_torque = 1e4\n[gimbal.vibration]\npitch_velocity = 0.05\n"),
+      refused(taos +
+              "[gimbal.friction]\nlaw = \"lugre\"\ncoulomb_torque = 1e4\n[gimbal.vibration]\npitch_velocity = 0.05\n"),
       {"gimbal.vibration", "vibrated_lugre"});
   test::expect_message(refused(taos + "[attach.pitch]\nengine_z = -0.7\n[tolerance]\nactuator.moment_arm = 0.01\n"),
                        {"actuator.moment_arm", "[attach]"});
