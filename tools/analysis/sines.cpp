@@ -60,7 +60,7 @@ std::size_t change_within(const std::vector<Cycle>& cycles, std::size_t first, s
   for (std::size_t k = 0; k < count; ++k) {
     const auto x = static_cast<double>(k);
     const double y = cycles[first + 1 + k].start - start - x * length;
-    sums.push_back(sums.back() + Sums{{1.0, x, y, x * x, x * y, y * y}});
+    sums.emplace_back(sums.back() + Sums{{1.0, x, y, x * x, x * y, y * y}});
   }
   const auto misfit = [&sums](std::size_t from, std::size_t to) {
     const Sums s = sums[to] - sums[from];

@@ -45,8 +45,7 @@ DrawResult result_of(const Json& content) {
 Json checked(std::string_view line, const std::string& place) {
   const bool is_whole = line.size() > kCheckDigits + 1 && line[kCheckDigits] == ' ' &&
                         check_of(line.substr(kCheckDigits + 1)) == line.substr(0, kCheckDigits);
-  const Json content =
-      is_whole ? Json::parse(line.substr(kCheckDigits + 1), nullptr, false) : Json(Json::value_t::discarded);
+  Json content = is_whole ? Json::parse(line.substr(kCheckDigits + 1), nullptr, false) : Json(Json::value_t::discarded);
   if (content.is_discarded()) {
     throw FileError(
         fmt::format("{}: the line was changed since it was written; delete it, and its draw is run again", place));
@@ -129,7 +128,7 @@ void DrawStore::read(std::string_view text, const std::string& name) {
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     const std::string place = fmt::format("{}:{}", name, number);
-    const Json content = checked(text.substr(0, end), place);
+    Json content = checked(text.substr(0, end), place);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     // Files behind each other have a line of inputs each.
     if (number == 1 || !content.contains("draw")) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/disperse/quantities.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,7 +38,7 @@ std::vector<std::pair<std::string, double>> numbers_of(const nlohmann::ordered_j
   if (document.is_structured()) {
     std::vector<std::pair<std::string, double>> all;
     for (const auto& [key, value] : document.items()) {
-      const auto own = numbers_of(value, prefix.empty() ? key : prefix + "." + key);
+      const auto own = numbers_of(value, prefix.empty() ? key : fmt::format("{}.{}", prefix, key));
       all.insert(all.end(), own.begin(), own.end());
     }
     return all;

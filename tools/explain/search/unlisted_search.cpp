@@ -88,10 +88,10 @@ std::size_t terms_to_fit(const std::vector<Screened>& proposals) {
 /// Fits the first `most` of what was screened with everything else, and files all of them. Those behind one that leaves no
 /// more than noise are not fitted: they promised less.
 void fit_finalists(const Dataset& data, const Refiner& refiner, const Assessed& beside, std::span<const double> frozen,
-                   std::vector<Screened> screened, std::size_t most, const Effort& effort, int round, const Watch& watch,
-                   UnlistedSearch& result) {
+                   const std::vector<Screened>& screened, std::size_t most, const Effort& effort, int round,
+                   const Watch& watch, UnlistedSearch& result) {
   std::size_t fitted = 0;
-  for (Screened& s : screened) {
+  for (const Screened& s : screened) {
     Trial trial{round, s.candidate, false,     s.criterion,
                 1.0,   s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
     double left = std::numeric_limits<double>::infinity();
@@ -163,7 +163,7 @@ UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, cons
     });
     auto screened = screening.run(candidates, "unlisted", watch);
     const std::size_t wanted = unlisted_finalists(screened);
-    fit_finalists(data, refiner, beside, around.u, std::move(screened), wanted, kRanking, round, watch, result);
+    fit_finalists(data, refiner, beside, around.u, screened, wanted, kRanking, round, watch, result);
   }
   if (result.best) {
     mark_tied_sites(result);

@@ -125,7 +125,7 @@ class Datasets {
       const Handle object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
       const H5I_type_t kind = object.good() ? H5Iget_type(object.id()) : H5I_BADID;
       if (kind == H5I_GROUP && nested < kMostGroupsWithin) {
-        add_group(object.id(), group_name.empty() ? name : group_name + "/" + name, nested + 1);
+        add_group(object.id(), group_name.empty() ? name : fmt::format("{}/{}", group_name, name), nested + 1);
       } else if (kind == H5I_DATASET) {
         add_dataset(object.id(), group_name, name);
       }

@@ -50,7 +50,7 @@ std::string sha256_of(const std::filesystem::path& path) {
     good = !file.bad();
     digest.add({block.data(), static_cast<std::size_t>(file.gcount())});
   }
-  const std::string text = good ? digest.text() : std::string{};
+  std::string text = good ? digest.text() : std::string{};
   if (text.empty()) {
     throw FileError(fmt::format("{}: cannot be read for its SHA-256", path.string()));
   }
