@@ -151,7 +151,7 @@ UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, cons
     auto proposals = propose_terms(evaluator.data(), around, located, scales, threads, watch);
     proposals = by_simulation(evaluator, around, std::move(proposals), threads);
     const std::size_t wanted = terms_to_fit(proposals);
-    fit_finalists(data, refiner, beside, around.u, std::move(proposals), wanted, kCheck, round, watch, result);
+    fit_finalists(data, refiner, beside, around.u, proposals, wanted, kCheck, round, watch, result);
   }
   // A law that somebody has named is one more hypothesis as long as the grammar leaves more than noise.
   if (!result.reaches_noise(data)) {
