@@ -26,10 +26,6 @@ using Found = SearchResult;
 using FoundAxes = std::vector<std::optional<Found>>;
 using Stage = Assessed Found::*;
 
-/// The effects that the axes of a vehicle know.
-template <class Parameters>
-using EffectsOf = std::conditional_t<std::is_same_v<Parameters, TaosParameters>, model::SimplexEffects, model::MasvEffects>;
-
 /// All axes at one stage of their searches; an axis without a search stays as it is declared. With attach points in space
 /// the arm follows from them, and what the file says of it stays.
 VehicleParameters together(const VehicleParameters& declared, const FoundAxes& found, Stage stage) {
@@ -41,7 +37,8 @@ VehicleParameters together(const VehicleParameters& declared, const FoundAxes& f
           if (found[i]) {
             const double declared_arm = parameters.axes[i].actuator.moment_arm;
             const Fitted& fitted = ((*found[i]).*stage).model;
-            put_back<EffectsOf<Parameters>>(std::get<SimplexParameters>(fitted.parameters()), parameters.axes[i]);
+            put_back<typename VehicleOf<Parameters>::Effects>(std::get<SimplexParameters>(fitted.parameters()),
+                                                              parameters.axes[i]);
             if (!parameters.constant_arms[i / 2]) {
               parameters.axes[i].actuator.moment_arm = declared_arm;
             }
@@ -148,7 +145,7 @@ VehicleParameters explained_vehicle(const VehicleParameters& declared, const Fou
   VehicleParameters vehicle = together(declared, found, &Found::explained);
   std::visit(
       [&](auto& parameters) {
-        using Effects = EffectsOf<std::remove_cvref_t<decltype(parameters)>>;
+        using Effects = typename VehicleOf<std::remove_cvref_t<decltype(parameters)>>::Effects;
         for (std::size_t i = 0; i < found.size(); ++i) {
           if (found[i]) {
             SimplexParameters axis = alone<Effects>(parameters.axes[i]);

@@ -22,9 +22,6 @@ using AxisModel = model::Simplex<double>;
 constexpr std::size_t kEngineChannel = 1;
 static_assert(AxisModel::channels[kEngineChannel] == "engine");
 
-template <class Parameters>
-using PlantOf = std::conditional_t<std::is_same_v<Parameters, TaosParameters>, model::Taos<double>, model::Masv<double>>;
-
 [[noreturn]] void refuse(const VehicleFile& vehicle, words::Unsupported part) {
   throw FileError(words::unsupported(vehicle.path.string(), part));
 }
@@ -207,7 +204,7 @@ VehicleAxes axes_of(const VehicleFile& vehicle, const std::vector<Record>& recor
   return std::visit(
       [&](const auto& parameters) {
         using Parameters = std::remove_cvref_t<decltype(parameters)>;
-        return axes_of_plant<PlantOf<Parameters>>(vehicle, parameters, with_angles, exclusions);
+        return axes_of_plant<VehicleOf<Parameters>>(vehicle, parameters, with_angles, exclusions);
       },
       vehicle.parameters);
 }

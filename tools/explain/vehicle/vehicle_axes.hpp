@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -12,6 +13,10 @@
 namespace hotfire::explain {
 
 using VehicleParameters = std::variant<TaosParameters, MasvParameters>;
+
+/// The plant of one of these.
+template <class Parameters>
+using VehicleOf = std::conditional_t<std::is_same_v<Parameters, TaosParameters>, model::Taos<double>, model::Masv<double>>;
 
 /// One axis of a vehicle, as a model and records of one axis.
 struct AxisOfVehicle {

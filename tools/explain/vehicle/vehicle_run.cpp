@@ -89,15 +89,17 @@ class AroundAxes {
 
   /// Before a step: where the last one has ended, and where this one starts.
   void begin(std::size_t row, int step, const typename Plant::State& state, const typename Plant::Inputs& inputs) {
-    if (before_) {
+    if (has_begun_) {
       end(state);
-    } else {
-      before_ = std::make_unique<typename Plant::State>();
     }
+    has_begun_ = true;
     row_ = row;
     step_ = step;
-    *before_ = state;
     inputs_ = inputs;
+    for (std::size_t i = 0; i < Plant::kAxes; ++i) {
+      angle_[i] = state.axes[i].y(Plant::AxisModel::kAngle);
+      piston_[i] = state.axes[i].y(Plant::AxisModel::kPiston);
+    }
     for (std::size_t i = 0; step == 0 && i < Plant::kAxes; ++i) {
       if (rests_[i]->has_bearing()) {
         rests_[i]->bearing.turned[0][row] = turned_of(i, state) - twist_[i];
@@ -110,7 +112,7 @@ class AroundAxes {
   /// After a step.
   void end(const typename Plant::State& after) {
     for (std::size_t i = 0; i < Plant::kAxes; ++i) {
-      mean_[i] = 0.5 * (before_->axes[i].y(Plant::AxisModel::kAngle) + after.axes[i].y(Plant::AxisModel::kAngle));
+      mean_[i] = 0.5 * (angle_[i] + after.axes[i].y(Plant::AxisModel::kAngle));
     }
     for (std::size_t i = 0; i < Plant::kAxes; ++i) {
       std::array<double, kSeries> values{motion_of(i, after), after.axes[i].spring_force, torque_of(i, after)};
@@ -144,7 +146,7 @@ class AroundAxes {
   /// leaves.
   double motion_of(std::size_t axis, const typename Plant::State& after) const {
     const auto& own = after.axes[axis];
-    const double piston = 0.5 * (before_->axes[axis].y(Plant::AxisModel::kPiston) + own.y(Plant::AxisModel::kPiston));
+    const double piston = 0.5 * (piston_[axis] + own.y(Plant::AxisModel::kPiston));
     const double deflection = after.softening[axis] + own.spring_force / plant_.axis(static_cast<int>(axis)).stiffness();
     return piston - pose_of(axis / 2).stroke[axis % 2] - deflection;
   }
@@ -161,8 +163,7 @@ class AroundAxes {
   }
 
   double rate_of_engine(std::size_t axis, const typename Plant::State& after) const {
-    return (after.axes[axis].y(Plant::AxisModel::kAngle) - before_->axes[axis].y(Plant::AxisModel::kAngle)) /
-           plant_.step_size();
+    return (after.axes[axis].y(Plant::AxisModel::kAngle) - angle_[axis]) / plant_.step_size();
   }
 
   static double friction_of(std::size_t axis, const typename Plant::State& after) {
@@ -198,7 +199,10 @@ class AroundAxes {
   std::array<double, Plant::kAxes> twist_{};                            ///< of a bearing by its friction [rad]
   std::size_t row_ = 0;
   int step_ = 0;
-  std::unique_ptr<typename Plant::State> before_;
+  // Where the step starts: a copy of the whole state would be hundreds of kilobytes a step.
+  bool has_begun_ = false;
+  std::array<double, Plant::kAxes> angle_{};
+  std::array<double, Plant::kAxes> piston_{};
   typename Plant::Inputs inputs_;
   std::array<double, Plant::kAxes> mean_{};
 };
