@@ -25,7 +25,6 @@ struct Slave::Saved {
   double start;
   double stop;
   double time;
-  double last_successful;
   std::uint64_t fingerprint;  ///< of all above; the model's own bytes have theirs
 
   std::uint64_t expected() const noexcept {
@@ -57,7 +56,8 @@ std::unique_ptr<Slave> Slave::open(const std::string& text, const char* token, L
   return std::unique_ptr<Slave>(new Slave(model, log, instance));
 }
 
-Slave::Slave(hotfire_model* model, Log log, void* instance) : model_(model), log_(log), instance_(instance) {
+Slave::Slave(hotfire_model* model, Log log, void* instance)
+    : model_(model), log_(log), instance_(instance), period_(model->plant->period()), early_(kEarly * period_) {
   for (const hotfire_kind kind : {HOTFIRE_INPUT, HOTFIRE_OUTPUT, HOTFIRE_PARAMETER}) {
     counts_.at(kind) = hotfire_count(model, kind);
   }
@@ -150,9 +150,9 @@ Status Slave::set_up(double start, bool stop_defined, double stop) noexcept {
   set_up_ = true;
   start_ = start;
   time_ = start;
-  last_successful_ = start;
   stop_defined_ = stop_defined;
   stop_ = stop;
+  latest_end_ = latest_end();
   return Status::ok;
 }
 
@@ -216,14 +216,24 @@ Status Slave::reset() noexcept {
       return refuse(Status::error, "Reset", hotfire_message(model_));
     }
   }
-  start_ = time_ = last_successful_ = 0.0;
+  start_ = time_ = 0.0;
   set_up_ = false;
   stop_defined_ = false;
+  latest_end_ = latest_end();
   say(Status::ok, Category::event, "the instance is as it was made");
   return Status::ok;
 }
 
-Status Slave::refuse_point(double current) noexcept {
+Status Slave::refuse_step(double current, double step) noexcept {
+  if (phase_ != Phase::step) {
+    return refuse_phase("DoStep");
+  }
+  if (!(step > 0.0 && step <= std::numeric_limits<double>::max())) {
+    return refuse(Status::error, "DoStep", "communicationStepSize; allowed: a finite number above 0");
+  }
+  if (is_reached(current)) {
+    return refuse(Status::error, "DoStep", "the step ends after the stop time of the experiment; allowed: up to it");
+  }
   std::array<char, 160> problem{};
   std::snprintf(problem.data(), problem.size(),
                 "currentCommunicationPoint = %.17g: allowed: %.17g, where the last step ended", current, time_);
@@ -231,38 +241,8 @@ Status Slave::refuse_point(double current) noexcept {
 }
 
 Status Slave::refuse_run() noexcept {
-  last_successful_ = start_ + static_cast<double>(periods_) * model_->plant->period();
+  time_ = start_ + static_cast<double>(periods_) * period_;
   return refuse(Status::error, "DoStep", hotfire_message(model_));
-}
-
-Status Slave::do_step(double current, double step) noexcept {
-  if (phase_ != Phase::step) {
-    return refuse_phase("DoStep");
-  }
-  const double period = model_->plant->period();
-  if (!(step > 0.0 && step <= std::numeric_limits<double>::max())) {
-    return refuse(Status::error, "DoStep", "communicationStepSize; allowed: a finite number above 0");
-  }
-  // A point that is no number is near to none.
-  if (!(std::abs(current - time_) <= kEarly * period)) {
-    return refuse_point(current);
-  }
-  const double end = current + step;
-  if (stop_defined_ && end > stop_ + kEarly * period) {
-    return refuse(Status::error, "DoStep", "the step ends after the stop time of the experiment; allowed: up to it");
-  }
-  // No run has more periods than a double counts.
-  const auto wanted =
-      static_cast<std::uint64_t>(static_cast<std::int64_t>(std::min((end - start_) / period + kEarly, 0x1p53)));
-  while (periods_ < wanted) {
-    if (interface::step(*model_) != HOTFIRE_OK) {
-      return refuse_run();
-    }
-    ++periods_;
-  }
-  time_ = end;
-  last_successful_ = end;
-  return Status::ok;
 }
 
 std::size_t Slave::saved_size() const noexcept { return sizeof(Saved) + hotfire_state_size(model_); }
@@ -279,7 +259,6 @@ Status Slave::save(std::span<std::byte> bytes) noexcept {
               start_,
               stop_,
               time_,
-              last_successful_,
               0};
   saved.fingerprint = saved.expected();
   std::memcpy(bytes.data(), &saved, sizeof saved);
@@ -306,8 +285,8 @@ Status Slave::load(std::span<const std::byte> bytes) noexcept {
   periods_ = saved.periods;
   start_ = saved.start;
   stop_ = saved.stop;
+  latest_end_ = latest_end();
   time_ = saved.time;
-  last_successful_ = saved.last_successful;
   return Status::ok;
 }
 

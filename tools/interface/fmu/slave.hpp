@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "model/checks.hpp"
 #include "tools/interface/c/hotfire.h"
+#include "tools/interface/c/model_handle.hpp"
 #include "tools/interface/plant/plant.hpp"
 
 namespace hotfire::fmu {
@@ -57,12 +62,14 @@ class Slave {
   Status terminate() noexcept;
   Status reset() noexcept;
 
+  // These three are most of the calls of an importer: what they do in step mode is in this header, so that a function of the
+  // standard is one function.
   Status set(std::span<const Reference> references, std::span<const double> values) noexcept;
   Status get(std::span<const Reference> references, std::span<double> values) noexcept;
 
   /// Advances to `current` + `step`: the model by its whole periods up to there. Outputs are those of the last of them.
   Status do_step(double current, double step) noexcept;
-  double last_successful_time() const noexcept { return last_successful_; }
+  double last_successful_time() const noexcept { return time_; }
 
   /// In initialization mode the derivatives of the outputs at the start, then those of the outputs after one internal step.
   Status differentiate(std::span<const Reference> unknowns, std::span<const Reference> knowns, std::span<const double> seed,
@@ -94,9 +101,15 @@ class Slave {
   /// What `set` and `get` do beside inputs and outputs in step mode, which are most of the calls.
   [[gnu::cold]] Status set_any(std::span<const Reference> references, std::span<const double> values) noexcept;
   [[gnu::cold]] Status get_any(std::span<const Reference> references, std::span<double> values) noexcept;
-  [[gnu::cold]] Status refuse_point(double current) noexcept;
+  /// Why a step is refused.
+  [[gnu::cold]] Status refuse_step(double current, double step) noexcept;
+  /// A step that ended early: the time is that of the last period before.
   [[gnu::cold]] Status refuse_run() noexcept;
   Status set_of_kind(hotfire_kind kind, std::span<const Reference> references, std::span<const double> values) noexcept;
+  /// A point that is no number is near to none.
+  bool is_reached(double point) const noexcept { return std::abs(point - time_) <= early_; }
+  /// Where the last step ends at the latest: at the stop time, or at the last finite time.
+  double latest_end() const noexcept { return stop_defined_ ? stop_ + early_ : std::numeric_limits<double>::max(); }
   void say(Status status, Category category, const char* message) noexcept;
 
   hotfire_model* model_;
@@ -108,10 +121,12 @@ class Slave {
   bool current_ = false;  ///< the model has been started under the present values
   bool set_up_ = false;   ///< the start time is known
   double start_ = 0.0;
+  double period_;  ///< of the plant [s]
+  double early_;   ///< `kEarly` of it
   bool stop_defined_ = false;
   double stop_ = 0.0;
-  double time_ = 0.0;  ///< the communication point that was reached
-  double last_successful_ = 0.0;
+  double latest_end_ = std::numeric_limits<double>::max();
+  double time_ = 0.0;  ///< the communication point that was reached; of a step that failed, where the model is
   std::uint64_t periods_ = 0;
   struct Bounds {
     double lower;
@@ -127,6 +142,57 @@ class Slave {
   std::vector<plant::Seed> seeds_;
   std::vector<double> sensitivity_;
 };
+
+inline Status Slave::set(std::span<const Reference> references, std::span<const double> values) noexcept {
+  if (phase_ != Phase::step || references.size() != values.size() || references.data() == nullptr ||
+      values.data() == nullptr) {
+    return set_any(references, values);
+  }
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const std::size_t index = references[i] - kFirstInput;
+    if (index >= inputs_.size() || !model::is_inside(values[i], input_bounds_[index].lower, input_bounds_[index].upper)) {
+      return set_any(references, values);
+    }
+  }
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    inputs_[references[i] - kFirstInput] = values[i];
+  }
+  return Status::ok;
+}
+
+inline Status Slave::get(std::span<const Reference> references, std::span<double> values) noexcept {
+  if (phase_ != Phase::step || references.size() != values.size() || references.data() == nullptr ||
+      values.data() == nullptr) {
+    return get_any(references, values);
+  }
+  const std::size_t first = kFirstInput + inputs_.size();
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    const std::size_t index = references[i] - first;
+    if (index >= outputs_.size()) {
+      return get_any(references, values);
+    }
+    values[i] = outputs_[index];
+  }
+  return Status::ok;
+}
+
+inline Status Slave::do_step(double current, double step) noexcept {
+  const double end = current + step;
+  if (phase_ != Phase::step || !(step > 0.0) || !is_reached(current) || !(end <= latest_end_)) {
+    return refuse_step(current, step);
+  }
+  // No run has more periods than a double counts.
+  const auto wanted =
+      static_cast<std::uint64_t>(static_cast<std::int64_t>(std::min((end - start_) / period_ + kEarly, 0x1p53)));
+  time_ = end;
+  while (periods_ < wanted) {
+    if (interface::step(*model_) != HOTFIRE_OK) {
+      return refuse_run();
+    }
+    ++periods_;
+  }
+  return Status::ok;
+}
 
 /// The text in resources/plant.txt of a folder, or what was compiled into the FMU. Throws std::runtime_error.
 std::string plant_document(const std::string& resources);

@@ -56,23 +56,6 @@ Status Slave::set_of_kind(hotfire_kind kind, std::span<const Reference> referenc
   return status == HOTFIRE_OK ? Status::ok : refuse_model("setting variables", status);
 }
 
-Status Slave::set(std::span<const Reference> references, std::span<const double> values) noexcept {
-  if (phase_ != Phase::step || references.size() != values.size() || references.data() == nullptr ||
-      values.data() == nullptr) {
-    return set_any(references, values);
-  }
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    const std::size_t index = references[i] - kFirstInput;
-    if (index >= inputs_.size() || !model::is_inside(values[i], input_bounds_[index].lower, input_bounds_[index].upper)) {
-      return set_any(references, values);
-    }
-  }
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    inputs_[references[i] - kFirstInput] = values[i];
-  }
-  return Status::ok;
-}
-
 Status Slave::set_any(std::span<const Reference> references, std::span<const double> values) noexcept {
   if (is_missing(references) || is_missing(values)) {
     return refuse(Status::error, "setting variables", kMissing);
@@ -99,22 +82,6 @@ Status Slave::set_any(std::span<const Reference> references, std::span<const dou
   }
   const Status status = set_of_kind(HOTFIRE_PARAMETER, references, values);
   return status == Status::ok ? set_of_kind(HOTFIRE_INPUT, references, values) : status;
-}
-
-Status Slave::get(std::span<const Reference> references, std::span<double> values) noexcept {
-  if (phase_ != Phase::step || references.size() != values.size() || references.data() == nullptr ||
-      values.data() == nullptr) {
-    return get_any(references, values);
-  }
-  const std::size_t first = kFirstInput + inputs_.size();
-  for (std::size_t i = 0; i < references.size(); ++i) {
-    const std::size_t index = references[i] - first;
-    if (index >= outputs_.size()) {
-      return get_any(references, values);
-    }
-    values[i] = outputs_[index];
-  }
-  return Status::ok;
 }
 
 Status Slave::get_any(std::span<const Reference> references, std::span<double> values) noexcept {

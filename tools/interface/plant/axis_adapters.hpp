@@ -74,10 +74,15 @@ auto under_torque(const model::Simplex<S>& model, const S& torque) {
   };
 }
 
-/// Advances an axis by one step with a command [rad] and a torque on its engine [N m], both held. The binary of an FMU is
-/// for any x86_64: this step is compiled twice, and the processor that runs it chooses. Both give the same bits.
+// The binary of an FMU is for any x86_64: these two steps are compiled twice, and the processor that runs them chooses. Both
+// versions give the same bits.
+
+/// Advances an axis by one step with a command [rad] and a torque on its engine [N m], both held.
 void step_axis(const model::Simplex<double>& model, model::Simplex<double>::State& state, const double& command,
                const double& torque) noexcept;
+
+/// Advances a mass by one step with a force that is held.
+void step_mass(const model::Direct<double>& model, model::Direct<double>::State& state, const double& force) noexcept;
 
 /// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
 template <class S>
@@ -138,7 +143,11 @@ struct DirectAdapter : ModelAdapter<S, model::Direct<S>> {
   }
 
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
-    model.step(state.plant, inputs[0]);
+    if constexpr (std::same_as<S, double>) {
+      step_mass(model, state.plant, inputs[0]);
+    } else {
+      model.step(state.plant, inputs[0]);
+    }
   }
 };
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/interface/plant/axis_adapters.hpp"
+#include "tools/interface/plant/for_each_processor.hpp"
 #include "tools/interface/plant/plant_of.hpp"
 
 namespace hotfire::plant {
+
+HOTFIRE_FOR_EACH_PROCESSOR void step_mass(const model::Direct<double>& model, model::Direct<double>::State& state,
+                                          const double& force) noexcept {
+  model.step(state, force);
+}
 
 std::unique_ptr<Plant> make_plant(const model::Direct<double>::Parameters& parameters, const Setup& setup) {
   return PlantOf<DirectAdapter>::make(parameters, setup);
