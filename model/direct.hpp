@@ -61,7 +61,7 @@ class Direct {
     return std::clamp(kAngle * std::sqrt(value_of(parameters.mass.inertia) / stiffness), kShortestStep, kLongestStep);
   }
 
-  Direct(const Parameters& parameters, double h) : parameters_(parameters), h_(h) {
+  Direct(const Parameters& parameters, double h) : parameters_(parameters), acting_(parameters.effects.active), h_(h) {
     Eigen::Matrix<S, 2, 2> linear = Eigen::Matrix<S, 2, 2>::Zero();
     linear(0, 1) = S{1.0};
     linear(1, 0) = -parameters_.mass.stiffness / parameters_.mass.inertia;
@@ -96,10 +96,9 @@ class Direct {
     for (int pass = 0; pass < kPasses; ++pass) {
       const Eigen::Matrix<S, 2, 1> end = free + times(hold_.response, state.inputs);
       const S velocity = (end(0) - start(0)) / h_;
-      state.inputs(1) = sum_over<Site::mass_force>(
-          parameters_.effects, state.effects,
-          Motion<S>{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_, state.clock.at(h_, 0.5)},
-          pass + 1 == kPasses ? Keep::yes : Keep::no);
+      Motion<S> motion{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_, state.clock.at(h_, 0.5)};
+      state.inputs(1) = sum_over<Site::mass_force>(parameters_.effects, acting_, state.effects, motion,
+                                                   pass + 1 == kPasses ? Keep::yes : Keep::no);
     }
     state.y = free + times(hold_.response, state.inputs);
     state.clock.steps += 1.0;
@@ -110,6 +109,7 @@ class Direct {
 
  private:
   Parameters parameters_;
+  ActingEffects<List> acting_;
   double h_;
   ExactHold<S, 2, 2> hold_;
   S compliance_{0.0};

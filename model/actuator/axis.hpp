@@ -86,15 +86,18 @@ class Axis : public AxisStates {
     Eigen::Matrix<S, 8, 1> start;
     Eigen::Matrix<S, 8, 1> free;
     Eigen::Matrix<S, 8, 1> end;
-    S built_up{0.0};  ///< flow of the oil's effects among those inputs [m^3/s]
+    Eigen::Matrix<S, 8, 1> middle;  ///< mean of start and end
+    S start_command{0.0};           ///< of the torque motor at the start, saturated
+    S built_up{0.0};                ///< flow of the oil's effects among those inputs [m^3/s]
+    Precise<S> time{0.0};           ///< of the record, mean over the step [s]
 
     /// Mean over the step, and mean rate: displacement over the step.
-    S mean(int index) const noexcept { return S(0.5) * (start(index) + end(index)); }
+    const S& mean(int index) const noexcept { return middle(index); }
     S rate(int index, double h) const noexcept { return (end(index) - start(index)) / h; }
   };
 
   /// Constants of a run at step `h` [s].
-  Axis(const Parameters& parameters, double h) : parameters_(parameters), h_(h) {
+  Axis(const Parameters& parameters, double h) : parameters_(parameters), acting_(parameters.effects.active), h_(h) {
     const Servovalve<S>& valve = parameters_.servovalve;
     const Actuator<S>& actuator = parameters_.actuator;
     const Engine<S>& engine = parameters_.engine;
@@ -164,8 +167,9 @@ class Axis : public AxisStates {
     State state;
     const Signal<S> always{command, h_};
     settle<Site::command>(parameters_.effects, state.effects, always);
-    const S commanded = pass_through<Site::command>(parameters_.effects, state.effects, always, Keep::no).value;
-    state.inputs(kCommand) = parameters_.actuator.moment_arm * commanded;
+    Signal<S> commanded = always;
+    pass_through<Site::command>(parameters_.effects, acting_, state.effects, commanded, Keep::no);
+    state.inputs(kCommand) = parameters_.actuator.moment_arm * commanded.value;
     constexpr double kWidth = 1e-6;  // m, rad: far below what a sensor sees
     const auto flow_at = [&](const S& piston) {
       state.y(kPiston) = piston;
@@ -188,18 +192,20 @@ class Axis : public AxisStates {
 
   /// Opens a step with the command [rad] held.
   void begin(State& state, const S& command, Advance& advance) const noexcept {
-    const Precise<S> time = mid_step(state);
-    const Surroundings<S> seen = around_state(state, state.y, time);
-    const Signal<S> angle = pass_through<Site::command>(parameters_.effects, state.effects,
-                                                        Signal<S>{command, h_, time, S{0.0}, &seen}, Keep::yes);
+    advance.time = mid_step(state);
+    const Surroundings<S> seen = around_state(state, state.y, advance.time);
+    Signal<S> angle{command, h_, advance.time, S{0.0}, &seen};
+    pass_through<Site::command>(parameters_.effects, acting_, state.effects, angle, Keep::yes);
     state.inputs(kCommand) = parameters_.actuator.moment_arm * angle.value;
     advance.start = state.y;
+    advance.start_command = saturated(torque_motor(state, state.y));
     advance.free = times(hold_.transition, state.y);
   }
 
   /// Where the inputs found so far take the step.
   void predict(const State& state, Advance& advance) const noexcept {
     advance.end = advance.free + times(hold_.response, state.inputs);
+    advance.middle = S(0.5) * (advance.start + advance.end);
     advance.built_up = state.built_up;
   }
 
@@ -208,43 +214,40 @@ class Axis : public AxisStates {
   Spring<S> evaluate_actuator(State& state, const Advance& advance, const Around& around, Keep keep) const noexcept {
     const Servovalve<S>& valve = parameters_.servovalve;
     const Actuator<S>& actuator = parameters_.actuator;
-    const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
+    const Eigen::Matrix<S, 8, 1>& mean = advance.middle;
     const auto& effects = parameters_.effects;
-    const Precise<S> time = mid_step(state);
+    const Precise<S>& time = advance.time;
     const Surroundings<S> seen = around_state(state, mean, time);
 
     const S linear_command = torque_motor(state, mean);
-    const S change = saturated(torque_motor(state, advance.end)) - saturated(torque_motor(state, advance.start));
-    state.inputs(kValveCommand) =
-        pass_through<Site::valve_command>(effects, state.effects,
-                                          Signal<S>{saturated(linear_command), h_, time, change, &seen}, keep)
-            .value -
-        linear_command;
+    const S change = saturated(torque_motor(state, advance.end)) - advance.start_command;
+    Signal<S> valve_command{saturated(linear_command), h_, time, change, &seen};
+    pass_through<Site::valve_command>(effects, acting_, state.effects, valve_command, keep);
+    state.inputs(kValveCommand) = valve_command.value - linear_command;
 
-    Hydraulics<S> oil = hydraulics(state, mean(kOpening), mean(kPressure), keep);
+    Hydraulics<S> oil = hydraulics(state, mean(kOpening), mean(kPressure), time, keep);
     oil.seen = &seen;
     state.inputs(kFlow) =
-        oil.flow - valve.rated_flow * mean(kOpening) + sum_over<Site::flow>(effects, state.effects, oil, keep);
+        oil.flow - valve.rated_flow * mean(kOpening) + sum_over<Site::flow>(effects, acting_, state.effects, oil, keep);
 
     const S piston_rate = advance.rate(kPiston, h_);
     const S net_flow = valve.rated_flow * mean(kOpening) + state.inputs(kFlow) - actuator.piston_area * piston_rate -
                        actuator.leakage * mean(kPressure);
-    const Compression<S> oil_compression{net_flow + flow_relief_ * advance.built_up, flow_relief_, mean(kPressure), h_};
-    state.built_up = sum_over<Site::pressure>(effects, state.effects, oil_compression, keep);
+    Compression<S> oil_compression{net_flow + flow_relief_ * advance.built_up, flow_relief_, mean(kPressure), h_};
+    state.built_up = sum_over<Site::pressure>(effects, acting_, state.effects, oil_compression, keep);
     state.inputs(kFlow) += state.built_up;
     Motion<S> motion{mean(kPiston), piston_rate, piston_rate, piston_compliance_, h_, time};
     motion.load = actuator.piston_area * mean(kPressure);
     motion.seen = &seen;
-    state.inputs(kPistonForce) = sum_over<Site::piston>(effects, state.effects, motion, keep);
+    state.inputs(kPistonForce) = sum_over<Site::piston>(effects, acting_, state.effects, motion, keep);
 
-    const S attach_motion = sum_over<Site::structure>(effects, state.effects, AttachPoint<S>{state.spring_force, h_}, keep);
+    AttachPoint<S> attach_point{state.spring_force, h_};
+    const S attach_motion = sum_over<Site::structure>(effects, acting_, state.effects, attach_point, keep);
     const S linear_deflection = mean(kPiston) - actuator.moment_arm * mean(kAngle);
-    Spring<S> spring = pass_through<Site::load_spring>(
-        effects, state.effects,
-        spring_around(around,
-                      Spring<S>{linear_deflection - attach_motion, mean(kAngle), actuator.moment_arm, actuator.moment_arm,
-                                stiffness_, actuator.stiffness, parameters_.structure.stiffness, h_, time, &seen}),
-        keep);
+    Spring<S> spring = spring_around(
+        around, Spring<S>{linear_deflection - attach_motion, mean(kAngle), actuator.moment_arm, actuator.moment_arm,
+                          stiffness_, actuator.stiffness, parameters_.structure.stiffness, h_, time, &seen});
+    pass_through<Site::load_spring>(effects, acting_, state.effects, spring, keep);
     state.spring_force = stiffness_ * spring.deflection;
     state.inputs(kSpringForce) = state.spring_force - stiffness_ * linear_deflection;
     spring.seen = nullptr;
@@ -256,13 +259,12 @@ class Axis : public AxisStates {
   void evaluate_engine(State& state, const Advance& advance, const Spring<S>& spring, const Around& around,
                        Keep keep) const noexcept {
     const S angle_rate = advance.rate(kAngle, h_);
-    const Precise<S> time = mid_step(state);
-    const Eigen::Matrix<S, 8, 1> mean = S(0.5) * (advance.start + advance.end);
-    const Surroundings<S> seen = around_state(state, mean, time);
-    Motion<S> motion{mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, time};
+    const Surroundings<S> seen = around_state(state, advance.middle, advance.time);
+    Motion<S> motion{advance.mean(kAngle), angle_rate, angle_rate, engine_compliance_, h_, advance.time};
     motion.load = state.spring_force;
     motion.seen = &seen;
-    const S own = sum_over<Site::engine_torque>(parameters_.effects, state.effects, motion_around(around, motion), keep);
+    look_around(around, motion);
+    const S own = sum_over<Site::engine_torque>(parameters_.effects, acting_, state.effects, motion, keep);
     state.inputs(kEngineTorque) =
         torque_around(around, own) - (spring.arm - parameters_.actuator.moment_arm) * state.spring_force;
   }
@@ -294,11 +296,10 @@ class Axis : public AxisStates {
     own.arm = around.arm;
     return own;
   }
-  static const Motion<S>& motion_around(const Uncoupled&, const Motion<S>& own) noexcept { return own; }
-  static Motion<S> motion_around(const Coupling<S>& around, Motion<S> own) noexcept {
+  static void look_around(const Uncoupled&, Motion<S>&) noexcept {}
+  static void look_around(const Coupling<S>& around, Motion<S>& own) noexcept {
     own.other_angle = around.other_angle;
     own.other_rate = around.other_rate;
-    return own;
   }
   static S torque_around(const Uncoupled&, const S& own) noexcept { return own; }
   static S torque_around(const Coupling<S>& around, const S& own) noexcept { return own + around.torque; }
@@ -316,9 +317,11 @@ class Axis : public AxisStates {
   static S saturated(const S& command) noexcept { return clamp_symmetric<S>(command, S{1.0}); }
 
   /// What the spool at a position opens, and the flow through the valve's orifices under a load pressure.
-  Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, Keep keep) const noexcept {
-    const Precise<S> time = mid_step(state);
-    const S opening = pass_through<Site::valve>(parameters_.effects, state.effects, Signal<S>{spool, h_, time}, keep).value;
+  Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, const Precise<S>& time,
+                           Keep keep) const noexcept {
+    Signal<S> valve{spool, h_, time};
+    pass_through<Site::valve>(parameters_.effects, acting_, state.effects, valve, keep);
+    const S& opening = valve.value;
     const S& supply = parameters_.actuator.supply_pressure;
     const S drop = 1.0 - sign_of(opening) * pressure / supply;
     // The root's slope is infinite at zero drop; below 1e-9 of the supply the flow is zero to any sensor.
@@ -328,7 +331,9 @@ class Axis : public AxisStates {
 
   Precise<S> mid_step(const State& state) const noexcept { return state.clock.at(h_, 0.5); }
 
-  static Advance at_rest(const State& state) noexcept { return {state.y, state.y, state.y}; }
+  Advance at_rest(const State& state) const noexcept {
+    return {state.y, state.y, state.y, state.y, saturated(torque_motor(state, state.y)), S{0.0}, mid_step(state)};
+  }
 
   /// At rest at `angle`, with the piston where `state` has it: the force of the load spring beyond what the engine's torques
   /// need [N]. Leaves angle, force and the structure's deflection in `state`.
@@ -344,10 +349,12 @@ class Axis : public AxisStates {
         spring_around(around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
                                         parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, time, &seen});
     settle<Site::load_spring>(effects, state.effects, still);
-    const Spring<S> geometry = pass_through<Site::load_spring>(effects, state.effects, still, Keep::yes);
+    Spring<S> geometry = still;
+    pass_through<Site::load_spring>(effects, acting_, state.effects, geometry, Keep::yes);
     Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_};
     motion.seen = &seen;
-    const S torque = sum_over<Site::engine_torque>(effects, state.effects, motion_around(around, motion), Keep::no);
+    look_around(around, motion);
+    const S torque = sum_over<Site::engine_torque>(effects, acting_, state.effects, motion, Keep::no);
     const S needed = (parameters_.engine.duct_stiffness * angle + torque_around(around, torque)) / geometry.arm;
     state.spring_force = needed;
     settle<Site::structure>(effects, state.effects, AttachPoint<S>{needed, h_});
@@ -365,22 +372,27 @@ class Axis : public AxisStates {
     state.y(kOpening) = valve.position_gain * (state.inputs(kCommand) - state.y(kPiston)) + state.inputs(kValveCommand);
     settle<Site::valve>(parameters_.effects, state.effects, Signal<S>{state.y(kOpening), h_});
     settle<Site::flow>(parameters_.effects, state.effects,
-                       hydraulics(state, state.y(kOpening), state.y(kPressure), Keep::no));
+                       hydraulics(state, state.y(kOpening), state.y(kPressure), mid_step(state), Keep::no));
     evaluate(state, at_rest(state), around, Keep::no);
     return valve.rated_flow * state.y(kOpening) + state.inputs(kFlow) - parameters_.actuator.leakage * state.y(kPressure);
   }
 
   void measure(State& state) const noexcept {
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
+    if (!acting_.template any<Site::sensor>()) {
+      state.measured = truth;
+      return;
+    }
     const Surroundings<S> seen = around_state(state, state.y, state.clock.at(h_));
     for (std::size_t channel = 0; channel < truth.size(); ++channel) {
       state.measured[channel] =
-          pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
+          pass_through_sensor<S, List>(static_cast<int>(channel), parameters_.effects, acting_, state.effects,
                                        Signal<S>{truth[channel], h_, state.clock.at(h_), S{0.0}, &seen});
     }
   }
 
   Parameters parameters_;
+  ActingEffects<List> acting_;
   double h_;
   S stiffness_{0.0};
   ExactHold<S, 8, 6> hold_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <concepts>
+#include <cstdint>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -23,7 +24,8 @@ namespace hotfire::model {
 /// An effect may carry another one of the same additive site: `carries` is that one's name, and `carry(params, state, input,
 /// step)` evaluates it by `step(input)`, on what it sees through the carrier. Such an effect adds nothing of its own.
 ///
-/// Optional: `needs_other_axis` marks an effect that acts only where the engine has another axis, `options_of_two_axes` (a
+/// Optional: `remembers_a_guess` marks an effect whose state is only where its solver starts: every evaluation keeps it.
+/// `needs_other_axis` marks an effect that acts only where the engine has another axis, `options_of_two_axes` (a
 /// bit each) such laws; `settle(params, state, input)` puts the state where a constant input leaves it;
 /// `broken_relation(params)` names a relation between fields that the values break, empty if none.
 template <class E, class S>
@@ -62,8 +64,10 @@ struct EffectList {
 
   /// Calls `f.template operator()<E, index>()` for every effect.
   template <class F>
-  static constexpr void for_each(F&& f) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (f.template operator()<Es, I>(), ...); }
+  [[gnu::always_inline]] static constexpr void for_each(F&& f) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) __attribute__((always_inline)) {
+      (f.template operator()<Es, I>(), ...);
+    }
     (std::make_index_sequence<size>{});
   }
 };
@@ -77,6 +81,38 @@ struct EffectParameters<S, EffectList<Es...>> {
   static_assert((Effect<Es, S> && ...));
   std::tuple<typename Es::template Params<S>...> values{};
   std::array<bool, sizeof...(Es)> active{};
+};
+
+/// Which effects of a list act, a bit each: a constant of a run. A site at which none does costs one test.
+template <class List>
+class ActingEffects {
+ public:
+  explicit constexpr ActingEffects(const std::array<bool, List::size>& active) noexcept {
+    static_assert(List::size <= 64);
+    for (std::size_t i = 0; i < List::size; ++i) {
+      bits_ |= std::uint64_t{active[i]} << i;
+    }
+  }
+
+  template <std::size_t I>
+  constexpr bool has() const noexcept {
+    return (bits_ >> I & 1U) != 0;
+  }
+
+  template <Site site>
+  constexpr bool any() const noexcept {
+    return (bits_ & kAt<site>) != 0;
+  }
+
+ private:
+  template <Site site>
+  static constexpr std::uint64_t kAt = [] {
+    std::uint64_t bits = 0;
+    List::for_each([&]<class E, std::size_t I>() { bits |= std::uint64_t{E::site == site} << I; });
+    return bits;
+  }();
+
+  std::uint64_t bits_ = 0;
 };
 
 /// States of every effect of a list, and the output each one gave last (the first guess of the next step).
@@ -117,20 +153,23 @@ void pass_on(Spring<S>& input, const Spring<S>& output) noexcept {
   input = output;
 }
 
-/// What the body does without the force that an effect gave last; other sites have no such thing.
+/// Puts in what the body does without the force that an effect gave last; other sites have no such thing.
 template <class S>
-Motion<S> without_force(Motion<S> input, const S& force) noexcept {
+void take_force_out(Motion<S>& input, const S& force) noexcept {
   input.free_velocity = input.velocity + input.compliance * force;
-  return input;
 }
 template <class Input, class S>
-const Input& without_force(const Input& input, const S&) noexcept {
-  return input;
+void take_force_out(const Input&, const S&) noexcept {}
+
+/// True for an effect whose state is where a solver starts and changes no result.
+template <class E>
+constexpr bool remembers_a_guess() noexcept {
+  return requires { E::remembers_a_guess; };
 }
 
 template <class E, class Params, class State, class Input>
 auto evaluate(const Params& params, State& state, const Input& input, Keep keep) noexcept {
-  if (keep == Keep::yes) {
+  if (remembers_a_guess<E>() || keep == Keep::yes) {
     return E::step(params, state, input);
   }
   State trial = state;
@@ -155,12 +194,12 @@ void with_carrier(F&& f) noexcept {
 
 /// The output of one effect of an additive site, through its carrier if that is active.
 template <class E, std::size_t I, class S, class List, class Input>
-S output_of(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states, const Input& input,
-            Keep keep) noexcept {
+S output_of(const EffectParameters<S, List>& parameters, const ActingEffects<List>& acting, EffectStates<S, List>& states,
+            const Input& input, Keep keep) noexcept {
   bool carried = false;
   S output{0.0};
   with_carrier<E, List>([&]<class C, std::size_t K>() {
-    if (parameters.active[K]) {
+    if (acting.template has<K>()) {
       auto own = std::get<I>(states.values);
       auto carrier = std::get<K>(states.values);
       carried = true;
@@ -179,28 +218,71 @@ S output_of(const EffectParameters<S, List>& parameters, EffectStates<S, List>& 
 
 }  // namespace detail
 
-/// Passes `input` through the active effects of a serial site, in the order of the list.
+namespace detail {
+
 template <Site site, class S, class List>
-typename SiteInput<site, S>::type pass_through(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
-                                               typename SiteInput<site, S>::type input, Keep keep) noexcept {
-  static_assert(is_serial(site) && site != Site::sensor);
-  List::for_each([&]<class E, std::size_t I>() {
+[[gnu::always_inline]] inline void pass_through_acting(const EffectParameters<S, List>& parameters,
+                                                       const ActingEffects<List>& acting, EffectStates<S, List>& states,
+                                                       typename SiteInput<site, S>::type& value, Keep keep) noexcept {
+  List::for_each([&]<class E, std::size_t I>() __attribute__((always_inline)) {
     if constexpr (E::site == site) {
-      if (parameters.active[I]) {
-        detail::pass_on(input, detail::evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values), input, keep));
+      if (acting.template has<I>()) {
+        pass_on(value, evaluate<E>(std::get<I>(parameters.values), std::get<I>(states.values), value, keep));
       }
     }
   });
-  return input;
+}
+
+template <Site site, class S, class List>
+[[gnu::always_inline]] inline S sum_over_acting(const EffectParameters<S, List>& parameters,
+                                                const ActingEffects<List>& acting, EffectStates<S, List>& states,
+                                                typename SiteInput<site, S>::type& input, Keep keep) noexcept {
+  S total{0.0};
+  List::for_each([&]<class E, std::size_t I>() __attribute__((always_inline)) {
+    if constexpr (E::site == site) {
+      if (acting.template has<I>()) {
+        take_force_out(input, states.outputs[I]);
+        states.outputs[I] = output_of<E, I>(parameters, acting, states, input, keep);
+        total += states.outputs[I];
+      }
+    }
+  });
+  return total;
+}
+
+}  // namespace detail
+
+// A site at which nothing acts is passed in the place of the call; else one call takes all of its effects.
+
+/// Passes `value` through the active effects of a serial site, in the order of the list.
+template <Site site, class S, class List>
+[[gnu::always_inline]] inline void pass_through(const EffectParameters<S, List>& parameters,
+                                                const ActingEffects<List>& acting, EffectStates<S, List>& states,
+                                                typename SiteInput<site, S>::type& value, Keep keep) noexcept {
+  static_assert(is_serial(site) && site != Site::sensor);
+  if (acting.template any<site>()) {
+    detail::pass_through_acting<site, S, List>(parameters, acting, states, value, keep);
+  }
+}
+
+/// Sum of the active effects of an additive site. At sites with a motion, `input` is left with the free velocity of the
+/// last effect.
+template <Site site, class S, class List>
+[[gnu::always_inline]] inline S sum_over(const EffectParameters<S, List>& parameters, const ActingEffects<List>& acting,
+                                         EffectStates<S, List>& states, typename SiteInput<site, S>::type& input,
+                                         Keep keep) noexcept {
+  static_assert(!is_serial(site));
+  return acting.template any<site>() ? detail::sum_over_acting<site, S, List>(parameters, acting, states, input, keep)
+                                     : S{0.0};
 }
 
 /// Passes a measured value through the active sensor effects of one channel.
 template <class S, class List>
-S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
-                      Signal<S> input) noexcept {
-  List::for_each([&]<class E, std::size_t I>() {
+S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, const ActingEffects<List>& acting,
+                      EffectStates<S, List>& states, Signal<S> input) noexcept {
+  List::for_each([&]<class E, std::size_t I>() __attribute__((always_inline)) {
     if constexpr (E::site == Site::sensor) {
-      if (parameters.active[I] && detail::channel_of<E>(std::get<I>(parameters.values)) == channel) {
+      if (acting.template has<I>() && detail::channel_of<E>(std::get<I>(parameters.values)) == channel) {
         input.value = E::step(std::get<I>(parameters.values), std::get<I>(states.values), input);
       }
     }
@@ -223,24 +305,6 @@ void settle_channel(int channel, const EffectParameters<S, List>& parameters, Ef
       }
     }
   });
-}
-
-/// Sum of the active effects of an additive site.
-template <Site site, class S, class List>
-S sum_over(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
-           const typename SiteInput<site, S>::type& input, Keep keep) noexcept {
-  static_assert(!is_serial(site));
-  S total{0.0};
-  List::for_each([&]<class E, std::size_t I>() {
-    if constexpr (E::site == site) {
-      if (parameters.active[I]) {
-        states.outputs[I] =
-            detail::output_of<E, I>(parameters, states, detail::without_force(input, states.outputs[I]), keep);
-        total += states.outputs[I];
-      }
-    }
-  });
-  return total;
 }
 
 /// Puts the states of the active effects of one site where a constant input leaves them.

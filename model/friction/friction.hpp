@@ -96,19 +96,22 @@ struct BristleStep {
 /// chi = (1 - psi)/a the end and the mean of z are z decay + v h psi and z psi + v h chi.
 template <class S>
 BristleStep<S> bristle_step(const S& speed, const S& level, const Bristle<S>& bristle, double h) noexcept {
+  constexpr double kSmall = 0.02;
   const S exponent = bristle.stiffness * speed * h / level;
-  // Below 0.02 the quotients lose digits and the series is exact to 2e-15. Both are worked out at every step, so that
-  // sticking and slipping cost the same.
+  // Below `kSmall` the quotients lose digits and the series is exact to 2e-15. Both are computed at every step and blended
+  // by a weight of 0 or 1, which changes no bit, so that sticking and slipping cost the same: a choice would become a
+  // branch.
+  const auto small = static_cast<double>(value_of(exponent) < kSmall);
+  const double large = 1.0 - small;
+  const S within = small * exponent;
   const S series =
-      0.5 - exponent * (1.0 / 6 -
-                        exponent * (1.0 / 24 - exponent * (1.0 / 120 - exponent * (1.0 / 720 - exponent * (1.0 / 5040)))));
+      0.5 - within * (1.0 / 6 - within * (1.0 / 24 - within * (1.0 / 120 - within * (1.0 / 720 - within * (1.0 / 5040)))));
   const S exact = fading_exponential<S>(exponent);
-  const bool small = value_of(exponent) < 0.02;
-  const S divisor = small ? S{1.0} : exponent;
+  const S divisor = large * exponent + small;
   const S quotient = (1.0 - exact) / divisor;
-  const S chi = small ? series : (1.0 - quotient) / divisor;
-  const S psi = small ? 1.0 - exponent * series : quotient;
-  const S decay = small ? 1.0 - exponent * psi : exact;
+  const S chi = small * series + large * ((1.0 - quotient) / divisor);
+  const S psi = small * (1.0 - within * series) + large * quotient;
+  const S decay = small * (1.0 - within * psi) + large * exact;
   return {decay, psi, S(bristle.stiffness * psi + bristle.damping * (decay - 1.0) / h),
           S(bristle.stiffness * h * chi + bristle.damping * psi + bristle.viscous)};
 }
