@@ -37,8 +37,8 @@ struct Uncoupled {};
 /// passes solve for the mean; velocities are mean velocities (displacement over the step), and stiff forces solve themselves
 /// together with the velocity (`Motion`). Second order where the model is smooth, first order at stick and slip.
 ///
-/// One step costs the same whatever the state: the passes are two, and no loop depends on data. No allocation, no lock, no
-/// exception after construction. `State` is one flat block that the caller owns; copying it is a checkpoint.
+/// One step costs the same whatever the state: no loop depends on data. No allocation, no lock, no exception after
+/// construction. `State` is one flat block that the caller owns; copying it is a checkpoint.
 template <class S, class List>
 class Axis : public AxisStates {
  public:
@@ -78,7 +78,7 @@ class Axis : public AxisStates {
   };
 
   /// What acts on them, held over a step: piston command [m], valve command [-], flow into the extend chamber [m^3/s], force
-  /// against the piston [N], force of the load spring [N], torque against the engine [N m].
+  /// against the piston and of the load spring [N], torque against the engine [N m].
   enum Input { kCommand, kValveCommand, kFlow, kPistonForce, kSpringForce, kEngineTorque };
 
   /// One step under way: where it starts, where it would end without inputs, and where the inputs found so far take it.
@@ -152,22 +152,19 @@ class Axis : public AxisStates {
   /// K_T of the declared load spring [N/m].
   const S& stiffness() const noexcept { return stiffness_; }
 
-  /// What a unit of every input, held over a step, moves the continuous states by: a column an input, in the order of
-  /// `Input`.
+  /// What a unit of every input, held over a step, moves the continuous states by: a column for each of `Input`.
   const Eigen::Matrix<S, 8, 6>& input_response() const noexcept { return hold_.response; }
 
   /// How much a unit of mean torque against the engine slows it over a step [rad/s/(N m)].
   const S& engine_compliance() const noexcept { return engine_compliance_; }
 
-  /// The steady state under a constant command [rad]: set-up only. The piston is where the valve's flow makes up for the
-  /// leakage, the engine where its torques balance; friction starts unloaded. Where a dead band leaves the piston free, it
-  /// is at the command.
+  /// The steady state under a constant command [rad]: set-up only. The valve's flow makes up for the leakage, the engine's
+  /// torques balance, friction is unloaded. Where a dead band leaves the piston free, it is at the command.
   template <class Around>
   State settled(const S& command, const Around& around) const {
     State state;
-    const Signal<S> always{command, h_};
-    settle<Site::command>(parameters_.effects, state.effects, always);
-    Signal<S> commanded = always;
+    Signal<S> commanded{command, h_};
+    settle<Site::command>(parameters_.effects, state.effects, commanded);
     pass_through<Site::command>(parameters_.effects, acting_, state.effects, commanded, Keep::no);
     state.inputs(kCommand) = parameters_.actuator.moment_arm * commanded.value;
     constexpr double kWidth = 1e-6;  // m, rad: far below what a sensor sees
@@ -220,8 +217,8 @@ class Axis : public AxisStates {
     const Surroundings<S> seen = around_state(state, mean, time);
 
     const S linear_command = torque_motor(state, mean);
-    const S change = saturated(torque_motor(state, advance.end)) - advance.start_command;
-    Signal<S> valve_command{saturated(linear_command), h_, time, change, &seen};
+    Signal<S> valve_command{saturated(linear_command), h_, time,
+                            saturated(torque_motor(state, advance.end)) - advance.start_command, &seen};
     pass_through<Site::valve_command>(effects, acting_, state.effects, valve_command, keep);
     state.inputs(kValveCommand) = valve_command.value - linear_command;
 
@@ -335,19 +332,18 @@ class Axis : public AxisStates {
     return {state.y, state.y, state.y, state.y, saturated(torque_motor(state, state.y)), S{0.0}, mid_step(state)};
   }
 
-  /// At rest at `angle`, with the piston where `state` has it: the force of the load spring beyond what the engine's torques
-  /// need [N]. Leaves angle, force and the structure's deflection in `state`.
+  /// At rest at `angle` and the piston of `state`: the force of the load spring beyond what the engine's torques need [N].
+  /// Leaves angle, force and the structure's deflection in `state`.
   template <class Around>
   S excess_force(State& state, const S& angle, const Around& around) const noexcept {
     const auto& effects = parameters_.effects;
     const S nominal = parameters_.actuator.moment_arm;
     state.y(kAngle) = angle;
-    const Precise<S> time = mid_step(state);
-    const Surroundings<S> seen = around_state(state, state.y, time);
+    const Surroundings<S> seen = around_state(state, state.y, mid_step(state));
     // Keeps what the springs remember of their force, so that the search in them starts near it.
-    const Spring<S> still =
-        spring_around(around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
-                                        parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, time, &seen});
+    const Spring<S> still = spring_around(
+        around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
+                          parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, seen.time, &seen});
     settle<Site::load_spring>(effects, state.effects, still);
     Spring<S> geometry = still;
     pass_through<Site::load_spring>(effects, acting_, state.effects, geometry, Keep::yes);
