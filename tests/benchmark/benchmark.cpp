@@ -7,8 +7,7 @@
 #include <iostream>
 
 #include "tests/benchmark/page.hpp"
-#include "tests/model/cvode/axis_comparison.hpp"
-#include "tests/model/cvode/vehicle_comparison.hpp"
+#include "tests/benchmark/rivals/cases.hpp"
 
 namespace hotfire::test {
 namespace {
@@ -78,24 +77,6 @@ void cvode_axis(benchmark::State& run) {
   }
   run.counters["error"] = axis_error(rows);
   run.counters["evaluations"] = static_cast<double>(evaluations) / static_cast<double>(run.iterations());
-}
-
-/// Hot fire with every effect: one engine with four modes, four engines with twelve that couple them.
-template <class Vehicle>
-typename Vehicle::Parameters every_effect() {
-  typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
-  if constexpr (Vehicle::kEngines == 1) {
-    parameters.modes = four_modes();
-  } else {
-    parameters.modes = random_modes<typename Vehicle::Modes>(12, 0.1 / 1.05e8, 7);
-  }
-  return parameters;
-}
-
-template <class Vehicle>
-double vehicle_error(const VehicleRows& rows) {
-  static const VehicleRows reference = run_reference<Vehicle>(every_effect<Vehicle>());
-  return largest_error(rows, reference);
 }
 
 template <class Vehicle>

@@ -49,6 +49,8 @@ CvodeIntegrator::~CvodeIntegrator() {
   SUNContext_Free(&context_);
 }
 
+void CvodeIntegrator::use_jacobian(Jacobian jacobian) { require(CVodeSetJacFn(memory_, jacobian), "CVodeSetJacFn"); }
+
 void CvodeIntegrator::count() {
   long since_start = 0;
   require(CVodeGetNumRhsEvals(memory_, &since_start), "CVodeGetNumRhsEvals");

@@ -13,6 +13,7 @@ namespace hotfire::study {
 class CvodeIntegrator {
  public:
   using Derivative = int (*)(double, N_Vector, N_Vector, void*);
+  using Jacobian = int (*)(double, N_Vector, N_Vector, SUNMatrix, void*, N_Vector, N_Vector, N_Vector);
 
   /// Starts at time zero with every state zero. `user` is handed to `derivative`. Throws std::runtime_error if CVODE
   /// refuses.
@@ -20,6 +21,9 @@ class CvodeIntegrator {
   CvodeIntegrator(const CvodeIntegrator&) = delete;
   CvodeIntegrator& operator=(const CvodeIntegrator&) = delete;
   ~CvodeIntegrator();
+
+  /// Takes the Jacobian of the derivative from a function instead of from differences.
+  void use_jacobian(Jacobian jacobian);
 
   double* state() { return N_VGetArrayPointer(state_); }
   double time() const { return time_; }
