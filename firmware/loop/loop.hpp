@@ -33,7 +33,8 @@ inline constexpr std::array<std::string_view, 5> kEndings{"completed", "asked to
                                                           "stopped by a value that is not finite",
                                                           "stopped because the sync was lost"};
 
-inline constexpr std::int64_t kShortestPeriodNs = 250'000;
+/// 20 kHz: what a cycle takes beside the model, some microseconds, is then a tenth of it.
+inline constexpr std::int64_t kShortestPeriodNs = 50'000;
 inline constexpr std::int64_t kLongestPeriodNs = 10'000'000;
 
 struct LoopSettings {

@@ -85,6 +85,7 @@ void add_overruns(Json& json, const Session& session) {
 
 void add_real_time(Json& json, const Session& session) {
   json.add("real_time", session.real_time);
+  json.add("scheduler", kSchedulers[static_cast<std::size_t>(session.options.scheduler)]);
   json.open_list("refused");
   for (const hal::Failure& failure : session.failures) {
     json.open();

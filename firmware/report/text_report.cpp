@@ -72,7 +72,9 @@ std::string scheduling(const Session& session) {
   if (!session.real_time) {
     return "  real time     NO: ran as far as this machine allows, what follows says nothing about a real-time machine\n";
   }
-  return text("  real time     yes: SCHED_FIFO %d, memory locked, %s\n", session.options.priority,
+  const std::string scheduler =
+      session.options.scheduler == Scheduler::deadline ? "SCHED_DEADLINE" : text("SCHED_FIFO %d", session.options.priority);
+  return text("  real time     yes: %s, memory locked, %s\n", scheduler.c_str(),
               session.options.cpu ? text("CPU %d", *session.options.cpu).c_str() : "any CPU");
 }
 

@@ -143,7 +143,7 @@ constexpr OptionLine kLines[] = {
     line<[](const std::string& value, CanOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_lost.emplace());
     }>("--max-lost", "N", "verdict: no more frames than this lost, repeated, refused or out of order on a CAN bus"),
-    line<read_period>("--period-us", "N", "period, 250 to 10000; default 1000. Longer than 500 is split into equal steps"),
+    line<read_period>("--period-us", "N", "period, 50 to 10000; default 1000. Longer than 500 is split into equal steps"),
     line<[](const std::string& value, RunOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.cycles);
     }>("--cycles", "N", "end after N cycles, 0: when interrupted; default 0 for plant, 10000 for timing"),
@@ -154,6 +154,9 @@ constexpr OptionLine kLines[] = {
         "--policy", "P", "after an overrun: catch-up (default), skip or stop"),
     line<[](const std::string& value, RunOptions& o) { return read_integer(value, 0, 99, o.priority); }>(
         "--priority", "P", "SCHED_FIFO priority, 1 to 99; 0: an ordinary process; default 80"),
+    line<[](const std::string& value, RunOptions& o) { return read_name(value, kSchedulers, o.scheduler); }>(
+        "--scheduler", "S",
+        "fifo (default), or deadline: the kernel gives each cycle 90 % of its period, before all others"),
     line<read_cpu>("--cpu", "C", "run on this CPU only"),
     line<[](const std::string&, RunOptions& o) { return o.require_realtime = true, std::string(); }>(
         "--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running"),

@@ -42,6 +42,7 @@ std::string help() {
       "sensor readings.\n\n"
       "  hotfire plant --model simplex.toml --bus sim --cycles 10000 --cpu 1 --max-latency-us 200\n"
       "  hotfire timing --cycles 60000 --max-latency-us 100 --json\n"
+      "  hotfire timing --find --seconds 60 --cpu 1\n"
       "  hotfire plant --model simplex.toml --record run.hfr\n"
       "  hotfire plant --model simplex.toml --bus can0 --sync can --actuators 8\n"
       "  hotfire plant --model vehicle.toml --bus can0 --sync can --strings\n"
@@ -66,6 +67,8 @@ std::string help() {
          "  --profile FILE         with `hotfire lab` only: the profile (docs/lab.md)\n"
          "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
          "  --disturbances FILE    with `hotfire` only: record whose torque, force, vibration and thrust the plant plays\n"
+         "  --find                 with `hotfire timing` only: search the shortest period without an overrun\n"
+         "  --seconds S            with `hotfire timing --find` only: time at each period; default 5\n"
          "  --help, --version\n\n"
          "Ends on SIGINT, SIGTERM, SIGHUP and SIGQUIT with its result. Exit status: 0 good, 1 bad verdict, stopped "
          "profile or replay\n"
@@ -152,6 +155,12 @@ std::optional<Options> defaults_of(std::string_view mode) {
 // Each of these says why options that are each allowed contradict each other; empty if they do not.
 
 std::string conflict_of_run(const RunOptions& options) {
+  if (options.scheduler == Scheduler::deadline && options.priority == 0) {
+    return "--scheduler deadline and --priority 0, an ordinary process, exclude each other";
+  }
+  if (options.scheduler == Scheduler::deadline && options.cpu) {
+    return "--scheduler deadline and --cpu exclude each other: the kernel places such a thread itself";
+  }
   return options.require_realtime && options.priority == 0 ? "--require-realtime and --priority 0 exclude each other" : "";
 }
 

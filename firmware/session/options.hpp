@@ -19,11 +19,16 @@ namespace hotfire::firmware {
 enum class PaceKind : std::uint8_t { clock, sim, can };
 inline constexpr std::array<std::string_view, 3> kPaceKinds{"clock", "sim", "can"};
 
+/// How the kernel is asked to schedule a loop: first-in first-out at a priority, or by the deadline of each cycle.
+enum class Scheduler : std::uint8_t { fifo, deadline };
+inline constexpr std::array<std::string_view, 2> kSchedulers{"fifo", "deadline"};
+
 /// Of every run of cycles in real time.
 struct RunOptions {
   LoopSettings loop;
   std::size_t actuators = 1;
-  int priority = 80;       ///< SCHED_FIFO; 0: an ordinary process on purpose
+  int priority = 80;  ///< SCHED_FIFO; 0: an ordinary process on purpose
+  Scheduler scheduler = Scheduler::fifo;
   std::optional<int> cpu;  ///< none: wherever the kernel puts it
   bool require_realtime = false;
   std::optional<double> max_latency_us;

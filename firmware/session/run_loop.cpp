@@ -77,7 +77,10 @@ bool set_up_real_time(const RunOptions& options, hal::WakefulCpus& cpus, std::ve
     return false;
   }
   granted(cpus.hold(), failures);
-  return granted(hal::schedule_first(options.priority), failures) && locked && placed;
+  const bool scheduled = options.scheduler == Scheduler::deadline
+                             ? granted(hal::schedule_by_deadline(options.loop.period_ns), failures)
+                             : granted(hal::schedule_first(options.priority), failures);
+  return scheduled && locked && placed;
 }
 
 void announce(const RunOptions& options) {

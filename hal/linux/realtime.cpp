@@ -7,11 +7,13 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 
@@ -70,6 +72,34 @@ std::optional<Failure> schedule_first(int priority) noexcept {
     return failed_call("no real-time scheduling at priority " + std::to_string(priority) + ": sched_setscheduler", errno,
                        "allow it: 'ulimit -r 99', or '@realtime - rtprio 99' in /etc/security/limits.d, or "
                        "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitRTPRIO=99 in a systemd unit");
+  }
+  return std::nullopt;
+}
+
+std::optional<Failure> schedule_by_deadline(std::int64_t period_ns) noexcept {
+  prctl(PR_SET_TIMERSLACK, 1);
+  // As <linux/sched/types.h> has it, which the C library's <sched.h> excludes.
+  struct {
+    std::uint32_t size;
+    std::uint32_t policy;
+    std::uint64_t flags;
+    std::int32_t nice;
+    std::uint32_t priority;
+    std::uint64_t runtime;
+    std::uint64_t deadline;
+    std::uint64_t period;
+  } attributes{};
+  attributes.size = sizeof attributes;
+  attributes.policy = SCHED_DEADLINE;
+  attributes.flags = 1;  // SCHED_FLAG_RESET_ON_FORK: threads that it starts are ordinary ones
+  attributes.runtime = static_cast<std::uint64_t>(kDeadlineShare * static_cast<double>(period_ns));
+  attributes.deadline = static_cast<std::uint64_t>(period_ns);
+  attributes.period = attributes.deadline;
+  if (syscall(SYS_sched_setattr, 0, &attributes, 0U) != 0) {
+    return failed_call(
+        "no scheduling by deadline: sched_setattr", errno,
+        "run as root or with 'setcap cap_sys_nice+ep hotfire-rt', allow every CPU ('taskset -p $$'), and leave "
+        "the kernel its share: 95 % of /proc/sys/kernel/sched_rt_period_us; else --scheduler fifo");
   }
   return std::nullopt;
 }

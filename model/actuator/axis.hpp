@@ -87,7 +87,6 @@ class Axis : public AxisStates {
     Eigen::Matrix<S, 8, 1> free;
     Eigen::Matrix<S, 8, 1> end;
     Eigen::Matrix<S, 8, 1> middle;  ///< mean of start and end
-    S start_command{0.0};           ///< of the torque motor at the start, saturated
     S built_up{0.0};                ///< flow of the oil's effects among those inputs [m^3/s]
     Precise<S> time{0.0};           ///< of the record, mean over the step [s]
 
@@ -195,7 +194,6 @@ class Axis : public AxisStates {
     pass_through<Site::command>(parameters_.effects, acting_, state.effects, angle, Keep::yes);
     state.inputs(kCommand) = parameters_.actuator.moment_arm * angle.value;
     advance.start = state.y;
-    advance.start_command = saturated(torque_motor(state, state.y));
     advance.free = times(hold_.transition, state.y);
   }
 
@@ -217,8 +215,10 @@ class Axis : public AxisStates {
     const Surroundings<S> seen = around_state(state, mean, time);
 
     const S linear_command = torque_motor(state, mean);
-    Signal<S> valve_command{saturated(linear_command), h_, time,
-                            saturated(torque_motor(state, advance.end)) - advance.start_command, &seen};
+    Signal<S> valve_command{saturated(linear_command), h_, time, S{0.0}, &seen};
+    if (acting_.template any<Site::valve_command>()) {
+      valve_command.change = saturated(torque_motor(state, advance.end)) - saturated(torque_motor(state, advance.start));
+    }
     pass_through<Site::valve_command>(effects, acting_, state.effects, valve_command, keep);
     state.inputs(kValveCommand) = valve_command.value - linear_command;
 
@@ -329,7 +329,7 @@ class Axis : public AxisStates {
   Precise<S> mid_step(const State& state) const noexcept { return state.clock.at(h_, 0.5); }
 
   Advance at_rest(const State& state) const noexcept {
-    return {state.y, state.y, state.y, state.y, saturated(torque_motor(state, state.y)), S{0.0}, mid_step(state)};
+    return {state.y, state.y, state.y, state.y, S{0.0}, mid_step(state)};
   }
 
   /// At rest at `angle` and the piston of `state`: the force of the load spring beyond what the engine's torques need [N].

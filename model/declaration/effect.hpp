@@ -168,12 +168,28 @@ constexpr bool remembers_a_guess() noexcept {
 }
 
 template <class E, class Params, class State, class Input>
-auto evaluate(const Params& params, State& state, const Input& input, Keep keep) noexcept {
+auto evaluate_in_place(const Params& params, State& state, const Input& input, Keep keep) noexcept {
   if (remembers_a_guess<E>() || keep == Keep::yes) {
     return E::step(params, state, input);
   }
   State trial = state;
   return E::step(params, trial, input);
+}
+
+template <class E, class Params, class State, class Input>
+[[gnu::noinline]] auto evaluate_apart(const Params& params, State& state, const Input& input, Keep keep) noexcept {
+  return evaluate_in_place<E>(params, state, input, keep);
+}
+
+/// Terms of unknown law are most of the code of a step, and few plants have one: they are called, so that the rest of a step
+/// stays close together.
+template <class E, class Params, class State, class Input>
+auto evaluate(const Params& params, State& state, const Input& input, Keep keep) noexcept {
+  if constexpr (requires { E::is_unlisted; }) {
+    return evaluate_apart<E>(params, state, input, keep);
+  } else {
+    return evaluate_in_place<E>(params, state, input, keep);
+  }
 }
 
 }  // namespace detail

@@ -8,6 +8,8 @@
 #include <iterator>
 #include <vector>
 
+#include "tests/benchmark/operations.hpp"
+
 namespace hotfire::test {
 
 namespace {
@@ -85,6 +87,30 @@ void append_steps(std::string& text, const Results& measured) {
       "from that line. `ctest -R vehicle_cost` checks the number of instructions, which does not depend on other "
       "load.\n",
       1e9 * line.constant, 1e9 * line.slope, 100.0 * line.deviation);
+}
+
+/// What the arithmetic of a step is, beside which its instructions stand.
+void append_contents(std::string& text, const Results& measured) {
+  if (measured.find("step_axis") == measured.end()) {
+    return;
+  }
+  const auto add = std::back_inserter(text);
+  text.append(
+      "\n## What a step is made of\n\n"
+      "| plant | additions | multiplications | divisions | roots | exponentials | comparisons | constants and state |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  for (const StepContents& own : contents_of_steps()) {
+    const Operations& of = own.operations;
+    fmt::format_to(add, "| {} | {} | {} | {} | {} | {} | {} | {:.1f} KiB |\n", own.name, of.additions, of.multiplications,
+                   of.divisions, of.roots, of.exponentials, of.comparisons, static_cast<double>(own.bytes) / 1024.0);
+  }
+  text.append(
+      "\nThe counts are means over a run, by a scalar that counts. Three products of a matrix and a vector make most of "
+      "the\n"
+      "multiplications (8 x 8, and 8 x 6 three times). A processor with AVX2 does four of them in one instruction. An\n"
+      "exponential takes about 30 instructions. `ctest --test-dir build/release -R step_cost -V` prints the instructions of "
+      "a\n"
+      "step. What they are beyond the arithmetic reads and writes constants and state.\n");
 }
 
 /// The fastest run of CVODE whose error is no larger; null if none is.
@@ -263,6 +289,7 @@ std::string performance_page(const Results& measured) {
       "depend on\n"
       "the machine.\n";
   append_steps(text, measured);
+  append_contents(text, measured);
   append_work_precision(text, measured);
   append_rivals(text, measured);
   return text;

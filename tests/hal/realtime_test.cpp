@@ -22,6 +22,13 @@ TEST(Realtime, CpuThatDoesNotExistIsRefusedWithTheRemedy) {
   CHECK(run_on_cpu(-1).has_value());
 }
 
+TEST(Realtime, PeriodThatTheKernelDoesNotScheduleIsRefusedWithTheRemedy) {
+  const auto failure = schedule_by_deadline(1);
+  CHECK(failure.has_value());
+  STRCMP_CONTAINS("sched_setattr", failure->what.c_str());
+  STRCMP_CONTAINS("--scheduler fifo", failure->remedy.c_str());
+}
+
 TEST(Realtime, TouchingNewMemoryIsCountedAsPageFaults) {
   const ResourceUsage before = resource_usage();
   std::string memory(std::size_t{64} << 20, 'x');

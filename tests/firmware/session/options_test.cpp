@@ -67,8 +67,15 @@ TEST(Options, ValuesAreTakenFromTheNextArgumentOrAfterAnEqualsSign) {
 }
 
 TEST(Options, PeriodOutsideItsRangeIsRefusedWithTheRange) {
-  refused({"timing", "--period-us", "249"}, "--period-us 249: allowed is a whole number from 250 to 10000");
-  refused({"timing", "--period-us", "10001"}, "from 250 to 10000");
+  refused({"timing", "--period-us", "49"}, "--period-us 49: allowed is a whole number from 50 to 10000");
+  refused({"timing", "--period-us", "10001"}, "from 50 to 10000");
+}
+
+TEST(Options, SchedulingByDeadlineExcludesACpuAndAnOrdinaryProcess) {
+  CHECK(accepted<TimingOptions>({"--scheduler", "deadline"}).scheduler == Scheduler::deadline);
+  refused({"timing", "--scheduler", "rr"}, "--scheduler rr: allowed is fifo");
+  refused({"timing", "--scheduler", "deadline", "--cpu", "1"}, "exclude each other");
+  refused({"timing", "--scheduler", "deadline", "--priority", "0"}, "exclude each other");
 }
 
 TEST(Options, LayoutOfACanBusIsTheSmallestThatHasRoomUnlessSaid) {

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 #include <sys/mman.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -16,6 +18,12 @@
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
+
+namespace {
+
+constexpr int kCannotStart = 127;  ///< exit status as a shell gives it
+
+}  // namespace
 
 std::string share_image(const std::string& image) {
   const int file = memfd_create("image", 0);
@@ -47,7 +55,47 @@ void become_realtime_program(const std::vector<std::string>& arguments) {
       fmt::format("cannot start {}: {}; build or install hotfire-rt beside hotfire", program, std::strerror(errno)));
 }
 
-void add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, TakesModel model) {
+ProgramOutput run_realtime_program(const std::vector<std::string>& arguments) {
+  std::array<int, 2> ends{};
+  if (pipe(ends.data()) != 0) {
+    throw UsageError(fmt::format("cannot start hotfire-rt: {}", std::strerror(errno)));
+  }
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child < 0) {
+    throw UsageError(fmt::format("cannot start hotfire-rt: {}", std::strerror(errno)));
+  }
+  if (child == 0) {
+    dup2(ends[1], STDOUT_FILENO);
+    close(ends[0]);
+    close(ends[1]);
+    try {
+      become_realtime_program(arguments);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "hotfire: %s\n", error.what());
+    }
+    _exit(kCannotStart);
+  }
+  close(ends[1]);
+  ProgramOutput output;
+  std::array<char, 4096> part{};
+  for (ssize_t got = 0; (got = read(ends[0], part.data(), part.size())) != 0;) {
+    if (got > 0) {
+      output.text.append(part.data(), static_cast<std::size_t>(got));
+    } else if (errno != EINTR) {
+      break;
+    }
+  }
+  close(ends[0]);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  output.status = WIFEXITED(status) ? WEXITSTATUS(status) : kCannotStart;
+  return output;
+}
+
+CLI::App* add_realtime_command(CLI::App& program, const std::string& name, const std::string& description, TakesModel model,
+                               const RealtimeRun& run) {
   const auto path = std::make_shared<std::string>();
   const auto played = std::make_shared<PlayedFiles>();
   CLI::App* command = program.add_subcommand(name, description);
@@ -58,7 +106,7 @@ void add_realtime_command(CLI::App& program, const std::string& name, const std:
     command->add_option("--faults", played->faults, "faults to play (.toml)");
     command->add_option("--disturbances", played->disturbances, "record whose torque, force, vibration and thrust to play");
   }
-  command->callback([command, path, played, name, model] {
+  command->callback([command, path, played, name, model, run] {
     std::vector<std::string> arguments = command->remaining();
     arguments.insert(arguments.begin(), name);
     if (!asks_for_text_only(arguments)) {
@@ -70,8 +118,13 @@ void add_realtime_command(CLI::App& program, const std::string& name, const std:
         throw UsageError("--faults and --disturbances need --model FILE, whose plant plays them");
       }
     }
-    become_realtime_program(arguments);
+    if (run) {
+      run(arguments);
+    } else {
+      become_realtime_program(arguments);
+    }
   });
+  return command;
 }
 
 }  // namespace hotfire

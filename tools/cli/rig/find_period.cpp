@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/cli/rig/find_period.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/rig/realtime_program.hpp"
+#include "tools/files/text/error.hpp"
+
+namespace hotfire {
+
+namespace {
+
+// As `hotfire-rt timing --period-us` takes them [us].
+constexpr int kShortest = 50;
+constexpr int kLongest = 10'000;
+constexpr double kResolution = 1.05;
+constexpr int kTiming = 4;  ///< exit status of a run that was late
+
+/// One period that was run.
+struct Trial {
+  long overruns = 0;
+  std::map<std::string, long> blame{};  ///< cycles that each phase made late
+  double latest_us = 0.0;
+  double median_step_us = 0.0;
+  double longest_step_us = 0.0;
+  bool real_time = false;
+};
+
+std::string blamed(const Trial& trial) {
+  std::string words;
+  for (const auto& [phase, cycles] : trial.blame) {
+    if (cycles > 0) {
+      words += fmt::format("{}{} {}", words.empty() ? "" : ", ", phase, cycles);
+    }
+  }
+  return words;
+}
+
+Trial run_at(const PeriodSearch& search, int period_us) {
+  const auto cycles = std::lround(search.seconds * 1e6 / period_us);
+  std::vector<std::string> arguments{
+      "timing", "--json", "--period-us", std::to_string(period_us), "--cycles", std::to_string(cycles)};
+  arguments.insert(arguments.end(), search.arguments.begin(), search.arguments.end());
+  const ProgramOutput output = run_realtime_program(arguments);
+  if (output.status != 0 && output.status != kTiming) {
+    throw UsageError(fmt::format("hotfire-rt timing ended with status {}", output.status));
+  }
+  const auto report = nlohmann::json::parse(output.text).at("hotfire");
+  Trial trial;
+  trial.overruns = report.at("overruns").get<long>();
+  for (const auto& [phase, count] : report.at("blame").items()) {
+    trial.blame[phase] = count.get<long>();
+  }
+  trial.latest_us = report.at("wake_up_us").at("max").get<double>();
+  trial.median_step_us = report.at("step_us").at("median").get<double>();
+  trial.longest_step_us = report.at("step_us").at("max").get<double>();
+  trial.real_time = report.at("real_time").get<bool>();
+  return trial;
+}
+
+nlohmann::json json_of(int period_us, const Trial& trial) {
+  return {{"period_us", period_us},
+          {"overruns", trial.overruns},
+          {"blame", trial.blame},
+          {"latest_wake_up_us", trial.latest_us},
+          {"median_step_us", trial.median_step_us},
+          {"longest_step_us", trial.longest_step_us}};
+}
+
+}  // namespace
+
+int find_shortest_period(const PeriodSearch& search) {
+  std::map<int, Trial> trials;
+  const auto holds = [&](int period_us) {
+    const Trial& trial = trials[period_us] = run_at(search, period_us);
+    if (!search.json) {
+      fmt::print("{:6} us: {} overruns{}; wake-up {:.1f} us at the latest, step {:.1f} us (median), {:.1f} us (longest)\n",
+                 period_us, trial.overruns, trial.overruns > 0 ? " (" + blamed(trial) + ")" : "", trial.latest_us,
+                 trial.median_step_us, trial.longest_step_us);
+      std::fflush(stdout);
+    }
+    return trial.overruns == 0;
+  };
+  // Bisection over the logarithm: a period that holds, and a shorter one that does not.
+  int good = kLongest;
+  int bad = 0;
+  if (!holds(kLongest)) {
+    good = 0;
+  } else if (holds(kShortest)) {
+    good = kShortest;
+  } else {
+    bad = kShortest;
+    while (good > kResolution * bad && good > bad + 1) {
+      const int middle = std::clamp(static_cast<int>(std::lround(std::sqrt(double{1.0} * good * bad))), bad + 1, good - 1);
+      (holds(middle) ? good : bad) = middle;
+    }
+  }
+  const bool real_time = std::all_of(trials.begin(), trials.end(), [](const auto& own) { return own.second.real_time; });
+  if (search.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const auto& [period, trial] : trials) {
+      all.push_back(json_of(period, trial));
+    }
+    const nlohmann::json shortest = good > 0 ? nlohmann::json(good) : nlohmann::json(nullptr);
+    fmt::print(
+        "{}\n",
+        nlohmann::json{
+            {"shortest_period_us", shortest}, {"seconds_each", search.seconds}, {"real_time", real_time}, {"trials", all}}
+            .dump(2));
+    return good > 0 ? 0 : kTiming;
+  }
+  if (good == 0) {
+    fmt::print("no period up to {} us is without an overrun in {:g} s\n", kLongest, search.seconds);
+    return kTiming;
+  }
+  fmt::print("shortest period without an overrun in {:g} s: {} us\n", search.seconds, good);
+  if (bad > 0) {
+    fmt::print("at {} us these phases made cycles late: {}\n", bad, blamed(trials.at(bad)));
+  }
+  if (!real_time) {
+    fmt::print("this machine refused real-time running: the figure says nothing about a real-time machine\n");
+  }
+  return 0;
+}
+
+}  // namespace hotfire
