@@ -81,6 +81,25 @@ TEST(ModeTableFile, TakesItsColumnsInAnyOrder) {
   }
 }
 
+TEST(ModeTableFile, KeepsAModeOfTheRigidBodyForTheAttitudeAlone) {
+  const Scratch scratch;
+  const std::string header =
+      "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1,side.pitch1,side.yaw1,sensor.pitch,"
+      "sensor.yaw\n";
+  const ModeSet modes =
+      load_modes(scratch.write("modes.csv", header + "pitch,0,0,0,0,0,0,2,3,4,5\n1,5,0.01,1,2,3,4,6,7,8,9\n"));
+  LONGS_EQUAL(1, modes.modes());
+  DOUBLES_EQUAL(5.0, modes.frequency(0), 0.0);
+  DOUBLES_EQUAL(2.0, modes.shape(1, 0), 0.0);
+  LONGS_EQUAL(2, modes.flight.frequency.size());
+  DOUBLES_EQUAL(0.0, modes.flight.frequency(0), 0.0);
+  DOUBLES_EQUAL(3.0, modes.flight.side(1, 0), 0.0);
+  DOUBLES_EQUAL(9.0, modes.flight.sensor(1, 1), 0.0);
+  check_says(refused(header + "1,5,0.01,1,2,3,4,6,,8,9\n"), {"2:", "missing shape at side.yaw1"});
+  check_says(refused("mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1,sensor.pitch\n"),
+             {"1:", "no column side.pitch1"});
+}
+
 TEST(ModeTableFile, HasThePortsOfTheModel) {
   LONGS_EQUAL(model::Masv<double>::kPorts, port_names(kMostEngines).size());
   LONGS_EQUAL(model::Masv<double>::kEngines, kMostEngines);
@@ -96,7 +115,6 @@ TEST(ModeTableFile, RefusesAMissingShape) {
 
 TEST(ModeTableFile, RefusesWhatNoModeCanBe) {
   check_says(refused(kHeader + "1,-5,0.01,1,1,0,0\n"), {"2:", "frequency[Hz] = \"-5\"", "above 0"});
-  check_says(refused(kHeader + "1,0,0.01,1,1,0,0\n"), {"frequency[Hz] = \"0\"", "above 0"});
   check_says(refused(kHeader + "1,5,1.5,1,1,0,0\n"), {"damping[1] = \"1.5\"", "below 1"});
   check_says(refused(kHeader + "1,5,0.01,nan,1,0,0\n"), {"attach.pitch1 = \"nan\"", "not a finite number"});
   check_says(refused(kHeader + "1,5,0.01,1,1,0,0\n\n1,6,0.01,1,1,0,0\n"), {"4:", "given twice"});

@@ -129,6 +129,7 @@ int run(std::vector<std::string> words) {
   add_findings(program);
   add_nastran(program);
   add_linearise(program);
+  add_loop(program);
   add_reduce(program);
   add_header(program);
   add_plant(program);

@@ -56,8 +56,8 @@ bool next_row(CsvLines& lines, std::string_view& line) {
 
 /// Engine number at the end of the name of a port or a string; 0 if the name is neither's.
 int engine_of(std::string_view name) {
-  for (const std::string_view kind : {"attach.pitch", "attach.yaw", "gimbal.pitch", "gimbal.yaw", "string1.engine",
-                                      "string2.engine", "string3.engine", "string4.engine"}) {
+  for (const std::string_view kind : {"attach.pitch", "attach.yaw", "gimbal.pitch", "gimbal.yaw", "side.pitch", "side.yaw",
+                                      "string1.engine", "string2.engine", "string3.engine", "string4.engine"}) {
     int engine = 0;
     if (name.starts_with(kind)) {
       const auto [end, error] = std::from_chars(name.data() + kind.size(), name.data() + name.size(), engine);
@@ -73,7 +73,8 @@ struct Columns {
   std::size_t mode = 0;
   std::size_t frequency = 0;
   std::size_t damping = 0;
-  std::vector<std::string> shapes;  ///< ports, then strings if the table has them
+  std::vector<std::string> shapes;  ///< ports, then strings, then those of a flight if the table has them
+  std::size_t of_flight = 0;        ///< where the latter begin
   std::vector<std::size_t> shape_at;
   std::size_t count = 0;
 };
@@ -88,6 +89,8 @@ void refuse_unknown_column(const CsvLines& lines, std::string_view name) {
   known.insert(known.end(), ports.begin(), ports.end());
   const std::vector<std::string> strings = string_names(kMostEngines);
   known.insert(known.end(), strings.begin(), strings.end());
+  const std::vector<std::string> flight = flight_names(kMostEngines);
+  known.insert(known.end(), flight.begin(), flight.end());
   if (std::find(known.begin(), known.end(), name) == known.end()) {
     lines.refuse(fmt::format("column \"{}\": unknown; {}", name, suggestion(name, known)));
   }
@@ -126,10 +129,16 @@ Columns read_columns(CsvLines& lines) {
     const std::vector<std::string> strings = string_names(columns.engines);
     columns.shapes.insert(columns.shapes.end(), strings.begin(), strings.end());
   }
+  columns.of_flight = columns.shapes.size();
+  if (std::any_of(at.begin(), at.end(),
+                  [](const auto& own) { return own.first.starts_with("side.") || own.first.starts_with("sensor."); })) {
+    const std::vector<std::string> flight = flight_names(columns.engines);
+    columns.shapes.insert(columns.shapes.end(), flight.begin(), flight.end());
+  }
   for (const std::string& shape : columns.shapes) {
     columns.shape_at.push_back(column(
         shape, fmt::format("the table has {} engine{}, and a mode a shape at every attach point and gimbal of each, and at "
-                           "all of their strings or none",
+                           "all of their strings or none; side forces and sensor likewise",
                            columns.engines, columns.engines == 1 ? "" : "s")));
   }
   return columns;
@@ -141,6 +150,10 @@ Eigen::VectorXd read_shapes(const CsvLines& lines, const Columns& columns, const
   Eigen::VectorXd values(static_cast<Eigen::Index>(names.size()));
   for (std::size_t port = 0; port < names.size(); ++port) {
     const std::string_view cell = cells[columns.shape_at[port]];
+    if (cell.empty() && port >= columns.of_flight && cells[columns.mode].starts_with(kResidual)) {
+      values(static_cast<Eigen::Index>(port)) = 0.0;
+      continue;
+    }
     if (cell.empty()) {
       lines.refuse(fmt::format("{} {}: missing shape at {}; allowed: a number, 0 where the mode does not move it", kMode,
                                cells[columns.mode], names[port]));
@@ -194,6 +207,16 @@ std::vector<std::string> port_names(int engines) {
   return names;
 }
 
+std::vector<std::string> flight_names(int engines) {
+  std::vector<std::string> names;
+  for (int engine = 1; engine <= engines; ++engine) {
+    names.push_back(fmt::format("side.pitch{}", engine));
+    names.push_back(fmt::format("side.yaw{}", engine));
+  }
+  names.insert(names.end(), {"sensor.pitch", "sensor.yaw"});
+  return names;
+}
+
 std::vector<std::string> string_names(int engines) {
   std::vector<std::string> names;
   for (int engine = 1; engine <= engines; ++engine) {
@@ -210,7 +233,8 @@ ModeSet load_modes(const std::filesystem::path& path) {
   const std::vector<std::string> names = port_names(columns.engines);
   ModeSet set;
   set.engines = columns.engines;
-  const Eigen::Index strings = std::ssize(columns.shapes) - set.ports();
+  const Eigen::Index strings = static_cast<Eigen::Index>(columns.of_flight) - set.ports();
+  const Eigen::Index flight = std::ssize(columns.shapes) - static_cast<Eigen::Index>(columns.of_flight);
   set.residual = Eigen::MatrixXd::Zero(set.ports(), set.ports());
   set.string_residual = Eigen::MatrixXd::Zero(strings, set.ports());
   std::vector<double> frequency;
@@ -238,7 +262,7 @@ ModeSet load_modes(const std::filesystem::path& path) {
                                  suggestion(label.substr(kResidual.size()), {names.begin(), names.end()})));
       }
       set.residual.row(port - names.begin()) = shape.head(set.ports()).transpose();
-      set.string_residual.col(port - names.begin()) = shape.tail(strings);
+      set.string_residual.col(port - names.begin()) = shape.segment(set.ports(), strings);
       residual_rows.insert(*port);
       continue;
     }
@@ -246,21 +270,33 @@ ModeSet load_modes(const std::filesystem::path& path) {
       lines.refuse(fmt::format("more than {} modes", kMostModes));
     }
     frequency.push_back(read_bounded(
-        lines, kFrequency, cells[columns.frequency], [](double f) { return f > 0.0; },
-        "above 0: motion as a rigid body is not part of a mode table"));
+        lines, kFrequency, cells[columns.frequency], [](double f) { return f >= 0.0; },
+        "above 0, or 0 for a rigid-body mode"));
     damping.push_back(read_bounded(
         lines, kDamping, cells[columns.damping], [](double z) { return z >= 0.0 && z < 1.0; }, "0 to below 1"));
     shapes.push_back(shape);
   }
   require_residual(lines, columns, residual_rows, set.residual);
-  const auto count = static_cast<Eigen::Index>(shapes.size());
-  set.frequency = Eigen::Map<const Eigen::VectorXd>(frequency.data(), count);
-  set.damping_ratio = Eigen::Map<const Eigen::VectorXd>(damping.data(), count);
-  set.shape.resize(set.ports(), count);
-  set.string_shape.resize(strings, count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    set.shape.col(k) = shapes[static_cast<std::size_t>(k)].head(set.ports());
-    set.string_shape.col(k) = shapes[static_cast<std::size_t>(k)].tail(strings);
+  const auto all = static_cast<Eigen::Index>(shapes.size());
+  std::vector<Eigen::Index> bending;
+  for (Eigen::Index k = 0; k < all; ++k) {
+    if (frequency[static_cast<std::size_t>(k)] > 0.0) {
+      bending.push_back(k);
+    }
+  }
+  Eigen::MatrixXd shape(std::ssize(columns.shapes), all);
+  for (Eigen::Index k = 0; k < all; ++k) {
+    shape.col(k) = shapes[static_cast<std::size_t>(k)];
+  }
+  const Eigen::VectorXd every_frequency = Eigen::Map<const Eigen::VectorXd>(frequency.data(), all);
+  const Eigen::VectorXd every_damping = Eigen::Map<const Eigen::VectorXd>(damping.data(), all);
+  set.frequency = every_frequency(bending);
+  set.damping_ratio = every_damping(bending);
+  set.shape = shape.topRows(set.ports())(Eigen::all, bending);
+  set.string_shape = shape.middleRows(set.ports(), strings)(Eigen::all, bending);
+  if (flight > 0) {
+    set.flight = {every_frequency, every_damping, shape.middleRows(set.ports() + strings, 2 * set.engines),
+                  shape.bottomRows(2)};
   }
   return set;
 }

@@ -87,7 +87,7 @@ room(tools/interface fmu "the functions of FMI 2.0 and 3.0 for co-simulation" c 
 
 room(tools/cli shared "the list of commands, and options that several commands have")
 room(tools/cli files "commands that check or convert files: new, check, convert, import, export, header" shared)
-room(tools/cli model "commands that run, fit or describe a model: simulate, disperse, explain, linearise, reduce, nastran, keys" shared)
+room(tools/cli model "commands that run, fit or describe a model: simulate, disperse, explain, linearise, loop, reduce, nastran, keys" shared)
 room(tools/cli trials "commands for test profiles: sweep, step, stiffness, response, hammer, quiescent, strings, findings" shared)
 room(tools/cli reference "man pages and completion of a shell, from the descriptions of --help" shared)
 room(tools/cli rig "commands that start or prepare a real-time run: plant, controller, lab, timing, watch, replay, doctor" shared)

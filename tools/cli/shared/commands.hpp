@@ -31,6 +31,7 @@ void add_new(CLI::App& program);
 void add_quiescent(CLI::App& program);
 void add_lab(CLI::App& program);
 void add_linearise(CLI::App& program);
+void add_loop(CLI::App& program);
 void add_reduce(CLI::App& program);
 void add_response(CLI::App& program);
 void add_simulate(CLI::App& program);

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/cli/shared/commands.hpp"
+#include "tools/files/text/error.hpp"
+#include "tools/library/declared_plant.hpp"
+#include "tools/loop/flight.hpp"
+#include "tools/loop/loop_report.hpp"
+#include "tools/loop/vehicle_loop.hpp"
+#include "tools/trials/pictures.hpp"
+#include "tools/trials/profiles.hpp"
+
+namespace hotfire {
+
+namespace {
+
+struct LoopOptions {
+  std::string model;
+  std::string controller;
+  std::string picture;
+  std::optional<double> thrust;
+  std::vector<double> amplitudes;  ///< [deg]
+  std::vector<double> attitudes;   ///< [deg]
+  double seconds = 120.0;
+  double from = 0.05;  ///< [Hz]
+  double to = 10.0;
+  int count = 40;
+  bool json = false;
+};
+
+/// What the loop is made of.
+struct Parts {
+  loop::Controller controller;
+  DeclaredPlant declared;
+  std::optional<loop::Stage> stage;
+  std::unique_ptr<linear::Plant> plant;
+};
+
+Parts open(const LoopOptions& options) {
+  Parts parts;
+  parts.controller = loop::load_controller(options.controller);
+  const bool several = is_vehicle(options.model);
+  VehicleFile vehicle = several ? load_vehicle(options.model) : VehicleFile{};
+  if (options.thrust && several) {
+    vehicle = with_thrust(std::move(vehicle), *options.thrust);
+  }
+  const auto* masv = several ? std::get_if<MasvParameters>(&vehicle.parameters) : nullptr;
+  if (masv == nullptr) {
+    throw FileError(fmt::format("{}: no vehicle of four engines; allowed: topology = \"masv\"", options.model));
+  }
+  if (vehicle.modes_table.empty()) {
+    throw FileError(
+        fmt::format("{}: no mode table, so the stage has no attitude; remedy: [modes] with table = \"...\"", options.model));
+  }
+  try {
+    parts.stage.emplace(*masv, load_modes(vehicle.modes_table).flight, parts.controller.axis);
+  } catch (const UsageError& error) {
+    throw FileError(fmt::format("{}: {}", vehicle.modes_table.string(), error.what()));
+  }
+  parts.declared = declared_plant(vehicle, parts.controller.period, 1);
+  try {
+    parts.plant = linear::make_plant(parts.declared.parameters, parts.controller.period, {});
+  } catch (const UsageError& error) {
+    throw FileError(fmt::format("{}: {}", options.model, error.what()));
+  }
+  return parts;
+}
+
+loop::LoopResult result_of(const LoopOptions& options, const Parts& parts) {
+  const std::vector<double> frequencies =
+      trials::spaced(options.from, std::min(options.to, 0.499 / parts.controller.period), options.count);
+  loop::VehicleLoop loop(*parts.plant, *parts.stage, parts.controller);
+  loop::LoopResult result;
+  result.controller = parts.controller.name;
+  result.axis = parts.controller.axis;
+  result.stable = loop.is_stable();
+  const auto add = [&](double amplitude, double accuracy, const loop::OpenLoop& open_loop) {
+    loop::LoopCurve curve{amplitude, {}, {}};
+    for (const double frequency : frequencies) {
+      if (const auto own = open_loop(frequency)) {
+        curve.points.emplace_back(frequency, *own);
+      } else {
+        curve.without.push_back(frequency);
+      }
+    }
+    result.curves.push_back(std::move(curve));
+    result.margins.push_back({amplitude, loop::margins_of(open_loop, frequencies, accuracy)});
+  };
+  add(0.0, 1e-12, [&](double frequency) { return std::optional(loop.small_signal(frequency)); });
+  std::vector<double> amplitudes = options.amplitudes;
+  std::sort(amplitudes.begin(), amplitudes.end());
+  constexpr double kAccuracy = 1e-4;  // of a frequency: as a balance is
+  for (const double amplitude : amplitudes) {
+    add(trials::radians(amplitude), kAccuracy,
+        [&](double frequency) { return loop.described(frequency, trials::radians(amplitude)); });
+  }
+  result.predicted = loop::predicted_limit_cycles([&](double f, double a) { return loop.described(f, a); }, result.margins);
+  constexpr double kFloor = 1e-6;  // rad of command: a fiftieth of what a potentiometer of an actuator tells apart
+  for (const double attitude : options.attitudes) {
+    const auto record =
+        loop::fly(parts.declared.parameters, *parts.stage, parts.controller, {trials::radians(attitude), options.seconds});
+    loop::Oscillation oscillation{loop::Outcome::grows};
+    if (!record.ran_away) {
+      oscillation = loop::oscillation_of(record.command, parts.controller.period, kFloor);
+    }
+    result.flown.push_back({trials::radians(attitude), oscillation});
+  }
+  return result;
+}
+
+void run_loop(const LoopOptions& options) {
+  if (!(options.from < options.to)) {
+    throw UsageError(fmt::format("--from {:g} is not below --to {:g}", options.from, options.to));
+  }
+  const Parts parts = open(options);
+  const loop::LoopResult result = result_of(options, parts);
+  if (!options.picture.empty()) {
+    trials::write_picture(loop::bode_chart(result), options.picture);
+  }
+  if (options.json) {
+    std::cout << loop::to_json(result).dump(2) << '\n';
+  } else {
+    std::cout << loop::text_of(result);
+  }
+}
+
+}  // namespace
+
+void add_loop(CLI::App& program) {
+  const auto options = std::make_shared<LoopOptions>();
+  CLI::App* command = program.add_subcommand(
+      "loop", "A flight-control loop around a stage of four engines: margins by amplitude, limit cycles");
+  command->add_option("MODEL", options->model, "model file (.toml): masv with a mode table that has rigid-body modes")
+      ->required();
+  command->add_option("--controller", options->controller, "file of the controller (.toml)")->required();
+  command->add_option("--thrust", options->thrust, "thrust of every engine [N], instead of that of the model");
+  command
+      ->add_option("--amplitudes", options->amplitudes,
+                   "amplitudes of the command [deg]: margins and limit cycles by describing functions; left out: small "
+                   "deviations alone")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--attitudes", options->attitudes,
+                   "attitudes at the start of simulations of the closed loop [deg]; left out: no simulation")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command->add_option("--seconds", options->seconds, "length of a simulation [s]")
+      ->check(CLI::Range(1.0, 1e5))
+      ->capture_default_str();
+  command->add_option("--from", options->from, "lowest frequency [Hz]")
+      ->check(CLI::Range(1e-3, 200.0))
+      ->capture_default_str();
+  command->add_option("--to", options->to, "highest frequency [Hz]; at most half of the sampling rate")
+      ->check(CLI::Range(1e-3, 200.0))
+      ->capture_default_str();
+  command->add_option("--count", options->count, "number of frequencies")
+      ->check(CLI::Range(2, 10000))
+      ->capture_default_str();
+  command->add_option("--picture", options->picture, "draw the open loop (.svg)");
+  command->add_flag("--json", options->json, "print margins, limit cycles and responses as JSON");
+  command->footer(
+      "Example: hotfire loop stage.toml --controller pitch.toml --amplitudes 0.05,0.1,0.2,0.4,0.8 --attitudes 0.1,2\n"
+      "The loop is cut at the command. Gain margins above 0 dB are of a gain that may rise, below 0 dB of one that may "
+      "fall.");
+  command->callback([options] { run_loop(*options); });
+}
+
+}  // namespace hotfire
