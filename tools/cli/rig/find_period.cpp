@@ -22,7 +22,7 @@ namespace {
 constexpr int kShortest = 50;
 constexpr int kLongest = 10'000;
 constexpr double kResolution = 1.05;
-constexpr int kTiming = 4;  ///< exit status of a run that was late
+constexpr int kTiming = static_cast<int>(ExitStatus::timing);
 
 /// One period that was run.
 struct Trial {
@@ -50,7 +50,8 @@ Trial run_at(const PeriodSearch& search, int period_us) {
       "timing", "--json", "--period-us", std::to_string(period_us), "--cycles", std::to_string(cycles)};
   arguments.insert(arguments.end(), search.arguments.begin(), search.arguments.end());
   const ProgramOutput output = run_realtime_program(arguments);
-  if (output.status != 0 && output.status != kTiming) {
+  // It has said why on standard error. --require-realtime ends it before there is a report.
+  if ((output.status != 0 && output.status != kTiming) || output.text.empty()) {
     throw UsageError(fmt::format("hotfire-rt timing ended with status {}", output.status));
   }
   const auto report = nlohmann::json::parse(output.text).at("hotfire");

@@ -136,8 +136,12 @@ Curve spring_curve(const SimplexParameters& p, const Params& params, const Reach
                                         p.actuator.stiffness,
                                         p.structure.stiffness,
                                         kStep};
-      // A law solved from its last force is asked twice, so that the first point is solved as well as the others.
-      E::step(params, state, input);
+      // A law that is solved from its last force is solved anew at each point; others see each point twice.
+      if constexpr (requires { E::remembers_a_guess; }) {
+        E::settle(params, state, input);
+      } else {
+        E::step(params, state, input);
+      }
       const auto out = E::step(params, state, input);
       found.x.push_back(deflection);
       found.y.push_back(stiffness * out.deflection);
