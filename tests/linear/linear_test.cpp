@@ -211,7 +211,7 @@ TEST(Linear, SmallDeviationsOfATaosAreThoseOfASweep) { check_small_signals(kTaos
 TEST(Linear, SmallDeviationsOfAMasvAreThoseOfASweep) { check_small_signals(kMasv, 8.0); }
 
 TEST(Linear, DescribingFunctionsOfASimplexAreThoseOfSimulatedSinesAtFiveAmplitudes) {
-  check_describing_functions(kSimplex + kDeadBand, {0.05, 0.2, 0.4, 0.8, 1.6}, {0.5, 2.0, 4.0, 7.0, 10.0, 14.0});
+  check_describing_functions(kSimplex + kDeadBand, {0.05, 0.1, 0.2, 0.4, 1.6}, {0.5, 0.7, 2.0, 4.0, 7.0, 10.0, 14.0});
 }
 
 TEST(Linear, DescribingFunctionsOfATaosAreThoseOfSimulatedSinesAtFiveAmplitudes) {
@@ -219,7 +219,7 @@ TEST(Linear, DescribingFunctionsOfATaosAreThoseOfSimulatedSinesAtFiveAmplitudes)
 }
 
 TEST(LinearAtLength, DescribingFunctionsOfAMasvAreThoseOfSimulatedSinesAtFiveAmplitudes) {
-  check_describing_functions(kMasv + kDeadBand, {0.05, 0.1, 0.4, 0.8, 1.6}, {1.0, 8.0});
+  check_describing_functions(kMasv + kDeadBand, {0.05, 0.1, 0.2, 0.4, 1.6}, {1.0, 8.0});
 }
 
 TEST(Linear, ALoadIsWhatATorqueOffsetOfTheModelIs) {

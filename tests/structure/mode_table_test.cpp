@@ -98,6 +98,17 @@ TEST(ModeTableFile, KeepsAModeOfTheRigidBodyForTheAttitudeAlone) {
   check_says(refused(header + "1,5,0.01,1,2,3,4,6,,8,9\n"), {"2:", "missing shape at side.yaw1"});
   check_says(refused("mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1,sensor.pitch\n"),
              {"1:", "no column side.pitch1"});
+  check_says(refused(kHeader + "1,0,0.01,1,1,0,0\n"), {"2:", "frequency[Hz] = \"0\"", "side and sensor"});
+}
+
+TEST(ModeTableFile, WritesTheModesOfAFlightAsItReadThem) {
+  const Scratch scratch;
+  const std::string rows =
+      "mode,frequency[Hz],damping[1],attach.pitch1,attach.yaw1,gimbal.pitch1,gimbal.yaw1,side.pitch1,side.yaw1,sensor.pitch,"
+      "sensor.yaw\n1,0,0,0.5,0,0,0,2,3,4,5\n2,5,0.01,1,2,3,4,6,7,8,9\nresidual.attach.pitch1,,,1e-09,0,0,0,,,,\n"
+      "residual.attach.yaw1,,,0,1e-09,0,0,,,,\nresidual.gimbal.pitch1,,,0,0,1e-09,0,,,,\n"
+      "residual.gimbal.yaw1,,,0,0,0,1e-09,,,,\n";
+  STRCMP_EQUAL(rows.c_str(), mode_table_text(load_modes(scratch.write("modes.csv", rows)), {}).c_str());
 }
 
 TEST(ModeTableFile, HasThePortsOfTheModel) {

@@ -54,6 +54,27 @@ TEST(Reduction, KeepsAtMostFortyOfAHundredAndTwentyModesWithinOnePercent) {
   }
 }
 
+TEST(Reduction, KeepsOfAStageInFlightItsRigidBodyAndTheModesThatStay) {
+  ModeSet full = load_modes(kShipped);
+  const Eigen::Index all = full.modes() + 2;
+  // Modes of the rigid body before and after those that bend.
+  full.flight.frequency = Eigen::VectorXd::Zero(all);
+  full.flight.frequency.segment(1, full.modes()) = full.frequency;
+  full.flight.damping_ratio = Eigen::VectorXd::Zero(all);
+  full.flight.side = Eigen::MatrixXd::Constant(2 * full.engines, all, 1.0);
+  full.flight.sensor = Eigen::RowVectorXd::LinSpaced(all, 0.0, static_cast<double>(all - 1)).replicate(2, 1);
+  full.flight.shape = Eigen::MatrixXd::Zero(full.ports() + full.string_shape.rows(), all);
+  const Reduction reduction = reduce(full, ReductionGoal{});
+  const FlightModes& flight = reduction.modes.flight;
+  LONGS_EQUAL(reduction.modes.modes() + 2, flight.frequency.size());
+  DOUBLES_EQUAL(0.0, flight.sensor(0, 0), 0.0);
+  DOUBLES_EQUAL(static_cast<double>(all - 1), flight.sensor(0, flight.sensor.cols() - 1), 0.0);
+  for (Eigen::Index k = 0; k < reduction.modes.modes(); ++k) {
+    DOUBLES_EQUAL(reduction.modes.frequency(k), flight.frequency(k + 1), 0.0);
+    DOUBLES_EQUAL(reduction.kept[static_cast<std::size_t>(k)] + 1.0, flight.sensor(1, k + 1), 0.0);
+  }
+}
+
 TEST(Reduction, LeavesTheStaticFlexibilityAsItWas) {
   const ModeSet full = load_modes(kShipped);
   const Eigen::MatrixXd wanted = static_flexibility(full);

@@ -4,7 +4,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "tools/linear/periodic_motion.hpp"
 
 namespace hotfire::linear {
 
@@ -12,66 +13,29 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXcd;
 using Eigen::VectorXd;
-
-constexpr Index kParts = 1 + 2 * kHarmonics;  ///< of a port signal: mean, real and imaginary part of every harmonic
-
-Complex turn_of(double frequency, double time) { return std::polar(1.0, 2.0 * std::numbers::pi * frequency * time); }
 
 /// True for a part that is zero in a motion whose second half is the first with the other sign: mean and even harmonics.
 bool is_even(Index part) { return part == 0 || ((part + 1) / 2) % 2 == 0; }
 
-/// Factor of a delay of a quantity.
-Complex late(const Plant& plant, const Quantity& signal, double frequency) {
-  Complex turn{1.0};
-  for (const Delay& delay : plant.delays()) {
-    turn *= delay.name == signal.name ? turn_of(frequency, -delay.seconds) : Complex(1.0);
-  }
-  return turn;
-}
-
-}  // namespace
-
-HarmonicBalance::HarmonicBalance(const Plant& plant) : plant_(plant), parts_(plant), at_rest_(parts_.motion_at_rest()) {}
-
 /// The search for port signals that the laws give back: Newton's method on found(x) - x = 0, the inverse of its matrix by
 /// differences and kept up by Broyden's formula [Broyden 1965, Math. Comp. 19]. An unknown is a part of a port's signal over
 /// its size.
-class HarmonicBalance::Search {
+class Search {
  public:
-  Search(const HarmonicBalance& system, double frequency, const std::vector<Complex>& commands)
-      : system_(system), ports_(static_cast<Index>(system.parts_.ports().size())) {
-    balance_.frequency = frequency;
-    balance_.commands = commands;
-    for (int m = 1; m <= kHarmonics; ++m) {
-      answers_.push_back(system_.parts_.answer_at(m * frequency));
-    }
-    // A command's own effects do not depend on how the axis moves.
-    driven_.resize(commands.size());
-    for (std::size_t i = 0; i < commands.size(); ++i) {
-      driven_[i].command.fundamental() = commands[i] * late(system_.plant_, system_.parts_.map().inputs[i], frequency);
-    }
-    const std::vector<PortWaves> given = system_.plant_.respond(frequency, driven_);
-    for (std::size_t m = 0; m < kHarmonics; ++m) {
-      VectorXcd acting(static_cast<Index>(given.size()));
-      std::transform(given.begin(), given.end(), acting.begin(),
-                     [&](const PortWaves& own) { return own.command.harmonics[m]; });
-      acting_.push_back(acting);
-    }
-  }
+  explicit Search(const PeriodicMotion& waves) : waves_(waves), parts_(waves.parts()), ports_(waves.ports()) {}
 
   std::optional<Balance> find(const Balance* near) {
     start(near);
     for (const bool symmetric : {true, false}) {
       choose_unknowns(symmetric);
-      if (iterate() && unchosen() < kBalanced) {
-        balance_.residual = rest_.lpNorm<Eigen::Infinity>();
-        read_outputs();
+      if (iterate() && unchosen() < HarmonicBalance::kBalanced) {
+        Balance balance = waves_.balance(all_);
+        balance.residual = rest_.lpNorm<Eigen::Infinity>();
         if (inverse_.rows() == x_.size()) {
-          balance_.slopes = std::make_shared<const SearchSlopes>(SearchSlopes{scale_, unknowns_, inverse_});
+          balance.slopes = std::make_shared<const SearchSlopes>(SearchSlopes{parts_, scale_, unknowns_, inverse_});
         }
-        return balance_;
+        return balance;
       }
     }
     return {};
@@ -84,47 +48,42 @@ class HarmonicBalance::Search {
 
   double size() const { return rest_.size() > 0 ? rest_.lpNorm<Eigen::Infinity>() : 0.0; }
 
-  VectorXd signals_of(const std::vector<PortWaves>& ports) const {
-    VectorXd found(kParts * ports_);
-    for (Index k = 0; k < ports_; ++k) {
-      const auto [axis, port] = system_.parts_.ports()[static_cast<std::size_t>(k)];
-      const Wave& wave = ports[static_cast<std::size_t>(axis)].ports[static_cast<std::size_t>(port)];
-      found(kParts * k) = wave.mean;
-      for (Index m = 0; m < kHarmonics; ++m) {
-        const Complex& own = wave.harmonics[static_cast<std::size_t>(m)];
-        found.segment<2>(kParts * k + 1 + 2 * m) << own.real(), own.imag();
-      }
-    }
-    return found;
-  }
-
   /// The signals where the search starts, and their sizes.
   void start(const Balance* near) {
-    all_ = near != nullptr ? signals_of(near->ports) : respond(VectorXd::Zero(kParts * ports_));
-    found_ = respond(all_);
-    scale_ = VectorXd::Zero(kParts * ports_);
-    const auto size_of = [](const VectorXd& signals, Index port) {
-      return signals.segment<kParts>(kParts * port).lpNorm<Eigen::Infinity>();
+    all_ = near != nullptr ? waves_.signals_of(near->ports) : waves_.respond(VectorXd::Zero(parts_ * ports_));
+    found_ = waves_.respond(all_);
+    if (near != nullptr && near->harmonics < waves_.harmonics()) {
+      // What the laws make of fewer harmonics.
+      for (Index k = 0; k < ports_; ++k) {
+        const Index more = 2 * (waves_.harmonics() - near->harmonics);
+        all_.segment(parts_ * (k + 1) - more, more) = found_.segment(parts_ * (k + 1) - more, more);
+      }
+    }
+    scale_ = VectorXd::Zero(parts_ * ports_);
+    const auto size_of = [this](const VectorXd& signals, Index port) {
+      return signals.segment(parts_ * port, parts_).lpNorm<Eigen::Infinity>();
     };
     // A port of an axis that hardly moves counts by what those of its kind do.
     std::array<double, kAxisPorts> largest{};
     for (const bool first : {true, false}) {
       for (Index k = 0; k < ports_; ++k) {
-        double& most = largest[static_cast<std::size_t>(system_.parts_.ports()[static_cast<std::size_t>(k)][1])];
+        double& most = largest[static_cast<std::size_t>(waves_.kind_of(k))];
         const double own = std::max({size_of(all_, k), size_of(found_, k), first ? 0.0 : kLeast * most});
         most = std::max(most, own);
-        scale_.segment<kParts>(kParts * k).setConstant(own);
+        scale_.segment(parts_ * k, parts_).setConstant(own);
       }
     }
     bool alike = near != nullptr && near->slopes;
     for (Index k = 0; k < ports_ && alike; ++k) {
-      const double own = scale_(kParts * k);
-      const double nearby = near->slopes->scale(kParts * k);
+      const double own = scale_(parts_ * k);
+      const double nearby = near->slopes->scale(near->slopes->parts * k);
       alike = own <= kAlike * nearby && nearby <= kAlike * own;
     }
     nearby_ = alike ? near->slopes : nullptr;
     if (alike) {
-      scale_ = nearby_->scale;
+      for (Index k = 0; k < ports_; ++k) {
+        scale_.segment(parts_ * k, parts_).setConstant(nearby_->scale(nearby_->parts * k));
+      }
     }
   }
 
@@ -132,7 +91,7 @@ class HarmonicBalance::Search {
   void choose_unknowns(bool symmetric) {
     unknowns_.clear();
     for (Index i = 0; i < all_.size(); ++i) {
-      if (scale_(i) > 0.0 && !(symmetric && is_even(i % kParts))) {
+      if (scale_(i) > 0.0 && !(symmetric && is_even(i % parts_))) {
         unknowns_.push_back(i);
       } else {
         all_(i) = 0.0;
@@ -140,8 +99,27 @@ class HarmonicBalance::Search {
     }
     x_ = all_(unknowns_).cwiseQuotient(scale_(unknowns_));
     rest_ = evaluate(x_) - x_;
-    const bool known = nearby_ && nearby_->unknowns == unknowns_;
-    inverse_ = known ? nearby_->inverse : MatrixXd();
+    inverse_ = nearby_ ? inverse_nearby() : MatrixXd();
+  }
+
+  /// The inverse nearby for the unknowns of this search. A part that is no unknown there is taken as one that no law
+  /// follows.
+  MatrixXd inverse_nearby() const {
+    const auto& theirs = nearby_->unknowns;
+    std::vector<Index> own;
+    std::vector<Index> other;
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      const Index part = unknowns_[i] % parts_;
+      const Index place = unknowns_[i] / parts_ * nearby_->parts + part;
+      const auto found = std::lower_bound(theirs.begin(), theirs.end(), place);
+      if (part < nearby_->parts && found != theirs.end() && *found == place) {
+        own.push_back(static_cast<Index>(i));
+        other.push_back(found - theirs.begin());
+      }
+    }
+    MatrixXd inverse = -MatrixXd::Identity(x_.size(), x_.size());
+    inverse(own, own) = nearby_->inverse(other, other);
+    return inverse;
   }
 
   /// The largest part among those that are no unknowns.
@@ -158,16 +136,7 @@ class HarmonicBalance::Search {
     return largest;
   }
 
-  void differentiate() {
-    constexpr double kDifference = 1e-5;
-    MatrixXd slopes(x_.size(), x_.size());
-    for (Index k = 0; k < x_.size(); ++k) {
-      VectorXd moved = x_;
-      moved(k) += kDifference;
-      slopes.col(k) = (evaluate(moved) - moved - rest_) / kDifference;
-    }
-    inverse_ = slopes.partialPivLu().inverse();
-  }
+  void differentiate() { inverse_ = waves_.slopes(all_of(x_), unknowns_, scale_).partialPivLu().inverse(); }
 
   /// True if it arrives.
   bool iterate() {
@@ -227,90 +196,60 @@ class HarmonicBalance::Search {
 
   bool arrived() {
     evaluate(x_);
-    return size() < kBalanced;
+    return size() < HarmonicBalance::kBalanced;
   }
 
   /// What the laws give for the unknowns, as parts of them.
   VectorXd evaluate(const VectorXd& scaled) {
-    all_(unknowns_) = scaled.cwiseProduct(scale_(unknowns_));
-    found_ = respond(all_);
+    all_ = all_of(scaled);
+    found_ = waves_.respond(all_);
     return found_(unknowns_).cwiseQuotient(scale_(unknowns_));
   }
 
-  VectorXd respond(const VectorXd& given) {
-    balance_.axes = motion(given);
-    balance_.ports = system_.plant_.respond(balance_.frequency, balance_.axes);
-    return signals_of(balance_.ports);
+  VectorXd all_of(const VectorXd& scaled) const {
+    VectorXd all = VectorXd::Zero(parts_ * ports_);
+    all(unknowns_) = scaled.cwiseProduct(scale_(unknowns_));
+    return all;
   }
 
-  VectorXcd harmonic_of(const VectorXd& given, Index m) const {
-    VectorXcd signals(ports_);
-    for (Index k = 0; k < ports_; ++k) {
-      signals(k) = Complex(given(kParts * k + 2 * m - 1), given(kParts * k + 2 * m));
-    }
-    return signals;
-  }
-
-  /// How the linear parts move under the port signals.
-  std::vector<AxisWaves> motion(const VectorXd& given) const {
-    std::vector<AxisWaves> axes = driven_;
-    const auto put = [&](auto&& set, const auto& rows) {
-      for (std::size_t i = 0; i < axes.size(); ++i) {
-        const auto first = static_cast<Index>(i) * kMotionRows;
-        for (Index k = 0; k < 8; ++k) {
-          set(axes[i].states[static_cast<std::size_t>(k)], rows(first + k));
-        }
-        set(axes[i].slip, rows(first + kSlipRow));
-        set(axes[i].attach, rows(first + kAttachRow));
-      }
-    };
-    VectorXd means(ports_);
-    for (Index k = 0; k < ports_; ++k) {
-      means(k) = given(kParts * k);
-    }
-    put([](Wave& wave, double value) { wave.mean = value; }, VectorXd(system_.at_rest_ * means));
-    for (std::size_t m = 0; m < kHarmonics; ++m) {
-      const VectorXcd rows = answers_[m].motion_by_command * acting_[m] +
-                             answers_[m].motion_by_port * harmonic_of(given, static_cast<Index>(m) + 1);
-      put([m](Wave& wave, Complex value) { wave.harmonics[m] = value; }, rows);
-    }
-    return axes;
-  }
-
-  void read_outputs() {
-    const VectorXcd read = answers_[0].output_by_command * acting_[0] + answers_[0].output_by_port * harmonic_of(all_, 1);
-    balance_.outputs.assign(read.begin(), read.end());
-    for (std::size_t i = 0; i < balance_.outputs.size(); ++i) {
-      balance_.outputs[i] *= late(system_.plant_, system_.parts_.map().outputs[i], balance_.frequency);
-    }
-  }
-
-  const HarmonicBalance& system_;
+  const PeriodicMotion& waves_;
+  Index parts_;
   Index ports_;
-  std::vector<Answer> answers_{};    ///< one a harmonic
-  std::vector<AxisWaves> driven_{};  ///< the commands
-  std::vector<VectorXcd> acting_{};  ///< commands behind the effects of their site, one a harmonic
-  std::vector<Index> unknowns_{};    ///< among the parts of all signals
-  VectorXd all_{};                   ///< signals that are tried
-  VectorXd found_{};                 ///< what the laws give for them
+  std::vector<Index> unknowns_{};  ///< among the parts of all signals
+  VectorXd all_{};                 ///< signals that are tried
+  VectorXd found_{};               ///< what the laws give for them
   VectorXd scale_{};
   VectorXd x_{};
   VectorXd rest_{};
   std::shared_ptr<const SearchSlopes> nearby_{};
   MatrixXd inverse_{};
-  Balance balance_{};
 };
+
+}  // namespace
+
+HarmonicBalance::HarmonicBalance(const Plant& plant) : plant_(plant), parts_(plant), at_rest_(parts_.motion_at_rest()) {}
 
 std::optional<Balance> HarmonicBalance::solve(double frequency, const std::vector<Complex>& commands,
                                               const Balance* near) const {
-  return Search(*this, frequency, commands).find(near);
+  const int harmonics = plant_.harmonics(frequency);
+  const auto find = [&](int own, const Balance* start) { return Search({*this, frequency, own, commands}).find(start); };
+  if (near != nullptr && near->harmonics == harmonics) {
+    if (std::optional<Balance> found = find(harmonics, near)) {
+      return found;
+    }
+  }
+  std::optional<Balance> few = find(kFewestHarmonics, near);
+  if (harmonics == kFewestHarmonics) {
+    return few;
+  }
+  return find(harmonics, few ? &*few : near);
 }
 
 Complex hold_factor(double frequency, double period, double step) {
   const int steps = static_cast<int>(std::lround(period / step));
   Complex sum{0.0};
   for (int k = 0; k < steps; ++k) {
-    sum += turn_of(frequency, -step * (k + 0.5));
+    sum += delay_factor(frequency, step * (k + 0.5));
   }
   return sum / static_cast<double>(steps);
 }

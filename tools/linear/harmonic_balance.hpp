@@ -13,9 +13,10 @@
 
 namespace hotfire::linear {
 
-/// How the search for a balance moved last, where a search nearby begins: the sizes of the port signals, which of their
-/// parts are unknown, and the inverse of the search's matrix in parts of these sizes.
+/// How the search for a balance moved last, where a search nearby begins: the parts of a port signal, the sizes of the
+/// signals, which of their parts are unknown, and the inverse of the search's matrix in parts of these sizes.
 struct SearchSlopes {
+  Eigen::Index parts;
   Eigen::VectorXd scale;
   std::vector<Eigen::Index> unknowns;
   Eigen::MatrixXd inverse;
@@ -23,7 +24,8 @@ struct SearchSlopes {
 
 /// A periodic motion of a plant on which its linear parts and its nonlinear laws agree, harmonic by harmonic.
 struct Balance {
-  double frequency = 0.0;         ///< [Hz]
+  double frequency = 0.0;  ///< [Hz]
+  int harmonics = 0;
   std::vector<Complex> commands;  ///< what drives it: the fundamental of every axis's held command [rad]
   std::vector<AxisWaves> axes;    ///< deviations from rest
   std::vector<PortWaves> ports;   ///< what the nonlinear laws put in
@@ -34,9 +36,10 @@ struct Balance {
 
 /// The describing functions of a plant under sines of its commands [Gelb and Vander Velde 1968, Multiple-Input Describing
 /// Functions, ch. 2], with higher harmonics: harmonic balance by alternating frequency and time [Cameron and Griffin 1989,
-/// J. Appl. Mech. 56, 149-154]. Every law gives the mean and the first `kHarmonics` harmonics of what the model's own code
-/// makes of a periodic motion; the linear parts answer each harmonic. The describing function is the fundamental of an
-/// output over that of the command.
+/// J. Appl. Mech. 56, 149-154]. Every law gives the mean and the first harmonics (`Plant::harmonics`) of what the model's
+/// own code makes of a periodic motion; the linear parts answer each harmonic. The describing function is the fundamental of
+/// an output over that of the command. A balance of few harmonics comes first, and is where the search for that of all
+/// starts.
 class HarmonicBalance {
  public:
   /// The plant must live as long. Throws what `reduced` throws.
@@ -44,6 +47,9 @@ class HarmonicBalance {
 
   const Plant& plant() const { return plant_; }
   const LinearParts& parts() const { return parts_; }
+
+  /// Motion under constant port signals: `kMotionRows` rows an axis, a column a port.
+  const Eigen::MatrixXd& motion_at_rest() const { return at_rest_; }
 
   /// The balance under sines of the commands [rad] at `frequency` [Hz]; `near` is one nearby, where the search starts.
   /// Nothing if the search does not find one.
@@ -53,8 +59,6 @@ class HarmonicBalance {
   static constexpr double kBalanced = 1e-3;
 
  private:
-  class Search;
-
   const Plant& plant_;
   LinearParts parts_;
   Eigen::MatrixXd at_rest_;

@@ -38,6 +38,7 @@ struct Controller {
   std::string axis;            ///< "pitch" or "yaw": of all engines
   double period = 0.02;        ///< between samples [s]
   double delay = 0.0;          ///< from a sample to its command [s]
+  std::string delay_at{};      ///< where its file says so, for a message
   double gain = 0.0;           ///< [rad/rad]
   double rate_gain = 0.0;      ///< [s]
   double integral_gain = 0.0;  ///< [1/s]

@@ -68,6 +68,9 @@ class ControllerReader {
     }
     controller.period = number(root, "", "period", "s", 1e-3, 1.0, {});
     controller.delay = number(root, "", "delay", "s", 0.0, 1.0, 0.0);
+    if (const toml::node* delay = root.get("delay")) {
+      controller.delay_at = fmt::format("{}:{}: ", path_.string(), delay->source().begin.line);
+    }
     if (root.contains("measured")) {
       for (const char* key : {"gain", "rate_gain", "integral_gain", "filter"}) {
         if (root.contains(key)) {
@@ -176,7 +179,8 @@ class ControllerReader {
       }
       std::array<double, 3> cells{};
       if (!read_cells(line, cells)) {
-        lines.refuse("not three finite numbers; allowed: frequency in Hz, gain in dB, phase in degrees");
+        lines.refuse(
+            fmt::format("\"{}\": not three finite numbers; allowed: frequency in Hz, gain in dB, phase in degrees", line));
       }
       if (!(cells[0] > (controller.measured.empty() ? 0.0 : controller.measured.back().frequency))) {
         lines.refuse(fmt::format("frequency = {:g}; allowed: above 0, ascending from row to row", cells[0]));

@@ -36,8 +36,8 @@ VehicleLoop::VehicleLoop(const linear::Plant& plant, const Stage& stage, const C
   const auto delay_steps = static_cast<int>(std::lround(controller.delay / step_));
   constexpr double kSame = 1e-9;  // s
   if (std::abs(delay_steps * step_ - controller.delay) > kSame) {
-    throw UsageError(fmt::format("delay = {:g} s is no whole number of the model's steps of {:g} s; nearest: {:g} s",
-                                 controller.delay, step_, delay_steps * step_));
+    throw FileError(fmt::format("{}delay = {:g} s: not a whole number of the model's steps of {:g} s; nearest: {:g} s",
+                                controller.delay_at, controller.delay, step_, delay_steps * step_));
   }
   for (int i = 0; i < plant.axes(); ++i) {
     commanded_.push_back(axis_name(i).starts_with(controller.axis) ? 1.0 : 0.0);

@@ -18,7 +18,7 @@ namespace hotfire::loop {
 class VehicleLoop {
  public:
   /// `plant` is made for records of the controller's period and must live as long, like `stage` and `controller`. Throws
-  /// UsageError for a delay that is no whole number of the model's steps.
+  /// FileError for a delay that is no whole number of the model's steps.
   VehicleLoop(const linear::Plant& plant, const Stage& stage, const Controller& controller);
 
   /// The open loop in small deviations, as the sampled system that it is: exact.

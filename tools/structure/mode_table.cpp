@@ -269,9 +269,11 @@ ModeSet load_modes(const std::filesystem::path& path) {
     if (shapes.size() == kMostModes) {
       lines.refuse(fmt::format("more than {} modes", kMostModes));
     }
+    const bool flies = columns.of_flight < columns.shapes.size();
     frequency.push_back(read_bounded(
-        lines, kFrequency, cells[columns.frequency], [](double f) { return f >= 0.0; },
-        "above 0, or 0 for a rigid-body mode"));
+        lines, kFrequency, cells[columns.frequency],
+        flies ? +[](double f) { return f >= 0.0; } : +[](double f) { return f > 0.0; },
+        "above 0, or 0 for a rigid-body mode in a table that has the columns side and sensor"));
     damping.push_back(read_bounded(
         lines, kDamping, cells[columns.damping], [](double z) { return z >= 0.0 && z < 1.0; }, "0 to below 1"));
     shapes.push_back(shape);
@@ -296,7 +298,7 @@ ModeSet load_modes(const std::filesystem::path& path) {
   set.string_shape = shape.middleRows(set.ports(), strings)(Eigen::all, bending);
   if (flight > 0) {
     set.flight = {every_frequency, every_damping, shape.middleRows(set.ports() + strings, 2 * set.engines),
-                  shape.bottomRows(2)};
+                  shape.bottomRows(2), shape.topRows(set.ports() + strings)};
   }
   return set;
 }
@@ -313,27 +315,41 @@ std::string mode_table_text(const ModeSet& modes, const std::vector<std::string>
     const std::vector<std::string> strings = string_names(modes.engines);
     columns.insert(columns.end(), strings.begin(), strings.end());
   }
+  const bool flies = modes.flight.frequency.size() > 0;
+  const std::vector<std::string> flight = flight_names(flies ? modes.engines : 0);
+  if (flies) {
+    columns.insert(columns.end(), flight.begin(), flight.end());
+  }
   for (const std::string& column : columns) {
     text += fmt::format(",{}", column);
   }
-  const auto append = [&text](const Eigen::VectorXd& ports, const Eigen::VectorXd& strings) {
-    for (const Eigen::VectorXd* part : {&ports, &strings}) {
-      for (const double value : *part) {
-        text += fmt::format(",{}", value);
-      }
+  text += '\n';
+  const auto append = [&text](const Eigen::VectorXd& values) {
+    for (const double value : values) {
+      text += fmt::format(",{}", value);
+    }
+  };
+  const Eigen::VectorXd& frequency = flies ? modes.flight.frequency : modes.frequency;
+  const Eigen::VectorXd& damping_ratio = flies ? modes.flight.damping_ratio : modes.damping_ratio;
+  for (Eigen::Index k = 0; k < frequency.size(); ++k) {
+    text += fmt::format("{},{},{}", k + 1, frequency(k), damping_ratio(k));
+    if (flies) {
+      append(modes.flight.shape.col(k));
+      append(modes.flight.side.col(k));
+      append(modes.flight.sensor.col(k));
+    } else {
+      append(modes.shape.col(k));
+      append(modes.string_shape.col(k));
     }
     text += '\n';
-  };
-  text += '\n';
-  for (int k = 0; k < modes.modes(); ++k) {
-    text += fmt::format("{},{},{}", k + 1, modes.frequency(k), modes.damping_ratio(k));
-    append(modes.shape.col(k), modes.string_shape.col(k));
   }
   const bool moves_strings = modes.string_residual.size() > 0 && modes.string_residual.cwiseAbs().maxCoeff() > 0.0;
   if (modes.residual.cwiseAbs().maxCoeff() > 0.0 || moves_strings) {
     for (int row = 0; row < modes.ports(); ++row) {
       text += fmt::format("{}{},,", kResidual, names[static_cast<std::size_t>(row)]);
-      append(modes.residual.row(row), modes.string_residual.col(row));
+      append(modes.residual.row(row));
+      append(modes.string_residual.col(row));
+      text += flies ? std::string(flight.size(), ',') + "\n" : "\n";
     }
   }
   return text;

@@ -15,7 +15,7 @@ inline constexpr int kMostEngines = 4;
 inline constexpr std::size_t kMostModes = 10'000;
 
 /// What the attitude of a stage in flight needs of its modes: every mode of the table, those of it as a rigid body
-/// (frequency 0) among them. Empty for a table that does not say it.
+/// (frequency 0) among them. Empty for a table without the columns of `flight_names`.
 struct FlightModes {
   Eigen::VectorXd frequency;      ///< [Hz], one a mode
   Eigen::VectorXd damping_ratio;  ///< one a mode
@@ -23,6 +23,7 @@ struct FlightModes {
   /// engine, a column a mode.
   Eigen::MatrixXd side;
   Eigen::MatrixXd sensor;  ///< how far a mode turns the attitude sensor about pitch and yaw [rad/(m kg^0.5)]: two rows
+  Eigen::MatrixXd shape;   ///< of ports and strings, a column a mode
 };
 
 /// A set of vehicle modes that bend it, mass-normalised, and the flexibility that no mode of it has. The ports are those of
@@ -57,7 +58,7 @@ std::vector<std::string> flight_names(int engines);
 /// in any order, with all four shapes of every engine from 1 up, for all engines or none string1.engine1, ..., and all of
 /// `flight_names` or none. A row is a mode, numbered, or `residual.PORT`: what a unit of force on that port moves beyond the
 /// modes, its frequency and damping and what it has of `flight_names` left empty. Without such rows the residual is zero. A
-/// mode of frequency 0 is one of the stage as a rigid body: of it only `flight` is kept.
+/// mode of frequency 0 is one of the stage as a rigid body: it needs `flight_names`, and moves the attitude alone.
 ///
 /// Throws FileError naming file, line, value and what is allowed: a missing or unknown column, a missing shape, a frequency
 /// below 0, a damping ratio outside [0, 1), a mode given twice, a number that is not finite, a residual that is

@@ -117,6 +117,21 @@ class Band {
   std::vector<double> size_;
 };
 
+/// Of the modes in flight those of the stage as a rigid body, and `kept` of those that bend it.
+FlightModes flight_with(const FlightModes& full, const std::vector<int>& kept) {
+  std::vector<Eigen::Index> columns;
+  int bending = 0;
+  for (Eigen::Index k = 0; k < full.frequency.size(); ++k) {
+    const bool is_rigid = !(full.frequency(k) > 0.0);
+    if (is_rigid || std::binary_search(kept.begin(), kept.end(), bending)) {
+      columns.push_back(k);
+    }
+    bending += is_rigid ? 0 : 1;
+  }
+  return {full.frequency(columns), full.damping_ratio(columns), full.side(Eigen::all, columns),
+          full.sensor(Eigen::all, columns), full.shape(Eigen::all, columns)};
+}
+
 ModeSet with_modes(const ModeSet& full, const std::vector<int>& kept) {
   ModeSet set;
   set.engines = full.engines;
@@ -134,6 +149,7 @@ ModeSet with_modes(const ModeSet& full, const std::vector<int>& kept) {
     set.shape.col(i) = full.shape.col(k);
     set.string_shape.col(i) = full.string_shape.col(k);
   }
+  set.flight = flight_with(full.flight, kept);
   return set;
 }
 

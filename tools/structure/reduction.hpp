@@ -34,7 +34,8 @@ Eigen::MatrixXd static_string_motion(const ModeSet& modes);
 /// Keeps the fewest modes with which the response of every attach point to its own force stays within the goal's error in
 /// its band, but no more than the goal's number. Modes are ranked by the largest share that their dynamics (response less
 /// static flexibility) have in the band's response of any attach point; the static flexibility of those that are cut goes
-/// into the residual, so that at rest nothing changes, strings included. The response is taken on a grid that has every
+/// into the residual, so that at rest nothing changes, strings included. Of a stage in flight the rigid-body modes are kept,
+/// and a mode that is cut no longer moves the attitude. The response is taken on a grid that has every
 /// resonance in it. Throws UsageError for a goal that is none.
 Reduction reduce(const ModeSet& full, const ReductionGoal& goal);
 

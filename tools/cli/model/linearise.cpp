@@ -229,7 +229,7 @@ void add_linearise(CLI::App& program) {
       ->add_option("--amplitudes", options->amplitudes,
                    "amplitudes of a sine command [deg]: the responses by describing functions; left out: small deviations")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 90.0));
   command
       ->add_option("--frequency", options->frequency,
                    "with an amplitude: frequency at which the model of --output has the laws' equivalent gains [Hz]")

@@ -144,12 +144,12 @@ void add_loop(CLI::App& program) {
                    "amplitudes of the command [deg]: margins and limit cycles by describing functions; left out: small "
                    "deviations alone")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 90.0));
   command
       ->add_option("--attitudes", options->attitudes,
                    "attitudes at the start of simulations of the closed loop [deg]; left out: no simulation")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 90.0));
   command->add_option("--seconds", options->seconds, "length of a simulation [s]")
       ->check(CLI::Range(1.0, 1e5))
       ->capture_default_str();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,76 +18,86 @@ inline constexpr int kSamples = 128;
 inline constexpr int kMostCycles = 40;
 inline constexpr double kSameCycle = 1e-8;
 
-/// e^{i pi k / samples}: the sines of a cycle at the ends of its samples (k even) and at their middles (k odd).
-inline const Complex& turn_at(int k) {
-  static const auto turns = [] {
-    std::array<Complex, 2 * kSamples> all;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      all[i] = std::polar(1.0, std::numbers::pi * static_cast<double>(i) / kSamples);
+/// The parts of a wave, real and imaginary of one harmonic after another, at the ends of a cycle's samples (even rows) and
+/// at their middles (odd rows): what each adds to the signal there, Re(harmonic e^{i pi m row / samples}).
+inline const Eigen::MatrixXd& sines() {
+  static const Eigen::MatrixXd all = [] {
+    Eigen::MatrixXd own(2 * kSamples + 1, 2 * kMostHarmonics);
+    for (Eigen::Index row = 0; row < own.rows(); ++row) {
+      for (Eigen::Index m = 1; m <= kMostHarmonics; ++m) {
+        const auto turns = static_cast<double>(m * row % (2 * kSamples)) / kSamples;
+        own(row, 2 * m - 2) = std::cos(std::numbers::pi * turns);
+        own(row, 2 * m - 1) = -std::sin(std::numbers::pi * turns);
+      }
     }
-    return all;
+    return own;
   }();
-  return turns[static_cast<std::size_t>(k % (2 * kSamples))];
+  return all;
 }
 
 /// A wave at the ends of the samples of a cycle, and at their middles.
-struct Sampled {
-  std::vector<double> ends;     ///< from the start of the first sample on: one more than there are samples
-  std::vector<double> middles;  ///< one a sample
-
-  explicit Sampled(const Wave& wave) : ends(kSamples + 1), middles(kSamples) {
-    for (int k = 0; k <= 2 * kSamples; ++k) {
-      double value = wave.mean;
-      for (int m = 1; m <= kHarmonics; ++m) {
-        const Complex& harmonic = wave.harmonics[static_cast<std::size_t>(m - 1)];
-        const Complex& turn = turn_at(m * k);
-        value += harmonic.real() * turn.real() - harmonic.imag() * turn.imag();
-      }
-      (k % 2 == 0 ? ends : middles)[static_cast<std::size_t>(k / 2)] = value;
+class Sampled {
+ public:
+  Sampled(const Wave& wave, int harmonics) {
+    Eigen::VectorXd parts(2 * harmonics);
+    for (Eigen::Index m = 0; m < harmonics; ++m) {
+      const Complex& harmonic = wave.harmonics[static_cast<std::size_t>(m)];
+      parts.segment<2>(2 * m) << harmonic.real(), harmonic.imag();
     }
+    values_ = (sines().leftCols(parts.size()) * parts).array() + wave.mean;
   }
+
+  double start(int sample) const { return values_(2 * sample); }
+  double middle(int sample) const { return values_(2 * sample + 1); }
+  double end(int sample) const { return values_(2 * sample + 2); }
+
+ private:
+  Eigen::VectorXd values_;
 };
 
-/// Mean and harmonics of signals that are known at the middle of every sample: `values[i][k]` of signal i at sample k.
-template <std::size_t signals>
-std::array<Wave, signals> waves_of(const std::array<std::array<double, kSamples>, signals>& values) {
+/// Signals at the middles of a cycle's samples, a column each.
+template <int signals>
+using Middles = Eigen::Matrix<double, kSamples, signals>;
+
+/// Mean and first `harmonics` harmonics of signals.
+template <int signals>
+std::array<Wave, signals> waves_of(const Middles<signals>& values, int harmonics) {
+  static const Eigen::MatrixXd weights = [] {
+    Eigen::MatrixXd own(2 * kMostHarmonics, kSamples);
+    for (Eigen::Index k = 0; k < kSamples; ++k) {
+      own.col(k) = (2.0 / kSamples) * sines().row(2 * k + 1).transpose();
+    }
+    return own;
+  }();
+  const Eigen::Matrix<double, Eigen::Dynamic, signals> parts = weights.topRows(2 * harmonics) * values;
   std::array<Wave, signals> waves;
-  for (std::size_t i = 0; i < signals; ++i) {
-    for (int k = 0; k < kSamples; ++k) {
-      const double share = values[i][static_cast<std::size_t>(k)] / kSamples;
-      waves[i].mean += share;
-      for (int m = 1; m <= kHarmonics; ++m) {
-        waves[i].harmonics[static_cast<std::size_t>(m - 1)] += 2.0 * share * std::conj(turn_at(m * (2 * k + 1)));
-      }
+  for (int i = 0; i < signals; ++i) {
+    Wave& wave = waves[static_cast<std::size_t>(i)];
+    wave.mean = values.col(i).mean();
+    for (Eigen::Index m = 0; m < harmonics; ++m) {
+      wave.harmonics[static_cast<std::size_t>(m)] = Complex(parts(2 * m, i), parts(2 * m + 1, i));
     }
   }
   return waves;
 }
 
-/// Runs `cycle(values)`, which fills the samples of `signals` signals, until they repeat themselves.
-template <std::size_t signals, class Cycle>
-std::array<Wave, signals> repeated(Cycle&& cycle) {
-  std::array<std::array<double, kSamples>, signals> last{};
-  std::array<std::array<double, kSamples>, signals> next{};
+/// Runs `cycle(values)`, which fills the samples of `signals` signals, until they repeat themselves: their first `harmonics`
+/// harmonics.
+template <int signals, class Cycle>
+std::array<Wave, signals> repeated(int harmonics, Cycle&& cycle) {
+  Middles<signals> last;
+  Middles<signals> next;
   cycle(last);
   for (int round = 1; round < kMostCycles; ++round) {
     cycle(next);
-    bool same = true;
-    for (std::size_t i = 0; i < signals; ++i) {
-      double change = 0.0;
-      double size = 0.0;
-      for (std::size_t k = 0; k < kSamples; ++k) {
-        change = std::max(change, std::abs(next[i][k] - last[i][k]));
-        size = std::max(size, std::abs(next[i][k]));
-      }
-      same = same && !(change > kSameCycle * size);
-    }
-    std::swap(last, next);
-    if (same) {
+    const auto change = (next - last).cwiseAbs().colwise().maxCoeff().eval();
+    const auto size = next.cwiseAbs().colwise().maxCoeff().eval();
+    last = next;
+    if ((change.array() <= kSameCycle * size.array()).all()) {
       break;
     }
   }
-  return waves_of(last);
+  return waves_of<signals>(last, harmonics);
 }
 
 /// The laws of one axis under an imposed motion: the model's own evaluation of a step (`Axis::evaluate`), of which the
@@ -96,15 +107,20 @@ template <class AxisModel>
 class AxisLaws {
  public:
   using State = typename AxisModel::State;
-  static constexpr std::size_t kSignals = kSitePorts + 1;  ///< the ports, and the command behind its effects [rad]
+  static constexpr int kSignals = kSitePorts + 1;  ///< the ports, and the command behind its effects [rad]
 
   /// `rest` is the axis at rest under `command` [rad].
-  AxisLaws(const typename AxisModel::Parameters& parameters, double frequency, const State& rest, double command)
-      : h_(1.0 / (frequency * kSamples)), axis_(heavy(parameters), h_), rest_(rest), command_(command) {
+  AxisLaws(const typename AxisModel::Parameters& parameters, double frequency, int harmonics, const State& rest,
+           double command)
+      : harmonics_(harmonics),
+        h_(1.0 / (frequency * kSamples)),
+        axis_(heavy(parameters), h_),
+        rest_(rest),
+        command_(command) {
     // Where the attach point is at rest: the motion under which the spring has its force. A spring is never stiffer than
     // K_T.
     constexpr int kRounds = 60;
-    const Imposed still{AxisWaves{}, Wave{}};
+    const Imposed still{AxisWaves{}, Wave{}, harmonics_};
     for (int round = 0; round < kRounds; ++round) {
       State state = rest_;
       at_rest_ = one(state, still, 0);
@@ -114,13 +130,13 @@ class AxisLaws {
 
   /// `other` is the engine's motion about its other axis, `moved` are deviations from rest.
   std::array<Wave, kSignals> respond(const AxisWaves& moved, const Wave& other) const {
-    const Imposed imposed{moved, other};
+    const Imposed imposed{moved, other, harmonics_};
     State state = rest_;
-    return repeated<kSignals>([&](auto& values) {
+    return repeated<kSignals>(harmonics_, [&](auto& values) {
       for (int k = 0; k < kSamples; ++k) {
         const auto found = one(state, imposed, k);
-        for (std::size_t i = 0; i < kSignals; ++i) {
-          values[i][static_cast<std::size_t>(k)] = found[i] - at_rest_[i];
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          values(k, static_cast<Eigen::Index>(i)) = found[i] - at_rest_[i];
         }
       }
     });
@@ -128,34 +144,34 @@ class AxisLaws {
 
  private:
   struct Imposed {
-    Imposed(const AxisWaves& moved, const Wave& other_angle)
-        : states(moved.states.begin(), moved.states.end()),
-          command(moved.command),
-          attach(moved.attach),
-          other(other_angle) {}
-    std::vector<Sampled> states;
+    Imposed(const AxisWaves& moved, const Wave& other_angle, int harmonics)
+        : command(moved.command, harmonics), attach(moved.attach, harmonics), other(other_angle, harmonics) {
+      for (const Wave& state : moved.states) {
+        states.emplace_back(state, harmonics);
+      }
+    }
+    std::vector<Sampled> states{};
     Sampled command;
     Sampled attach;
     Sampled other;
   };
 
   /// The signals of one sample.
-  std::array<double, kSignals> one(State& state, const Imposed& imposed, int sample) const {
-    const auto k = static_cast<std::size_t>(sample);
+  std::array<double, kSignals> one(State& state, const Imposed& imposed, int k) const {
     typename AxisModel::Advance advance;
     for (int i = 0; i < 8; ++i) {
-      state.y(i) = rest_.y(i) + imposed.states[static_cast<std::size_t>(i)].ends[k];
+      state.y(i) = rest_.y(i) + imposed.states[static_cast<std::size_t>(i)].start(k);
     }
-    axis_.begin(state, command_ + imposed.command.middles[k], advance);
+    axis_.begin(state, command_ + imposed.command.middle(k), advance);
     for (int i = 0; i < 8; ++i) {
-      advance.end(i) = rest_.y(i) + imposed.states[static_cast<std::size_t>(i)].ends[k + 1];
+      advance.end(i) = rest_.y(i) + imposed.states[static_cast<std::size_t>(i)].end(k);
     }
     advance.middle = 0.5 * (advance.start + advance.end);
     advance.built_up = state.built_up;
     const double arm = axis_.parameters().actuator.moment_arm;
-    model::Coupling<double> around{attach_ + imposed.attach.middles[k], arm, 0.0};
-    around.other_angle = imposed.other.middles[k];
-    around.other_rate = (imposed.other.ends[k + 1] - imposed.other.ends[k]) / h_;
+    model::Coupling<double> around{attach_ + imposed.attach.middle(k), arm, 0.0};
+    around.other_angle = imposed.other.middle(k);
+    around.other_rate = (imposed.other.end(k) - imposed.other.start(k)) / h_;
     axis_.evaluate(state, advance, around, model::Keep::no);
     axis_.evaluate(state, advance, around, model::Keep::yes);
     state.clock.steps += 1.0;
@@ -173,6 +189,7 @@ class AxisLaws {
     return parameters;
   }
 
+  int harmonics_;
   double h_;
   AxisModel axis_;
   State rest_;
@@ -183,19 +200,19 @@ class AxisLaws {
 
 /// The friction torque of a bearing, about pitch and yaw, under an imposed slip [rad] (`BearingFriction`).
 inline std::array<Wave, 2> friction_of(const model::BearingFriction<double>& law,
-                                       const model::BearingCondition<double>& condition, double frequency,
+                                       const model::BearingCondition<double>& condition, double frequency, int harmonics,
                                        const Wave& pitch_slip, const Wave& yaw_slip) {
   const double h = 1.0 / (frequency * kSamples);
-  const Sampled pitch(pitch_slip);
-  const Sampled yaw(yaw_slip);
+  const Sampled pitch(pitch_slip, harmonics);
+  const Sampled yaw(yaw_slip, harmonics);
   const auto velocity = [&](int sample) {
-    const auto k = static_cast<std::size_t>((sample + kSamples) % kSamples);
-    return model::Pair<double>{(pitch.ends[k + 1] - pitch.ends[k]) / h, (yaw.ends[k + 1] - yaw.ends[k]) / h};
+    const int k = (sample + kSamples) % kSamples;
+    return model::Pair<double>{(pitch.end(k) - pitch.start(k)) / h, (yaw.end(k) - yaw.start(k)) / h};
   };
   const bool is_rigid = law.law() == model::BearingFriction<double>::Law::coulomb;
   const double least_compliance = 1e-300;
   model::Pair<double> bristle{};
-  return repeated<2>([&](auto& values) {
+  return repeated<2>(harmonics, [&](auto& values) {
     for (int k = 0; k < kSamples; ++k) {
       model::Slip<double> slip;
       slip.h = h;
@@ -210,8 +227,8 @@ inline std::array<Wave, 2> friction_of(const model::BearingFriction<double>& law
         slip.compliance = {share, share, 0.0};
       }
       const model::Pair<double> torque = law.torque(bristle, slip, condition);
-      values[0][static_cast<std::size_t>(k)] = torque.pitch;
-      values[1][static_cast<std::size_t>(k)] = torque.yaw;
+      values(k, 0) = torque.pitch;
+      values(k, 1) = torque.yaw;
     }
   });
 }

@@ -66,14 +66,15 @@ struct BearingSpring {
   double viscous = 0.0;    ///< [N m s/rad]
 };
 
-/// Harmonics of a balance. Friction that holds and slips within a cycle needs more than one; fifteen instead of nine change
-/// the fundamental of an axis with 8 kN m at 0.1 deg by 0.002 dB.
-inline constexpr int kHarmonics = 9;
+/// Harmonics of a balance at least, and at most. Fifteen instead of nine change a cycle near the frequency of its engine by
+/// 0.002 dB.
+inline constexpr int kFewestHarmonics = 9;
+inline constexpr int kMostHarmonics = 25;
 
 /// A periodic signal: its mean, and its sines about it, Re(sum over m of harmonics[m - 1] e^{i 2 pi m f t}).
 struct Wave {
   double mean = 0.0;
-  std::array<Complex, kHarmonics> harmonics{};
+  std::array<Complex, kMostHarmonics> harmonics{};  ///< zero beyond those of the balance
 
   Complex& fundamental() { return harmonics[0]; }
   const Complex& fundamental() const { return harmonics[0]; }
@@ -122,9 +123,14 @@ class Plant {
   /// whose laws are not linear themselves.
   virtual std::array<bool, kAxisPorts> in_use(int axis) const = 0;
 
+  /// Harmonics of a balance at `frequency` [Hz]. Friction that holds and slips within a cycle
+  /// releases the engine, which swings at its own frequency on its load spring: a slow cycle needs the harmonics up to
+  /// there, a fast one those of the corners of its laws.
+  virtual int harmonics(double frequency) const = 0;
+
   /// What the model's own laws give when all axes move periodically with one frequency [Hz]: mean and harmonics of every
-  /// port signal beyond `linear_parts`. `moved` are deviations from rest.
-  virtual std::vector<PortWaves> respond(double frequency, const std::vector<AxisWaves>& moved) const = 0;
+  /// port signal beyond `linear_parts`. `moved` are deviations from rest with `harmonics` harmonics, and so are the signals.
+  virtual std::vector<PortWaves> respond(double frequency, int harmonics, const std::vector<AxisWaves>& moved) const = 0;
 
  protected:
   Plant() = default;

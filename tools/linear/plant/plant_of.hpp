@@ -3,6 +3,8 @@
 
 #include <ceres/jet.h>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "hal/arithmetic/denormals.hpp"
@@ -50,6 +52,12 @@ class PlantOf final : public Plant {
     refuse_motion();
     for (std::size_t i = 0; i < kAxes; ++i) {
       flow_slopes_[i] = flow_slopes(i);
+      const auto& own = Plain::axis(*model_, static_cast<int>(i)).parameters();
+      holds_ = holds_ || acts<model::Site::piston>(own.effects) || acts<model::Site::engine_torque>(own.effects) ||
+               in_use(static_cast<int>(i))[kFrictionPort];
+      const double stiffness = Plain::axis(*model_, static_cast<int>(i)).stiffness();
+      engine_frequency_ = std::max(
+          engine_frequency_, own.actuator.moment_arm * std::sqrt(stiffness / own.engine.inertia) / (2.0 * std::numbers::pi));
     }
   }
 
@@ -153,11 +161,20 @@ class PlantOf final : public Plant {
     return used;
   }
 
-  std::vector<PortWaves> respond(double frequency, const std::vector<AxisWaves>& moved) const override {
+  int harmonics(double frequency) const override {
+    if (!holds_) {
+      return kFewestHarmonics;
+    }
+    constexpr double kSwings = 3.0;  // a release is no sine, and faster than the engine alone while friction still holds it
+    const double wanted = std::ceil(kSwings * engine_frequency_ / frequency);
+    return static_cast<int>(std::clamp<double>(wanted, kFewestHarmonics, kMostHarmonics));
+  }
+
+  std::vector<PortWaves> respond(double frequency, int harmonics, const std::vector<AxisWaves>& moved) const override {
     std::vector<PortWaves> all(kAxes);
     const hal::FlushDenormals flush;
     for (std::size_t i = 0; i < kAxes; ++i) {
-      const Laws& laws = laws_at(frequency, i);
+      const Laws& laws = laws_at(frequency, harmonics, i);
       const std::size_t other = Plain::is_vehicle ? i ^ 1U : i;
       const Wave& angle = moved[other].states[model::AxisStates::kAngle];
       Wave other_angle = angle;
@@ -169,20 +186,20 @@ class PlantOf final : public Plant {
       const Wave& pressure = moved[i].states[model::AxisStates::kPressure];
       Wave& flow = all[i].ports[kFlowPort];
       flow.mean -= flow_slopes_[i][0] * spool.mean + flow_slopes_[i][1] * pressure.mean;
-      for (std::size_t m = 0; m < kHarmonics; ++m) {
+      for (std::size_t m = 0; m < static_cast<std::size_t>(harmonics); ++m) {
         flow.harmonics[m] -= flow_slopes_[i][0] * spool.harmonics[m] + flow_slopes_[i][1] * pressure.harmonics[m];
       }
     }
     if constexpr (Plain::is_vehicle) {
       for (std::size_t e = 0; e < kAxes / 2; ++e) {
         if (parameters_.vehicle.gimbals[e].friction.rubs()) {
-          const auto torque = friction_of(parameters_.vehicle.gimbals[e].friction, condition_of(e), frequency,
+          const auto torque = friction_of(parameters_.vehicle.gimbals[e].friction, condition_of(e), frequency, harmonics,
                                           moved[2 * e].slip, moved[2 * e + 1].slip);
           const double stiffness = bearing_spring(static_cast<int>(e)).stiffness;
           for (std::size_t k = 0; k < 2; ++k) {
             Wave& port = all[2 * e + k].ports[kFrictionPort];
             port.mean = -torque[k].mean / stiffness;
-            for (std::size_t m = 0; m < kHarmonics; ++m) {
+            for (std::size_t m = 0; m < static_cast<std::size_t>(harmonics); ++m) {
               port.harmonics[m] = moved[2 * e + k].slip.harmonics[m] - torque[k].harmonics[m] / stiffness;
             }
           }
@@ -288,11 +305,12 @@ class PlantOf final : public Plant {
     return own;
   }
 
-  const Laws& laws_at(double frequency, std::size_t i) const {
+  const Laws& laws_at(double frequency, int harmonics, std::size_t i) const {
     auto& own = laws_[i];
-    if (!own.laws || own.frequency != frequency) {
-      own.laws.emplace(parameters_of_laws(i), frequency, Plain::axis(*rest_, i), commands_[i]);
+    if (!own.laws || own.frequency != frequency || own.harmonics != harmonics) {
+      own.laws.emplace(parameters_of_laws(i), frequency, harmonics, Plain::axis(*rest_, i), commands_[i]);
       own.frequency = frequency;
+      own.harmonics = harmonics;
     }
     return *own.laws;
   }
@@ -303,7 +321,8 @@ class PlantOf final : public Plant {
     auto bare = parameters_of_laws(i);
     bare.effects.active = {};
     constexpr double kAnyFrequency = 1.0;
-    const Laws laws(bare, kAnyFrequency, Plain::axis(*rest_, i), commands_[i]);
+    constexpr int kOne = 1;
+    const Laws laws(bare, kAnyFrequency, kOne, Plain::axis(*rest_, i), commands_[i]);
     const auto slope = [&](int state, double size) {
       AxisWaves moved;
       moved.states[static_cast<std::size_t>(state)].fundamental() = size;
@@ -326,6 +345,7 @@ class PlantOf final : public Plant {
 
   struct LawsAt {
     double frequency = 0.0;
+    int harmonics = 0;
     std::optional<Laws> laws{};
   };
 
@@ -336,6 +356,8 @@ class PlantOf final : public Plant {
   std::vector<double> commands_{};
   std::vector<double> loads_{};
   double h_ = 0.0;
+  bool holds_ = false;             ///< something may hold a piston or an engine for a part of a cycle: friction
+  double engine_frequency_ = 0.0;  ///< of the engine that swings fastest on its load spring [Hz]
   std::optional<typename Plain::Model> model_{};
   std::unique_ptr<State> rest_{};
   std::array<std::array<double, 8>, kAxes> rests_{};
