@@ -103,13 +103,15 @@ double half_range(std::span<const double> samples) {
 
 }  // namespace
 
-std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const std::vector<MarginsAt>& at) {
+std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const DescribedLoop& anew,
+                                               const std::vector<MarginsAt>& at) {
   constexpr double kSameBranch = 0.35;  // logarithm of the frequencies of two neighbouring amplitudes
   // Margins from which a cycle is looked for without a second one.
   constexpr double kNearDecibels = 3.0;
   constexpr double kNearDegrees = 20.0;
-  constexpr double kSame = 0.02;   // logarithm: two starts that lead to one cycle
-  constexpr double kBeyond = 2.0;  // factor by which a cycle may be beyond the amplitudes that are given
+  constexpr double kSame = 0.02;    // logarithm: two starts that lead to one cycle
+  constexpr double kAgrees = 0.02;  // of the loop: 0.17 dB or 1.1 deg, above the accuracy of a balance
+  constexpr double kBeyond = 2.0;   // factor by which a cycle may be beyond the amplitudes that are given
   std::vector<LimitCycle> cycles;
   const auto add = [&](double frequency, double amplitude) {
     const auto cycle = refined(loop, frequency, amplitude);
@@ -117,7 +119,12 @@ std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const 
       return std::abs(std::log(own.amplitude / cycle->amplitude)) < kSame &&
              std::abs(std::log(own.frequency / cycle->frequency)) < kSame;
     };
-    if (cycle && cycle->amplitude < kBeyond * at.back().amplitude && std::none_of(cycles.begin(), cycles.end(), is_same)) {
+    if (!cycle || !(cycle->amplitude < kBeyond * at.back().amplitude) ||
+        std::any_of(cycles.begin(), cycles.end(), is_same)) {
+      return;
+    }
+    const std::optional<Complex> again = anew(cycle->frequency, cycle->amplitude);
+    if (again && std::abs(*again + 1.0) < kAgrees) {
       cycles.push_back(*cycle);
     }
   };

@@ -133,6 +133,28 @@ std::optional<Complex> VehicleLoop::described(double frequency, double amplitude
       nearest = &own;
     }
   }
+  std::optional<Known> found = balanced(frequency, amplitude, nearest == nullptr ? nullptr : &nearest->balance);
+  if (!found && nearest != nullptr) {
+    found = balanced(frequency, amplitude, nullptr);
+  }
+  if (!found) {
+    return {};
+  }
+  const Complex loop = found->loop;
+  known_.push_back(std::move(*found));
+  constexpr std::size_t kWithSlopes = 40;  // 9 MB each for eight axes
+  if (known_.size() > kWithSlopes) {
+    known_[known_.size() - 1 - kWithSlopes].balance.slopes.reset();
+  }
+  return loop;
+}
+
+std::optional<Complex> VehicleLoop::described_anew(double frequency, double amplitude) {
+  const std::optional<Known> found = balanced(frequency, amplitude, nullptr);
+  return found ? std::optional(found->loop) : std::nullopt;
+}
+
+std::optional<VehicleLoop::Known> VehicleLoop::balanced(double frequency, double amplitude, const linear::Balance* near) {
   if (!balance_) {
     balance_ = std::make_unique<linear::HarmonicBalance>(plant_);
   }
@@ -141,11 +163,7 @@ std::optional<Complex> VehicleLoop::described(double frequency, double amplitude
   std::vector<Complex> commands;
   std::transform(commanded_.begin(), commanded_.end(), std::back_inserter(commands),
                  [&](double own) { return own * acting; });
-  std::optional<linear::Balance> found =
-      balance_->solve(frequency, commands, nearest == nullptr ? nullptr : &nearest->balance);
-  if (!found && nearest != nullptr) {
-    found = balance_->solve(frequency, commands);
-  }
+  std::optional<linear::Balance> found = balance_->solve(frequency, commands, near);
   if (!found) {
     return {};
   }
@@ -155,12 +173,7 @@ std::optional<Complex> VehicleLoop::described(double frequency, double amplitude
   }
   const VectorXcd read = stage_.response(frequency) * angles;
   const Complex loop = controller_.response(frequency, read(0), read(1));
-  known_.push_back({frequency, amplitude, loop, std::move(*found)});
-  constexpr std::size_t kWithSlopes = 40;  // 4 MB each for eight axes
-  if (known_.size() > kWithSlopes) {
-    known_[known_.size() - 1 - kWithSlopes].balance.slopes.reset();
-  }
-  return loop;
+  return Known{frequency, amplitude, loop, std::move(*found)};
 }
 
 }  // namespace hotfire::loop
