@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes the arrows between the folders, and the rooms with theirs, into docs/architecture.md between marks; by hand:
+# Writes the arrows between the folders into docs/architecture.md, and the rooms with theirs into
+# docs/architecture/inner-folders.md, between marks; by hand:
 #   cmake -D ROOT=$PWD -P tools/style/draw_rooms.cmake
-# With -D CHECK=ON it writes nothing and fails where the page says other than tools/style/rooms.cmake.
+# With -D CHECK=ON it writes nothing and fails where a page says other than tools/style/rooms.cmake.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/rooms.cmake)
 
@@ -55,7 +56,7 @@ string(APPEND whole "```\n")
 set(text "")
 foreach(house IN LISTS houses)
   string(MAKE_C_IDENTIFIER ${house} id)
-  string(APPEND text "#### ${house}/\n\n```mermaid\nflowchart TD\n")
+  string(APPEND text "## ${house}/\n\n```mermaid\nflowchart TD\n")
   set(rows "")
   foreach(room IN LISTS rooms_of_${house})
     string(APPEND text "  ${id}_${room}[${room}]\n")
@@ -76,30 +77,28 @@ foreach(house IN LISTS houses)
   string(APPEND text "```\n\n| folder | contents |\n|---|---|\n${rows}\n")
 endforeach()
 
-# PAGE with TEXT between the marks of NAME.
-function(put_between_marks page name text result)
+# Writes TEXT between the marks of NAME into PAGE, or with CHECK fails if it is not there.
+function(put_between_marks page name text)
+  file(READ ${ROOT}/${page} old)
   set(begin "<!-- ${name}: written by tools/style/draw_rooms.cmake -->")
   set(end "<!-- end of ${name} -->")
-  string(FIND "${page}" "${begin}" first)
-  string(FIND "${page}" "${end}" last)
+  string(FIND "${old}" "${begin}" first)
+  string(FIND "${old}" "${end}" last)
   if(first EQUAL -1 OR last EQUAL -1)
-    message(FATAL_ERROR "docs/architecture.md: the marks '${begin}' and '${end}' are missing; put them where the ${name} belong")
+    message(FATAL_ERROR "${page}: the marks '${begin}' and '${end}' are missing; put them where the ${name} belong")
   endif()
-  string(SUBSTRING "${page}" 0 ${first} head)
-  string(SUBSTRING "${page}" ${last} -1 tail)
-  set(${result} "${head}${begin}\n\n${text}\n${tail}" PARENT_SCOPE)
-endfunction()
-
-set(page ${ROOT}/docs/architecture.md)
-file(READ ${page} old)
-put_between_marks("${old}" folders "${whole}" new)
-string(STRIP "${text}" text)
-put_between_marks("${new}" rooms "${text}\n" new)
-if(CHECK)
-  if(NOT new STREQUAL old)
-    message(FATAL_ERROR "docs/architecture.md: the folders or their arrows are not those of tools/style/rooms.cmake; "
+  string(SUBSTRING "${old}" 0 ${first} head)
+  string(SUBSTRING "${old}" ${last} -1 tail)
+  set(new "${head}${begin}\n\n${text}\n${tail}")
+  if(new STREQUAL old)
+    return()
+  elseif(CHECK)
+    message(FATAL_ERROR "${page}: the folders or their arrows are not those of tools/style/rooms.cmake; "
       "write them again: cmake -D ROOT=. -P tools/style/draw_rooms.cmake")
   endif()
-elseif(NOT new STREQUAL old)
-  file(WRITE ${page} "${new}")
-endif()
+  file(WRITE ${ROOT}/${page} "${new}")
+endfunction()
+
+put_between_marks(docs/architecture.md folders "${whole}")
+string(STRIP "${text}" text)
+put_between_marks(docs/architecture/inner-folders.md rooms "${text}\n")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The arrows between the folders and between the rooms inside the larger ones. Checked by layering.cmake; drawn into
-# docs/architecture.md by draw_rooms.cmake.
+# docs/architecture.md and docs/architecture/inner-folders.md by draw_rooms.cmake.
 
 # What a file of a folder may include of ours, by its path from the root.
 set(rooms model hal firmware tools tests)
