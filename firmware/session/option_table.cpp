@@ -104,116 +104,120 @@ constexpr OptionLine line(std::string_view name, std::string_view value, std::st
 constexpr OptionLine kLines[] = {
     line<[](const std::string& value, ImageOptions& o) { return o.image = value, std::string(); }>(
         "--image", "FILE",
-        "plant image; `hotfire plant --model M.toml` makes it from a model file. Without it\n"
-        "`timing` runs the reference axis with every effect active"),
-    line<read_bus>("--bus", "NAME", "sim (no wire; commands from --command), or a CAN interface such as can0; default sim"),
+        "image of a model or profile, as `hotfire export --image` writes it. Without it `timing` runs the reference axis "
+        "with every effect active"),
+    line<read_bus>("--bus", "NAME", "sim (no bus, commands from --command) or a CAN interface such as can0; default sim"),
     line<[](const std::string& value, LabOptions& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }>(
         "--gpio", "CHIP", "GPIO chip, by path, name or label"),
     line<[](const std::string& value, LabOptions& o) { return o.confirm = value, std::string(); }>(
-        "--confirm", "DIGEST", "the profile's digest, as `hotfire check` prints it to the person who has read the profile"),
+        "--confirm", "DIGEST", "digest of the profile, which `hotfire check` prints to the person who reads the profile"),
     line<[](const std::string&, LabOptions& o) { return o.rehearsal = true, std::string(); }>(
         "--rehearsal", "",
-        "dry run on a virtual CAN interface and a simulated GPIO chip: needs no real time,\n"
-        "no --record and no --confirm"),
-    line<read_layout>(
-        "--layout", "L",
-        "frames on a CAN bus: classic (two actuators at most), fd, classic-split or fd-split (both readings of a\n"
-        "piston by frames of their own); default classic if there is room in it"),
+        "dry run on a virtual CAN interface and a simulated GPIO chip: needs no real time, no --record and no --confirm"),
+    line<read_layout>("--layout", "L",
+                      "layout of the CAN frames: classic (at most two actuators), fd, classic-split or fd-split (each "
+                      "reading of a piston in a frame of its own); default: the smallest with room for the actuators"),
     line<[](const std::string& value, CurrentOptions& o) { return read_number(value, 1e-6, 1e6, o.command_per_current); }>(
         "--command-per-current", "X", "command that a servovalve current on a CAN bus represents [rad/A]; default 10"),
     line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.command_age_ms); }>(
-        "--command-age-ms", "X", "greatest age of a command on a CAN bus; an older one gives no current; default 100"),
-    line<[](const std::string& value, PlantOptions& o) {
-      return read_number(value, 1.0, 1e6, o.heartbeat_age_ms);
-    }>("--heartbeat-age-ms", "X",
-       "largest age of the last HEARTBEAT, or of the first command without one; if it is older, the valves get\nno current; "
-       "default 50"),
+        "--command-age-ms", "X", "largest age of a command on a CAN bus [ms]; an older one gives no current; default 100"),
+    line<[](const std::string& value, PlantOptions& o) { return read_number(value, 1.0, 1e6, o.heartbeat_age_ms); }>(
+        "--heartbeat-age-ms", "X",
+        "largest age of the last HEARTBEAT [ms]; with an older one the valves get no current. Before the first HEARTBEAT, "
+        "the age of the first command counts; default 50"),
     line<[](const std::string&, PlantOptions& o) { return o.heartbeat_optional = true, std::string(); }>(
         "--heartbeat-optional", "",
-        "a controller that never sends HEARTBEAT is followed; a HEARTBEAT that has come and stops is lost\nall the same"),
+        "follow a controller that never sends HEARTBEAT; a HEARTBEAT that came and stopped is lost all the same"),
     line<[](const std::string& value, CanOptions& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }>(
         "--key", "FILE",
-        "commands and readings are authenticated with the key in this file, 32 hexadecimal digits; FD layouts only"),
+        "file with the key that authenticates commands and readings, 32 hexadecimal digits; FD layouts only"),
     line<[](const std::string& value, CanOptions& o) { return read_number(value, 1.0, 60'000.0, o.freshness_ms); }>(
-        "--freshness-ms", "X", "how far the clocks of two nodes that share a key may be apart; default 1000"),
+        "--freshness-ms", "X", "allowed difference between the clocks of two nodes that share a key [ms]; default 1000"),
     line<[](const std::string& value, CanOptions& o) { return read_number(value, 1e4, 1e6, o.bit_rate); }>(
-        "--bit-rate", "N", "bit rate of the CAN bus, for the check of its load; default: that of the interface"),
+        "--bit-rate", "N", "bit rate of the CAN bus [bit/s], for the check of its load; default: that of the interface"),
     line<[](const std::string& value, CanOptions& o) { return read_number(value, 1e4, 8e6, o.data_bit_rate); }>(
-        "--data-bit-rate", "N", "bit rate of the data of FD frames; default: that of the interface"),
+        "--data-bit-rate", "N", "bit rate of the data of FD frames [bit/s]; default: that of the interface"),
     line<[](const std::string& value, CanOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_lost.emplace());
-    }>("--max-lost", "N", "verdict: no more frames than this lost, repeated, refused or out of order on a CAN bus"),
-    line<read_period>("--period-us", "N", "period, 50 to 10000; default 1000. Longer than 500 is split into equal steps"),
+    }>("--max-lost", "N",
+       "verdict: at most N frames lost, repeated, refused or out of order on a CAN bus; default: no limit"),
+    line<read_period>(
+        "--period-us", "N",
+        "period of the loop [us], 50 to 10000; default 1000. A period above 500 is split into equal steps of the model"),
     line<[](const std::string& value, RunOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.cycles);
-    }>("--cycles", "N", "end after N cycles, 0: when interrupted; default 0 for plant, 10000 for timing"),
+    }>("--cycles", "N", "end after N cycles; 0: run until interrupted; default 10000 for timing, else 0"),
     line<[](const std::string& value, RunOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.warm_up_cycles);
     }>("--warm-up", "N", "cycles before those, counted separately; default 100"),
     line<[](const std::string& value, RunOptions& o) { return read_name(value, kOverrunPolicies, o.loop.policy); }>(
-        "--policy", "P", "after an overrun: catch-up (default), skip or stop"),
+        "--policy", "P", "after an overrun: catch-up, skip or stop; default catch-up, a lab always skips"),
     line<[](const std::string& value, RunOptions& o) { return read_integer(value, 0, 99, o.priority); }>(
-        "--priority", "P", "SCHED_FIFO priority, 1 to 99; 0: an ordinary process; default 80"),
+        "--priority", "P", "priority of the loop under SCHED_FIFO, 1 to 99; 0: an ordinary process; default 80"),
     line<[](const std::string& value, RunOptions& o) { return read_name(value, kSchedulers, o.scheduler); }>(
         "--scheduler", "S",
-        "fifo (default), or deadline: the kernel gives each cycle 90 % of its period, before all others"),
-    line<read_cpu>("--cpu", "C", "run on this CPU only"),
+        "fifo (default) or deadline: the kernel gives each cycle 90 % of its period, before all other threads"),
+    line<read_cpu>("--cpu", "C", "run on this CPU only; default: any"),
     line<[](const std::string&, RunOptions& o) { return o.require_realtime = true, std::string(); }>(
-        "--require-realtime", "", "exit with 4, before the loop, if this machine does not allow real-time running"),
-    line<read_max_latency>("--max-latency-us", "X", "verdict: no wake-up later than this"),
-    line<read_max_step>("--max-step-us", "X", "verdict: no step of the model longer than this"),
+        "--require-realtime", "", "exit with status 4 before the loop if this machine does not allow real-time running"),
+    line<read_max_latency>("--max-latency-us", "X", "verdict: no wake-up later than X [us]; default: no limit"),
+    line<read_max_step>("--max-step-us", "X", "verdict: no step of the model longer than X [us]; default: no limit"),
     line<[](const std::string& value, RunOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_overruns.emplace());
-    }>("--max-overruns", "N", "verdict: no more overruns than this; default 0 for timing, no limit for plant"),
+    }>("--max-overruns", "N", "verdict: at most N overruns; default 0 for timing, else no limit"),
     line<[](const std::string& value, CommandedRunOptions& o) {
       o.actuators_given = true;
       return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
     }>("--actuators", "N",
-       "number of plants of a model of one axis, 1 to 8, each with its own command; default 1. A vehicle (taos,\n"
-       "masv) has as many as it has axes, and needs no --actuators"),
+       "number of plants of a model of one axis, 1 to 8, each with its own command; default 1. A vehicle (taos, masv) has "
+       "as many as it has axes, and needs no --actuators"),
     line<[](const std::string&, PlantOptions& o) { return o.strings = true, std::string(); }>(
         "--strings", "",
-        "on a CAN bus: string potentiometers too, four for each engine. Its pitch and yaw are actuators\n"
-        "1 and 2, 3 and 4 and so on"),
+        "on a CAN bus: send the readings of string potentiometers too, four for each engine. Actuators 1 and 2 are pitch "
+        "and yaw of engine 1, 3 and 4 those of engine 2, and so on"),
     line<[](const std::string&, PlantOptions& o) { return o.load_pressure = true, std::string(); }>(
         "--load-pressure", "",
-        "on a CAN bus: the pressure difference across every piston too, for a lab whose profile\nhas limits.load_pressure"),
+        "on a CAN bus: send the pressure difference across every piston too, for a lab whose profile has "
+        "limits.load_pressure"),
     line<[](const std::string& value, PlantRunOptions& o) { return read_name(value, kPaceKinds, o.pace); }>(
-        "--sync", "S", "trigger of each cycle: clock (default), sim (locked to simulated syncs) or can (to SYNC frames)"),
+        "--sync", "S", "trigger of each cycle: clock (default), sim (simulated SYNC) or can (SYNC frames of the bus)"),
     line<[](const std::string& value, PlantRunOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.most_missed_syncs);
-    }>("--max-missed-syncs", "N", "end after more than N in a row; default 10"),
+    }>("--max-missed-syncs", "N", "end after more than N missed SYNCs in a row; default 10"),
     line<[](const std::string& value, PlantRunOptions& o) {
       return read_number(value, 0.0, 1e6, o.sync_patience_ms.emplace());
-    }>("--sync-patience-ms", "X", "longest wait for a late SYNC; then its cycle runs without it; default half a period"),
+    }>("--sync-patience-ms", "X",
+       "longest wait for a late SYNC [ms]; then the cycle runs without it; default: half a period"),
     line<[](const std::string&, ControllerOptions& o) { return o.lockstep = true, std::string(); }>(
-        "--lockstep", "", "each cycle begins after the plant has answered the one before"),
+        "--lockstep", "", "begin each cycle after the plant has answered the previous one"),
     line<[](const std::string& value, ImageOptions& o) { return o.recording = value, std::string(); }>(
-        "--record", "FILE", "record every cycle, for `hotfire replay`, `explain` and `simulate`"),
+        "--record", "FILE", "record every cycle into this file, for `hotfire replay`, `explain` and `simulate`"),
     line<[](const std::string&, ImageOptions& o) { return o.overwrite = true, std::string(); }>(
-        "--overwrite", "", "replace an older file that --record names, which is refused otherwise"),
+        "--overwrite", "", "replace an existing file that --record names; without this option such a file is refused"),
     line<[](const std::string& value, ImageOptions& o) { return read_number(value, 0.1, 600.0, o.record_buffer_s); }>(
-        "--record-buffer-s", "X", "longest disk stall that the buffer covers [s]; then cycles are dropped; default 8"),
+        "--record-buffer-s", "X", "longest disk stall that the buffer covers [s]; a longer one drops cycles; default 8"),
     line<[](const std::string& value, ImageOptions& o) {
       return read_integer(value, std::uint64_t{1}, std::uint64_t{1} << 24, o.record_max_mib);
-    }>("--record-max-mib", "N", "end the recording, not the loop, at this size; default 16384"),
+    }>("--record-max-mib", "N",
+       "largest size of the recording [MiB]; the recording then ends and the loop goes on; default 16384"),
     line<[](const std::string& value, ImageOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.max_dropped);
-    }>("--max-dropped", "N", "verdict: no more cycles than this missing in the recording; default 0"),
+    }>("--max-dropped", "N", "verdict: at most N cycles missing in the recording; default 0"),
     line<[](const std::string& value, RunOptions& o) {
       return o.live_view = value, std::string(value.empty() ? "a file" : "");
-    }>("--watch", "FILE",
-       "show the run: a file in memory, below /dev/shm or /run, which `hotfire watch FILE` shows in a browser"),
+    }>("--watch", "FILE", "live view: file below /dev/shm or /run, which `hotfire watch FILE` shows in a browser"),
     line<[](const std::string& value, CommandedRunOptions& o) {
       return read_name(value, hal::sim::CommandSource::kShapes, o.source.shape);
-    }>("--command", "SHAPE", "command of bus sim or of the controller: steps (default), sine or rest"),
+    }>("--command", "SHAPE",
+       "command that the program generates with --bus sim or as the controller: steps (default), sine or rest"),
     line<[](const std::string& value, CommandedRunOptions& o) { return read_number(value, -1e9, 1e9, o.source.amplitude); }>(
-        "--amplitude", "X", "amplitude of the command, in the plant's unit (rad, or the record's force); default 0.01"),
+        "--amplitude", "X",
+        "amplitude of that command, in the unit of the model's input: rad, or the force of a direct model; default 0.01"),
     line<[](const std::string& value, CommandedRunOptions& o) {
       return read_number(value, 0.0, 1000.0, o.source.frequency);
-    }>("--frequency", "HZ", "frequency of the command; default 0.5"),
+    }>("--frequency", "HZ", "frequency of that command [Hz]; default 0.5"),
     line<[](const std::string&, RunOptions& o) { return o.json = true, std::string(); }>(
-        "--json", "", "print the result as JSON, in the form of cyclictest's")};
+        "--json", "", "print the result as JSON, in the form of cyclictest")};
 
 }  // namespace
 

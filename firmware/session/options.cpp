@@ -7,75 +7,12 @@
 
 #include "firmware/service/status.hpp"
 #include "firmware/session/option_table.hpp"
-#include "firmware/text/text.hpp"
 
 namespace hotfire::firmware {
 namespace {
 
 std::string_view mode_of(const Options& options) {
   return std::visit([]<class Own>(const Own&) { return Own::mode; }, options);
-}
-
-/// "plant, timing": the modes that take an option.
-std::string modes_of(const OptionLine& line) {
-  std::string result;
-  const auto add = [&]<class... Own>(const std::variant<Own...>*) {
-    std::size_t index = 0;
-    ((line.modes[index++] ? result.append(result.empty() ? "" : ", ").append(Own::mode) : result), ...);
-  };
-  add(static_cast<const Options*>(nullptr));
-  return result;
-}
-
-/// Whether every mode takes an option that is a run: only these have the options of a loop.
-bool takes_every_run(const OptionLine& line) {
-  const auto takes = [&]<class... Own>(const std::variant<Own...>*) {
-    std::size_t index = 0;
-    return ((line.modes[index++] == std::is_base_of_v<RunOptions, Own>)&&...);
-  };
-  return takes(static_cast<const Options*>(nullptr));
-}
-
-std::string help() {
-  std::string result =
-      "The plant in real time. In every period the program reads the newest command, steps the model and sends the\n"
-      "sensor readings.\n\n"
-      "  hotfire plant --model simplex.toml --bus sim --cycles 10000 --cpu 1 --max-latency-us 200\n"
-      "  hotfire timing --cycles 60000 --max-latency-us 100 --json\n"
-      "  hotfire timing --find --seconds 60 --cpu 1\n"
-      "  hotfire plant --model simplex.toml --record run.hfr\n"
-      "  hotfire plant --model simplex.toml --bus can0 --sync can --actuators 8\n"
-      "  hotfire plant --model vehicle.toml --bus can0 --sync can --strings\n"
-      "  hotfire lab --profile sweep.toml --bus can0 --gpio rig --record run.hfr --confirm DIGEST\n"
-      "  hotfire-rt controller --bus can0 --actuators 8 --cycles 10000\n"
-      "  hotfire-rt plant --image plant.image --period-us 500\n"
-      "  hotfire-rt replay run.hfr\n\n";
-  for (const OptionLine& line : option_lines()) {
-    const std::string modes = modes_of(line);
-    std::string meaning;
-    if (!takes_every_run(line)) {
-      meaning.append(modes).append(": ");
-    }
-    meaning.append(line.meaning);
-    if (const std::size_t at = meaning.find('\n'); at != std::string::npos) {
-      meaning.insert(at + 1, 25, ' ');
-    }
-    result += text("  %-22s ", (std::string(line.name) + " " + std::string(line.value)).c_str()) + meaning + "\n";
-  }
-  return result +
-         "  --model FILE           with `hotfire` only: the model file, checked there and handed over as an image\n"
-         "  --profile FILE         with `hotfire lab` only: the profile (docs/lab.md)\n"
-         "  --faults FILE          with `hotfire` only: faults that the plant plays, by time (docs/real-time.md)\n"
-         "  --disturbances FILE    with `hotfire` only: record whose torque, force, vibration and thrust the plant plays\n"
-         "  --find                 with `hotfire timing` only: search the shortest period without an overrun\n"
-         "  --seconds S            with `hotfire timing --find` only: time at each period; default 5\n"
-         "  --help, --version\n\n"
-         "Ends on SIGINT, SIGTERM, SIGHUP and SIGQUIT with its result. Exit status: 0 good, 1 bad verdict, stopped "
-         "profile or replay\n"
-         "that differs, 2 wrong use, 3 the bus cannot be used or was lost, 4 a limit is not met, stopped by an overrun, or "
-         "no real time where it is required, 5 a lab's interlock, 6 the "
-         "image\n"
-         "is refused or the plant's values are not finite.\n";
 }
 
 ParsedOptions wrong_use(const std::string& message) {
@@ -255,7 +192,7 @@ ParsedOptions parse_options(const std::vector<std::string>& arguments) {
     return std::find(arguments.begin(), arguments.end(), name) != arguments.end();
   };
   if (asked("--help") || asked("-h")) {
-    return {std::nullopt, 0, help()};
+    return {std::nullopt, 0, help_of(arguments.size() > 1 ? arguments[1] : "")};
   }
   if (asked("--version")) {
     return {std::nullopt, 0, "hotfire-rt " HOTFIRE_VERSION "\n"};

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tools/cli/reference/help_format.hpp"
 #include "tools/cli/shared/commands.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -105,6 +107,7 @@ int run(std::vector<std::string> words) {
   CLI::App program{
       "Hotfire identifies the effects that a declared model is missing, from test records, and runs the explained model.",
       "hotfire"};
+  program.formatter(std::make_shared<HelpFormat>());
   program.set_version_flag("--version", HOTFIRE_VERSION);
   program.require_subcommand(1);
   program.footer(

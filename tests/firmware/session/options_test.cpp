@@ -230,11 +230,45 @@ TEST(Options, ReplayTakesOneRecording) {
   refused({"replay", "a.hfr", "--image"}, "unknown argument --image");
 }
 
-TEST(Options, HelpNamesEveryOptionAndAnExample) {
-  const ParsedOptions parsed = parse_options({"hotfire-rt", "timing", "--help"});
-  LONGS_EQUAL(0, parsed.status);
-  for (const char* part : {"--image", "--bus", "--policy", "--require-realtime", "hotfire timing --cycles"}) {
-    STRCMP_CONTAINS(part, parsed.message.c_str());
+/// Whether an option begins a line of a help.
+bool lists(const std::string& help, std::string_view option) {
+  return help.find("\n  " + std::string(option) + " ") != std::string::npos;
+}
+
+TEST(Options, HelpOfAModeNamesItsOptionsAndNoOther) {
+  const std::array<std::string, 4> modes{"plant", "timing", "controller", "lab"};
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    const ParsedOptions parsed = parse_options({"hotfire-rt", modes[i], "--help"});
+    LONGS_EQUAL(0, parsed.status);
+    STRCMP_CONTAINS(("\n  hotfire " + modes[i] + " ").c_str(), parsed.message.c_str());
+    STRCMP_CONTAINS("\nExit status: 0 good; ", parsed.message.c_str());
+    for (const OptionLine& line : option_lines()) {
+      CHECK_EQUAL_TEXT(line.modes[i], lists(parsed.message, line.name), (modes[i] + " " + std::string(line.name)).c_str());
+    }
+  }
+  const std::string timing = help_of("timing");
+  CHECK(lists(timing, "--find") && lists(timing, "--model") && !lists(timing, "--profile"));
+}
+
+TEST(Options, HelpOfEveryModeNamesTheModesOfAnOption) {
+  const ParsedOptions parsed = parse_options({"hotfire-rt", "--help"});
+  for (const OptionLine& line : option_lines()) {
+    CHECK_TEXT(lists(parsed.message, line.name), std::string(line.name).c_str());
+  }
+  STRCMP_CONTAINS(("  --gpio CHIP" + std::string(17, ' ') + "lab: GPIO chip").c_str(), parsed.message.c_str());
+  STRCMP_CONTAINS(("  --cpu C" + std::string(21, ' ') + "run on this CPU only").c_str(), parsed.message.c_str());
+}
+
+TEST(Options, HelpIsAtMostAHundredColumnsWideInItsTable) {
+  for (const char* mode : {"", "plant", "timing", "controller", "lab", "replay"}) {
+    const std::string help = help_of(mode);
+    const std::string table = help.substr(help.find("\nOptions:"), help.rfind("\n\n") - help.find("\nOptions:"));
+    std::size_t longest = 0;
+    for (std::size_t at = 0, end = 0; at < table.size(); at = end + 1) {
+      end = std::min(table.find('\n', at), table.size());
+      longest = std::max(longest, end - at);
+    }
+    CHECK_TEXT(longest > 30 && longest <= 100, mode);
   }
 }
 

@@ -200,16 +200,18 @@ void add_check(CLI::App& program) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("check",
-                                             "Check model files, profiles and CAN schedules (.toml), records (.csv, candump "
-                                             ".log, .mf4, .h5, .mat) and recordings: what each is, or what is "
-                                             "wrong, where, and the remedy");
-  command->add_option("FILE", options->files, "model files, profiles, CAN schedules and records")->required();
+  CLI::App* command = program.add_subcommand(
+      "check",
+      "Check model files, profiles, CAN schedules, records and recordings; each problem has its place and a remedy");
+  command
+      ->add_option("FILE", options->files,
+                   "model files, profiles and CAN schedules (.toml), records (.csv, candump .log, .mf4, .h5, .mat) and "
+                   "recordings (.hfr)")
+      ->required();
   command->add_flag("--json", options->json, "print the results as a JSON array");
   command->footer(
-      "Example: hotfire check declared.toml steps.csv schedule.toml\nExit status: 0 all good, 6 any refused; all are "
-      "checked "
-      "first.");
+      "Example: hotfire check declared.toml steps.csv schedule.toml\nExit status: 0 all files are good, 6 a file is "
+      "refused; the others are checked too.");
   command->callback([options] { check(options->files, options->json); });
 }
 

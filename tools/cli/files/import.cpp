@@ -31,12 +31,12 @@ void add_import(CLI::App& program) {
                    "file to import (.mat, .mf4, .h5, with --dbc a candump log, else text with a header)")
       ->required();
   command->add_option("--map", options->map, "map: the column of each channel (.toml)");
-  command->add_option("--dbc", options->dbc, "for a candump log: the description of its frames (.dbc)");
+  command->add_option("--dbc", options->dbc, "description of the frames of a candump log (.dbc)");
   command->add_option("--output", options->output, "record to write (.csv)");
-  command->add_flag("--guess", options->guess, "print a first map of the file, and write no file");
+  command->add_flag("--guess", options->guess, "print a first map of the file; no file is written");
   command
       ->add_option("--exclude", options->excluded,
-                   "FROM-TO [s]: a drop-out, where values and rows may be missing; then name it to explain")
+                   "FROM-TO [s]: a drop-out, where values and rows may be missing; give it to explain too")
       ->allow_extra_args(false);
   command->footer(
       "Example: hotfire import daq.txt --guess > map.toml\nExample: hotfire import run17.mat --map map.toml --output "

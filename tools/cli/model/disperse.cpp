@@ -155,15 +155,17 @@ void add_disperse(CLI::App& program, const disperse::CommandRunner& run) {
                       "take the results of another machine, as --print-draws prints them; -: standard input");
   command->add_flag("--print-draws", options->print_draws, "print the results of the share for --merge, and no table");
   command->add_flag("--json", options->json, "print the statistics as JSON");
-  command->add_option("command", options->plan.command, "command of hotfire to run, behind --, without --model and --json")
+  command
+      ->add_option("command", options->plan.command,
+                   "command of hotfire to run for each draw, after --, without --model and --json")
       ->required();
   command->footer(
       "Example: hotfire disperse --model taos.toml --tolerances tolerances.toml --draws 1000 --out spread -- step --axis "
       "pitch\n"
       "         mpirun -n 8 hotfire-disperse-mpi --model taos.toml --out spread -- sweep --axis pitch --coarse --profile "
       "sines\n"
-      "{draw} in a word of the command becomes the number of the draw.\n"
-      "Exit status 1: the command failed for some draws; the table says which.");
+      "The number of the draw replaces {draw} in a word of the command.\n"
+      "Exit status: 1 if the command failed for some draws; the table says which.");
   command->callback([options, &program, run] {
     require_command(program, options->plan.command.front());
     run_disperse(*options, run);

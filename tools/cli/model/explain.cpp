@@ -247,14 +247,16 @@ void add_explain(CLI::App& program, const std::string& typed) {
       program.add_subcommand("explain", "Identify the effects that a declared model is missing, from measured records");
   command->add_option("--model", arguments->model, "declared model (.toml)")->required();
   command->add_option("--out", arguments->out, "folder for explained.toml, report.json and report.html")->required();
-  command->add_option("records", arguments->records, "measured records (.csv, or candump .log)")->required();
+  command->add_option("records", arguments->records, "measured records (.csv, candump .log, .hfr, .mf4, .h5, .mat)")
+      ->required();
   command->add_option("--threads", arguments->threads, "threads to use")->check(CLI::Range(1U, 256U))->capture_default_str();
-  command->add_option("--most-effects", arguments->most_effects, "most effects to add; 0: calibrate only")
+  command->add_option("--most-effects", arguments->most_effects, "largest number of effects to add; 0: calibrate only")
       ->check(CLI::Range(0, 8))
       ->capture_default_str();
   command
       ->add_option("--seconds", arguments->seconds,
-                   "time limit of the search [s]: the report then has the best result so far, and what was not examined")
+                   "time limit of the search [s]; the report then has the best result so far and names what was not "
+                   "examined; default: none")
       ->check(CLI::Range(1.0, 1e6));
   command
       ->add_option("--exclude", arguments->excluded,
@@ -266,7 +268,7 @@ void add_explain(CLI::App& program, const std::string& typed) {
       ->allow_extra_args(false);
   command->add_option(
       "--lab", arguments->lab,
-      "profile of the rig (docs/lab.md): the next experiment stays within its limits, and is written as one");
+      "profile of the rig (docs/lab.md): the next experiment stays within its limits and is written as a profile");
   add_candump_options(*command, arguments->candump);
   command->add_flag("--keep-drift", arguments->keep_drift,
                     "write a drift over the time of a record into explained.toml as a table over time, not as its mean");

@@ -72,10 +72,13 @@ void add_nastran(CLI::App& program) {
   const auto options = std::make_shared<NastranOptions>();
   CLI::App* command = program.add_subcommand(
       "nastran",
-      "Make a mode table of Nastran's output, projected onto the lines of the actuators and the axes of the gimbals");
-  command->add_option("--map", options->map, "which grid points are attach points and gimbals (.toml)")->required();
+      "Write a mode table from Nastran's output, projected onto the lines of the actuators and the axes of the gimbals");
+  command
+      ->add_option("--map", options->map,
+                   "map that names the output files and the grid points of attach points and gimbals (.toml)")
+      ->required();
   command->add_option("--output", options->output, "mode table to write (.csv)")->required();
-  command->add_option("--picture", options->picture, "draw what each mode gives the attach points (.svg)");
+  command->add_option("--picture", options->picture, "draw the motion of the attach points in each mode (.svg)");
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer("Example: hotfire nastran --map vehicle.toml --output vehicle.csv --picture modes.svg");
   command->callback([options] { run_nastran(*options); });

@@ -67,19 +67,21 @@ void run_reduction(const ReduceOptions& options) {
 
 void add_reduce(CLI::App& program) {
   const auto options = std::make_shared<ReduceOptions>();
-  CLI::App* command = program.add_subcommand("reduce", "Keep the modes of a vehicle that matter in a band");
+  CLI::App* command = program.add_subcommand("reduce", "Reduce a mode table to the modes that matter in a frequency band");
   command->add_option("--modes", options->modes, "mode table (.csv)")->required();
-  command->add_option("--output", options->output, "mode table to write, with what is cut as residual flexibility")
+  command
+      ->add_option("--output", options->output,
+                   "mode table to write (.csv); the flexibility of removed modes becomes residual flexibility")
       ->required();
   command->add_option("--lowest", options->goal.lowest, "lower end of the band [Hz]")->capture_default_str();
   command->add_option("--highest", options->goal.highest, "upper end of the band [Hz]")->capture_default_str();
-  command->add_option("--error", options->goal.error, "allowed error of the in-band response, relative")
+  command->add_option("--error", options->goal.error, "allowed relative error of the response in the band")
       ->capture_default_str();
-  command->add_option("--most", options->goal.most, "keep at most this many modes")->capture_default_str();
+  command->add_option("--most", options->goal.most, "largest number of modes to keep")->capture_default_str();
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
-      "Example: hotfire reduce --modes vehicle.csv --output reduced.csv --lowest 1 --highest 20\n"
-      "Exit status 1: the error is not reached with that many modes; what was reached is written all the same.");
+      "Example: hotfire reduce --modes vehicle.csv --output reduced.csv --lowest 1 --highest 20\nExit status: 1 if the "
+      "error is above --error with that many modes; the table is written all the same.");
   command->callback([options] { run_reduction(*options); });
 }
 

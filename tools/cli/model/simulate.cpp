@@ -78,11 +78,12 @@ void run_simulation(const SimulateOptions& options) {
 void add_simulate(CLI::App& program) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = program.add_subcommand(
-      "simulate", "Simulate a model, its own position loop closed, under the commands (or forces) of a record");
+      "simulate", "Simulate a model with its position loop closed, under the commands or forces of a record");
   command->add_option("--model", options->model, "model file (.toml)")->required();
   command
-      ->add_option("--input", options->input,
-                   "record (.csv, or a candump .log) with the input channel: command, or force for a direct model")
+      ->add_option(
+          "--input", options->input,
+          "record with the input channel: command, or force for a direct model (.csv, candump .log, .hfr, .mf4, .h5, .mat)")
       ->required();
   command->add_option("--output", options->output, "record to write: time, input and every model channel")->required();
   command

@@ -13,7 +13,7 @@ namespace hotfire {
 
 namespace {
 
-/// The endings of files that a description names, as in "measured records (.csv, or candump .log)".
+/// The endings of files that a description names, as in "measured records (.csv, candump .log, .hfr, .mf4, .h5, .mat)".
 std::vector<std::string> file_patterns(const std::string& description) {
   std::vector<std::string> patterns;
   for (std::size_t at = description.find('.'); at != std::string::npos; at = description.find('.', at + 1)) {
@@ -73,7 +73,7 @@ std::vector<RealtimeOption> further_options(const CLI::App& command) {
     return {};
   }
   try {
-    return realtime_help().options;
+    return realtime_help(command.get_name()).options;
   } catch (const UsageError&) {
     return {};
   }

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <sstream>
 
+#include "tools/cli/reference/help_format.hpp"
 #include "tools/cli/shared/commands.hpp"
 
 namespace hotfire {
@@ -88,7 +89,7 @@ std::string footer_sections(const std::string& footer) {
 }
 
 std::string option_sections(const CLI::App& command) {
-  const CLI::Formatter format;
+  const HelpFormat format;
   std::string positionals;
   std::string options;
   for (const CLI::Option* option : command.get_options()) {
@@ -108,14 +109,18 @@ std::string realtime_entries(const RealtimeHelp& realtime) {
   return text;
 }
 
-std::string realtime_examples(const RealtimeHelp& realtime, const std::string& beginning) {
-  std::string text;
+std::string realtime_examples(const RealtimeHelp& realtime) {
+  std::string text = ".SH EXAMPLES\n";
   for (const std::string& example : realtime.examples) {
-    if (example.starts_with(beginning)) {
-      text += verbatim(example);
-    }
+    text += verbatim(example);
   }
-  return text.empty() ? "" : ".SH EXAMPLES\n" + text;
+  return text;
+}
+
+std::string exit_section(const RealtimeHelp& realtime) {
+  const std::size_t at = realtime.ending.find(kExitStatus);
+  return ".SH EXIT STATUS\n" + plain(realtime.ending.substr(at + std::string_view(kExitStatus).size())) + "\n" +
+         plain(realtime.ending.substr(0, at)) + "\n";
 }
 
 }  // namespace
@@ -134,30 +139,29 @@ std::string program_page(const CLI::App& program) {
          commands + option_sections(program) + footer_sections(program.get_footer()) + see_also(pages);
 }
 
-std::string command_page(const CLI::App& command, const RealtimeHelp& realtime) {
+std::string command_page(const CLI::App& command) {
   const std::string page = "hotfire-" + command.get_name();
-  const std::string typed = "hotfire " + command.get_name();
   std::string positionals;
   for (const CLI::Option* option : command.get_options([](const CLI::Option* one) { return one->get_positional(); })) {
     positionals += " " + option->get_name(true) + (option->get_items_expected_max() > 1 ? "..." : "");
   }
-  std::string text = title(page) + name_section(page, command.get_description());
-  text += fmt::format(".SH SYNOPSIS\n\\fB{}\\fR [OPTIONS]{}\n", plain(typed), plain(positionals));
-  text += fmt::format(".SH DESCRIPTION\n{}.\n", plain(command.get_description()));
-  if (!command.get_allow_extras()) {
-    return text + option_sections(command) + footer_sections(command.get_footer()) + see_also({"hotfire"});
-  }
-  text += ".PP\n\\fBhotfire\\-rt\\fR(1) carries the command out and has its further options.\n";
-  return text + option_sections(command) + realtime_examples(realtime, typed + " ") + ".SH EXIT STATUS\n" +
-         plain(realtime.ending.substr(realtime.ending.find(kExitStatus) + std::string_view(kExitStatus).size())) + "\n" +
-         see_also({"hotfire", "hotfire-rt"});
+  return title(page) + name_section(page, command.get_description()) +
+         fmt::format(".SH SYNOPSIS\n\\fB{}\\fR [OPTIONS]{}\n", plain("hotfire " + command.get_name()), plain(positionals)) +
+         fmt::format(".SH DESCRIPTION\n{}.\n", plain(command.get_description())) + option_sections(command) +
+         footer_sections(command.get_footer()) + see_also({"hotfire"});
+}
+
+std::string realtime_command_page(const CLI::App& command, const RealtimeHelp& realtime) {
+  const std::string page = "hotfire-" + command.get_name();
+  return title(page) + name_section(page, command.get_description()) + ".SH SYNOPSIS\n" + plain(realtime.usage) +
+         "\n.SH DESCRIPTION\n" + plain(realtime.introduction) + "\n" + realtime_entries(realtime) +
+         realtime_examples(realtime) + exit_section(realtime) + see_also({"hotfire", "hotfire-rt"});
 }
 
 std::string realtime_page(const RealtimeHelp& realtime) {
   return title("hotfire-rt") + name_section("hotfire-rt", "run a plant, a controller or a lab of Hotfire in real time") +
-         ".SH SYNOPSIS\n\\fBhotfire\\-rt\\fR plant|controller|lab|timing|replay [OPTIONS]\n.SH DESCRIPTION\n" +
-         plain(realtime.introduction) + "\n" + realtime_entries(realtime) + realtime_examples(realtime, "") +
-         ".SH EXIT STATUS\n" + plain(realtime.ending) + "\n" + see_also({"hotfire"});
+         ".SH SYNOPSIS\n" + plain(realtime.usage) + "\n.SH DESCRIPTION\n" + plain(realtime.introduction) + "\n" +
+         realtime_entries(realtime) + realtime_examples(realtime) + exit_section(realtime) + see_also({"hotfire"});
 }
 
 }  // namespace hotfire

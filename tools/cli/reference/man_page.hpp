@@ -11,9 +11,11 @@ namespace hotfire {
 /// hotfire(1): the list of commands, from the descriptions that `hotfire --help` prints.
 std::string program_page(const CLI::App& program);
 
-/// hotfire-COMMAND(1), from the descriptions that `hotfire COMMAND --help` prints. A command that hotfire-rt carries out has
-/// the examples of `realtime` that show it, and refers to hotfire-rt(1) for the options.
-std::string command_page(const CLI::App& command, const RealtimeHelp& realtime);
+/// hotfire-COMMAND(1), from the descriptions that `hotfire COMMAND --help` prints.
+std::string command_page(const CLI::App& command);
+
+/// The page of a command that hotfire-rt carries out, from what `hotfire-rt COMMAND --help` prints.
+std::string realtime_command_page(const CLI::App& command, const RealtimeHelp& realtime);
 
 /// hotfire-rt(1), from what `hotfire-rt --help` prints.
 std::string realtime_page(const RealtimeHelp& realtime);

@@ -13,12 +13,14 @@ namespace hotfire {
 namespace {
 
 void write_pages(const CLI::App& program, const std::filesystem::path& folder) {
-  const RealtimeHelp realtime = realtime_help();
   std::filesystem::create_directories(folder);
   write_whole_file(folder / "hotfire.1", program_page(program));
-  write_whole_file(folder / "hotfire-rt.1", realtime_page(realtime));
+  write_whole_file(folder / "hotfire-rt.1", realtime_page(realtime_help("")));
   for (const CLI::App* command : program.get_subcommands(is_listed)) {
-    write_whole_file(folder / ("hotfire-" + command->get_name() + ".1"), command_page(*command, realtime));
+    const std::string& name = command->get_name();
+    write_whole_file(folder / ("hotfire-" + name + ".1"), command->get_allow_extras()
+                                                              ? realtime_command_page(*command, realtime_help(name))
+                                                              : command_page(*command));
   }
 }
 

@@ -79,10 +79,10 @@ void add_doctor(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       program.add_subcommand("doctor", "Check that this machine is fit for a real-time run; each finding has a remedy");
-  command->add_option("--cpu", options->patient.cpu, "the CPU that the loop will have")->check(CLI::Range(0, 1023));
-  command->add_option("--can", options->patient.can, "CAN interface that must be there; default: look at all");
-  command->add_option("--line", options->patient.lines, "GPIO line that must be there, by name");
-  command->add_option("--root", options->root, "folder to use in place of /: of an image, or of a test")
+  command->add_option("--cpu", options->patient.cpu, "CPU on which the loop will run")->check(CLI::Range(0, 1023));
+  command->add_option("--can", options->patient.can, "CAN interface that must exist; default: all are checked");
+  command->add_option("--line", options->patient.lines, "name of a GPIO line that must exist");
+  command->add_option("--root", options->root, "folder to check in place of /, such as a mounted image")
       ->check(CLI::ExistingDirectory);
   command->add_flag("--json", options->json, "print the findings as JSON");
   command->footer(

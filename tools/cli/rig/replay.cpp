@@ -21,15 +21,16 @@ void add_replay(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "replay",
-      "Prove that a recording's model, or a lab's logic, gives the recorded bits, or write the recording as a record");
+      "Check that a recording's model, or a lab's logic, gives the recorded bits, or write the recording as a record");
   command
       ->add_option("RECORDING", options->recording,
                    "file that `hotfire plant --record` or `hotfire lab --record` has written")
       ->required();
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "write one actuator, or all axes of a vehicle, as a record (.csv) instead");
-  command->add_option("--actuator", options->part.actuator, "which one, from 1")->needs(csv);
-  command->add_option("--from", options->part.from, "begin with this cycle; ends where cycles were dropped")->needs(csv);
+  command->add_option("--actuator", options->part.actuator, "actuator to write, from 1")->needs(csv);
+  command->add_option("--from", options->part.from, "first cycle to write; the record ends where cycles were dropped")
+      ->needs(csv);
   command->add_flag("--json", options->json, "print the result as JSON")->excludes(csv);
   command->footer(
       "Example: hotfire replay run.hfr\n         hotfire replay run.hfr --actuator 2 --csv second.csv\n"

@@ -90,7 +90,7 @@ void run_quiescent(const QuiescentOptions& options) {
 void add_hammer(CLI::App& program) {
   const auto options = std::make_shared<HammerOptions>();
   CLI::App* command = program.add_subcommand(
-      "hammer", "Impact hammer test with the actuator locked: frequency and damping ratio of the free oscillation");
+      "hammer", "Run an impact hammer test with the actuator locked: frequency and damping ratio of the free oscillation");
   add_trial_options(*command, options->trial);
   command->add_option("--impulse", options->blow.impulse, "angular momentum of the blow [N.m.s]")->capture_default_str();
   command->add_option("--seconds", options->blow.seconds, "length of the decay that is analysed [s]")
@@ -104,8 +104,8 @@ void add_hammer(CLI::App& program) {
 
 void add_quiescent(CLI::App& program) {
   const auto options = std::make_shared<QuiescentOptions>();
-  CLI::App* command =
-      program.add_subcommand("quiescent", "Powered and uncommanded under random torque: spectrum of the piston");
+  CLI::App* command = program.add_subcommand(
+      "quiescent", "Measure the spectrum of the piston under random torque, with the actuator powered and uncommanded");
   add_trial_options(*command, options->trial);
   command
       ->add_option("--torque-density", options->ambient.torque_density,

@@ -162,9 +162,9 @@ void add_findings(CLI::App& program) {
   const auto options = std::make_shared<FindingsOptions>();
   CLI::App* command =
       program.add_subcommand("findings", "Reproduce the findings of the papers: figures, tolerances, verdicts");
-  command->add_option("--sets", options->sets, "folder with lab.toml and core-stage.toml (the shipped ones)");
-  command->add_option("--only", options->only, "these findings alone: F1,F9")->delimiter(',');
-  command->add_option("--pictures", options->pictures, "write a picture of each into this folder (.svg)");
+  command->add_option("--sets", options->sets, "folder with lab.toml and core-stage.toml; default: the shipped ones");
+  command->add_option("--only", options->only, "only these findings, as in F1,F9")->delimiter(',');
+  command->add_option("--pictures", options->pictures, "write a picture of each finding into this folder (.svg)");
   command->add_flag("--markdown", options->markdown, "print the page docs/findings.md");
   command->add_flag("--json", options->json, "print the result as JSON")->excludes("--markdown");
   command
@@ -173,8 +173,8 @@ void add_findings(CLI::App& program) {
       ->excludes("--markdown")
       ->excludes("--pictures");
   command->footer(
-      "Example: hotfire findings --only F1,F2 --pictures pictures\nExit status 1: a figure is outside its tolerance, or a "
-      "mutant's are all inside.");
+      "Example: hotfire findings --only F1,F2 --pictures pictures\nExit status: 1 if a figure is outside its tolerance, or "
+      "if all figures of a mutant are inside.");
   command->callback([options] { run_findings(*options); });
 }
 

@@ -78,7 +78,8 @@ void run_response(const ResponseOptions& options) {
 void add_response(CLI::App& program) {
   const auto options = std::make_shared<ResponseOptions>();
   CLI::App* command = program.add_subcommand(
-      "response", "Structural frequency responses, modal integral and load resonance, of one condition or several compared");
+      "response",
+      "Compute structural frequency responses, modal integral and load resonance of one condition, or compare several");
   command
       ->add_option("conditions", options->conditions,
                    "models of several axes (.toml), one for each condition; or mode tables (.csv), without engines")
@@ -92,7 +93,7 @@ void add_response(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--amplitude", options->amplitude,
-                   "swing of the engine, for the equivalent stiffness of an actuator [deg]")
+                   "amplitude of the engine at which the equivalent stiffness of each actuator is taken [deg]")
       ->check(CLI::Range(0.0, 20.0))
       ->capture_default_str();
   command->add_option("--from", options->from, "lowest frequency [Hz]")

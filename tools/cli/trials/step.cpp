@@ -72,8 +72,8 @@ void run_steps(const StepOptions& options) {
 
 void add_step(CLI::App& program) {
   const auto options = std::make_shared<StepOptions>();
-  CLI::App* command =
-      program.add_subcommand("step", "Steps of the command: rise, overshoot, settling and hesitation of piston and engine");
+  CLI::App* command = program.add_subcommand(
+      "step", "Measure rise, overshoot, settling and hesitation of piston and engine after steps of the command");
   add_trial_options(*command, options->trial);
   command->add_option("--amplitudes", options->amplitudes, "step amplitudes, each to both sides and back to zero [deg]")
       ->delimiter(',')

@@ -117,12 +117,13 @@ void run_stiffness(const StiffnessOptions& options) {
 void add_stiffness(CLI::App& program) {
   const auto options = std::make_shared<StiffnessOptions>();
   CLI::App* command = program.add_subcommand(
-      "stiffness", "Equivalent stiffness and load resonance by amplitude, from the piston's notch and from the force curve");
+      "stiffness",
+      "Determine equivalent stiffness and load resonance by amplitude, from the piston's notch and from the force curve");
   add_trial_options(*command, options->trial);
   command->get_option("--model")->required()->description(
-      "inertia, arm and springs are this model's (.toml), and without --record the test is run on it");
+      "model file (.toml) with inertia, arm and springs; without --record the test is run on it");
   command->get_option("--record")->description("analyse this record (.csv) of stepped sines instead of running the model");
-  command->add_option("--amplitudes", options->amplitudes, "of the sines, one sweep each [deg]")
+  command->add_option("--amplitudes", options->amplitudes, "amplitudes of the sines [deg], one sweep each")
       ->delimiter(',')
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -134,20 +135,19 @@ void add_stiffness(CLI::App& program) {
       ->add_option("--to", options->to,
                    "highest frequency of the sines, and upper end of the search for the notch [Hz]; default: from the model")
       ->check(CLI::Range(0.01, 200.0));
-  command->add_option("--count", options->count, "frequencies of a sweep")
+  command->add_option("--count", options->count, "number of frequencies of a sweep")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
   command
       ->add_option("--bias", options->bias,
-                   "constant load of the actuator that the sines swing about [N]: the test on a model runs under its torque")
+                   "constant load of the actuator [N], about which the sines swing; a test on a model runs under the torque "
+                   "of this load")
       ->capture_default_str();
   command->footer(
-      "Example: hotfire stiffness --model lab.toml --picture stiffness.svg\n"
-      "         hotfire stiffness --model lab.toml --record sines.csv --axis pitch\n"
-      "         hotfire stiffness --model lab.toml --bias 20000\n"
-      "The notch is the load resonance, which has the total stiffness in it; the model's load stiffness taken out leaves "
-      "the\n"
-      "actuator's. The next column is the value of the model's force curve at that amplitude.");
+      "Example: hotfire stiffness --model lab.toml --picture stiffness.svg\n         hotfire stiffness --model lab.toml "
+      "--record sines.csv --axis pitch\n         hotfire stiffness --model lab.toml --bias 20000\nThe notch is at the load "
+      "resonance, which gives the total stiffness. Without the model's load stiffness, this is the stiffness of the "
+      "actuator. The next column is the value of the model's force curve at that amplitude.");
   command->callback([options] { run_stiffness(*options); });
 }
 

@@ -79,15 +79,18 @@ void run_strings(const StringOptions& options) {
 
 void add_strings(CLI::App& program) {
   const auto options = std::make_shared<StringOptions>();
-  CLI::App* command =
-      program.add_subcommand("strings", "Engine angles from four string potentiometers, calibrated on settled poses");
+  CLI::App* command = program.add_subcommand(
+      "strings", "Compute engine angles from four string potentiometers, calibrated on settled poses");
   command
       ->add_option("--settled", options->settled,
                    "record (.csv) with string1 .. string4 in which the commands of both angles are held at several poses")
       ->required();
-  command->add_option("--record", options->record, "record (.csv) with string1 .. string4 to find the angles of")
+  command
+      ->add_option("--record", options->record, "record (.csv) with string1 .. string4, from which the angles are computed")
       ->required();
-  command->add_option("--output", options->output, "that record with engine.pitch and engine.yaw by its strings")
+  command
+      ->add_option("--output", options->output,
+                   "record to write (.csv): the one of --record, with engine.pitch and engine.yaw from its strings")
       ->required();
   command->add_option("--engine", options->engine, "number of the engine, in records of several")->check(CLI::Range(1, 9));
   command->add_option("--hold", options->hold, "shortest duration of a pose [s]; its last quarter is used")

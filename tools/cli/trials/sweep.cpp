@@ -116,7 +116,7 @@ void run_sweep(SweepOptions& options) {
 
 void add_sweep(CLI::App& program) {
   const auto options = std::make_shared<SweepOptions>();
-  CLI::App* command = program.add_subcommand("sweep", "Frequency response of piston and engine to the command");
+  CLI::App* command = program.add_subcommand("sweep", "Measure the frequency response of piston and engine to the command");
   add_trial_options(*command, options->trial);
   command
       ->add_option("--profile", options->profile,

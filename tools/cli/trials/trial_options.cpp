@@ -17,7 +17,7 @@ void add_trial_options(CLI::App& command, TrialOptions& options) {
   command.add_option("--model", options.model, "run the test on this model (.toml)");
   command.add_option("--record", options.record, "analyse this record (.csv) instead of running a model");
   command.add_option("--axis", options.axis,
-                     "axis of a record or model of several: pitch, yaw2 ...; channel names end with it");
+                     "axis to test, if a record or model has several: pitch, yaw2 ...; channel names end with it");
   command.add_option("--output", options.output, "write the record of the test (.csv)");
   command.add_option("--picture", options.picture, "draw the result (.svg)");
   command.add_option("--thrust", options.thrust, "thrust of every engine [N], instead of that of the model; 0: ambient");
