@@ -40,14 +40,20 @@ std::string entry(const std::string& name, std::size_t column, const std::string
   return wrapped(head, column, meaning);
 }
 
-/// The kind of an option's value, which its type begins with: "UINT:UINT in [1 - 8]".
+/// The kind of an option's value, which its type begins with: "UINT:UINT in [1 - 8]". The description of a file has its
+/// ending.
 std::string kind_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::string kind = type.substr(0, type.find(':'));
   if (kind == "INT" || kind == "UINT") {
     return "N";
   }
-  return kind == "FLOAT" ? "X" : kind;
+  if (kind == "FLOAT") {
+    return "X";
+  }
+  const std::string& description = option.get_description();
+  const bool is_file = description.find("(.") != std::string::npos || description.starts_with("file ");
+  return description.starts_with("folder") ? "FOLDER" : is_file ? "FILE" : kind;
 }
 
 /// The allowed values, as the type of an option says them to the parser.

@@ -164,7 +164,7 @@ void add_findings(CLI::App& program) {
       program.add_subcommand("findings", "Reproduce the findings of the papers: figures, tolerances, verdicts");
   command->add_option("--sets", options->sets, "folder with lab.toml and core-stage.toml; default: the shipped ones");
   command->add_option("--only", options->only, "only these findings, as in F1,F9")->delimiter(',');
-  command->add_option("--pictures", options->pictures, "write a picture of each finding into this folder (.svg)");
+  command->add_option("--pictures", options->pictures, "folder for a picture of each finding (.svg)");
   command->add_flag("--markdown", options->markdown, "print the page docs/findings.md");
   command->add_flag("--json", options->json, "print the result as JSON")->excludes("--markdown");
   command

@@ -120,8 +120,8 @@ void add_sweep(CLI::App& program) {
   add_trial_options(*command, options->trial);
   command
       ->add_option("--profile", options->profile,
-                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), green-run-both (the other axis "
-                   "driven as well, the other way round), sines, or multisine")
+                   "command: green-run (7 to 14 Hz at 0.8 deg, 0.4 to 6.25 Hz at 0.4 deg), green-run-both (both axes at "
+                   "once, one in the upper band and one in the lower, then exchanged), sines, or multisine")
       ->check(CLI::IsMember({"green-run", "green-run-both", "sines", "multisine"}))
       ->capture_default_str();
   command->add_option("--amplitudes", options->amplitudes, "amplitude of each stepped sine, or peak of the multisine [deg]")
