@@ -148,10 +148,11 @@ void add_threads(CLI::App& command, unsigned& threads) {
 }
 
 void add_cost(CLI::App& program, CostArguments& arguments) {
-  CLI::App* command = program.add_subcommand("cost", "What explaining a case takes, over the length of its records");
-  command->add_option("folder", arguments.folder, "folder with given/")->required();
+  CLI::App* command = program.add_subcommand("cost", "Measure what explaining a case costs, over the length of its records");
+  command->add_option("folder", arguments.folder, "folder of a case, with given/")->required();
   add_threads(*command, arguments.threads);
-  command->add_flag("--json", arguments.json, "one JSON object");
+  command->add_flag("--json", arguments.json, "print the result as one JSON object");
+  command->footer("Example: hotfire-study cost cases/leakage-1");
 }
 
 /// What `fit` fits.
@@ -182,11 +183,13 @@ ExitStatus fit_one(const FitArguments& arguments) {
 
 void add_fit(CLI::App& program, FitArguments& arguments) {
   CLI::App* command = program.add_subcommand("fit", "Fit one candidate to a case, without a search");
-  command->add_option("folder", arguments.folder, "folder with given/ and kept/")->required();
-  command->add_option("--effect", arguments.effect, "the candidate, as in physics.md section 5")->required();
-  command->add_option("--law", arguments.law, "its law, if it has several");
+  command->add_option("folder", arguments.folder, "folder of a case, with given/ and kept/")->required();
+  command->add_option("--effect", arguments.effect, "name of the candidate effect, as in section 5 of docs/physics.md")
+      ->required();
+  command->add_option("--law", arguments.law, "law of the effect, if it has several");
   add_threads(*command, arguments.threads);
-  command->add_flag("--json", arguments.json, "one JSON object");
+  command->add_flag("--json", arguments.json, "print the result as one JSON object");
+  command->footer("Example: hotfire-study fit cases/leakage-1 --effect leakage");
 }
 
 /// What `sensitivity` varies.
@@ -231,57 +234,65 @@ ExitStatus vary_policy(const SensitivityArguments& arguments) {
 }
 
 void add_sensitivity(CLI::App& program, SensitivityArguments& arguments) {
-  CLI::App* command =
-      program.add_subcommand("sensitivity", "Cases that each constant of the finder's policy changes, times 0.7 and 1.4");
+  CLI::App* command = program.add_subcommand(
+      "sensitivity", "Count the cases whose result changes with each constant of the finder's policy, times 0.7 and 1.4");
   command->add_option("folders", arguments.folders, "cases, as other commands make them with --generate-only or --write")
       ->required();
-  command->add_option("--only", arguments.only, "only these constants");
-  command->add_option("--keep", arguments.keep, "file of rulings, a line each; a run that was stopped goes on from it");
+  command->add_option("--only", arguments.only, "vary only these constants");
+  command->add_option("--keep", arguments.keep,
+                      "file for the results, one a line; a run that was stopped continues from it");
   add_threads(*command, arguments.threads);
   command->footer("Example: hotfire-study sensitivity --keep rulings.jsonl cases/*");
 }
 
+constexpr const char* kExitStatus =
+    "Exit status: 0 all figures met, 1 one is not, 2 wrong use, 6 bad data or a case that cannot be made.";
+
 void add_judging(CLI::App& command, Options& options) {
   add_threads(command, options.threads);
-  command.add_flag("--json", options.json, "one JSON object a line: every case, then the summary");
+  command.add_flag("--json", options.json, "print one JSON object a line: every case, then the summary");
 }
 
 void add_study(CLI::App& program, const char* name, const char* what, std::uint64_t seeds, Options& options) {
   CLI::App* command = program.add_subcommand(name, what);
   options.selection.seeds = seeds;
-  command->add_option(std::string(name) == "null" ? "--count" : "--seeds", options.selection.seeds, "how many seeds")
+  command->add_option(std::string(name) == "null" ? "--count" : "--seeds", options.selection.seeds, "number of seeds")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100'000}))
       ->capture_default_str();
-  command->add_option("--first-seed", options.selection.first_seed, "the first of them")->capture_default_str();
+  command->add_option("--first-seed", options.selection.first_seed, "first seed")->capture_default_str();
   if (std::string(name) != "null") {
     command->add_option("--only", options.selection.only,
-                        "only these effects, pairs as leakage+rate_limit, or conditions of hard data");
+                        "only these effects, pairs as in leakage+rate_limit, or conditions of hard data");
   }
-  command->add_option("--out", options.out, "keep the cases in this folder, one folder a case");
-  command->add_flag("--generate-only", options.generate_only, "make the cases and do not explain them");
+  command->add_option("--out", options.out,
+                      "folder in which the cases are kept, one folder a case; default: they are removed");
+  command->add_flag("--generate-only", options.generate_only, "make the cases and do not explain them; needs --out");
   add_judging(*command, options);
+  command->footer(std::string("Example: hotfire-study ") + name + " --out cases --threads 2\n" + kExitStatus);
 }
 
 /// Options of `wild`: those of a study but for the names.
 void add_wild(CLI::App& program, std::string& write, Options& options) {
-  CLI::App* command = program.add_subcommand("wild", "Effects drawn at random, from laws that the finder does not share");
+  CLI::App* command =
+      program.add_subcommand("wild", "Judge the finder on effects drawn at random, from laws that it does not share");
   options.selection.seeds = 100;
-  command->add_option("--count", options.selection.seeds, "how many draws")
+  command->add_option("--count", options.selection.seeds, "number of draws")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{100'000}))
       ->capture_default_str();
-  command->add_option("--first-seed", options.selection.first_seed, "the seed of the first of them")->capture_default_str();
-  command->add_flag("--listed", options.listed, "each beside a listed effect drawn at random");
-  auto* keep = command->add_option("--out", options.out, "keep the cases in this folder, one folder a case");
-  command->add_option("--write", write, "only make the cases, in this folder")->excludes(keep);
+  command->add_option("--first-seed", options.selection.first_seed, "seed of the first draw")->capture_default_str();
+  command->add_flag("--listed", options.listed, "add a listed effect, drawn at random, to each draw");
+  auto* keep = command->add_option("--out", options.out,
+                                   "folder in which the cases are kept, one folder a case; default: they are removed");
+  command->add_option("--write", write, "folder in which the cases are made, without explaining them")->excludes(keep);
   add_judging(*command, options);
+  command->footer(std::string("Example: hotfire-study wild --count 8 --first-seed 145\n") + kExitStatus);
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("How often hotfire explain is right, on cases made by an independent simulator", "hotfire-study");
+  CLI::App program("Measures how often hotfire explain is right, on cases made by an independent simulator.",
+                   "hotfire-study");
   program.require_subcommand(1);
-  program.footer(
-      "Example: hotfire-study effects --seeds 3 --out cases\n"
-      "Exit status: 0 all figures met, 1 one is not, 2 wrong use, 6 bad data or a case that cannot be made.");
+  program.footer(std::string("Example: hotfire-study effects --seeds 3 --out cases\n") + kExitStatus);
   Options effects;
   Options pairs;
   Options unlisted;
@@ -294,14 +305,17 @@ int run(int argc, char** argv) {
   similarity.similarity = true;
   std::string write;
   add_wild(program, write, wild);
-  add_study(program, "effects", "Every listed effect, alone", 3, effects);
-  add_study(program, "pairs", "Ten pairs of listed effects", 1, pairs);
-  add_study(program, "unlisted", "Effects that are in no list", 1, unlisted);
-  add_study(program, "null", "Records in which nothing is missing", 40, null);
-  add_study(program, "two-axes", "Engines with two axes, one with a missing effect or none", 1, two_axes);
-  add_study(program, "hard", "Hard data: slow and fast rows, one record or ten, closed loop, faults of a channel, ...", 1,
+  add_study(program, "effects", "Judge the finder on every listed effect, alone", 3, effects);
+  add_study(program, "pairs", "Judge the finder on ten pairs of listed effects", 1, pairs);
+  add_study(program, "unlisted", "Judge the finder on effects that are in no list", 1, unlisted);
+  add_study(program, "null", "Judge the finder on records in which no effect is missing", 40, null);
+  add_study(program, "two-axes", "Judge the finder on engines with two axes, one with a missing effect or none", 1,
+            two_axes);
+  add_study(program, "hard",
+            "Judge the finder on hard data: slow and fast rows, one record or ten, closed loop, faults of a channel ...", 1,
             hard);
-  add_study(program, "similarity", "Every listed effect as it is, and on a rig of 1/100 the size and ten times the speed", 1,
+  add_study(program, "similarity",
+            "Judge the finder on every listed effect, as it is and on a rig of 1/100 the size and ten times the speed", 1,
             similarity);
   FitArguments candidate;
   add_fit(program, candidate);
@@ -309,9 +323,10 @@ int run(int argc, char** argv) {
   add_cost(program, cost);
   SensitivityArguments varied;
   add_sensitivity(program, varied);
-  CLI::App* judging = program.add_subcommand("judge", "Explain cases that are there");
-  judging->add_option("folders", folders.folders, "folders with given/ and kept/")->required();
+  CLI::App* judging = program.add_subcommand("judge", "Explain and judge existing cases");
+  judging->add_option("folders", folders.folders, "folders of cases, with given/ and kept/")->required();
   add_judging(*judging, folders);
+  judging->footer(std::string("Example: hotfire-study judge cases/*\n") + kExitStatus);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
