@@ -34,100 +34,98 @@ void check_same_bits(const std::vector<double>& expected, const std::vector<doub
 
 constexpr std::array<int, 2> kVersions{2, 3};
 
+using Ids = std::vector<unsigned>;
+
+/// Calls `check` with an FMU of every topology in both versions, and the references of its inputs and outputs.
+template <class Check>
+void for_every_fmu(const Scratch& scratch, std::size_t rows, Check&& check) {
+  for (const Case& own : cases(rows)) {
+    for (const int version : kVersions) {
+      const Fmu fmu(scratch, own, version);
+      check(own, version, fmu, fmu.references(own.inputs), fmu.references(own.outputs()));
+    }
+  }
+}
+
 }  // namespace
 
 TEST_GROUP(Fmu) { Scratch scratch; };
 
 TEST(Fmu, GivesTheBitsOfHotfireSimulateForEveryTopologyInBothVersions) {
-  for (const Case& own : cases(300)) {
-    for (const int version : kVersions) {
-      const Fmu fmu(scratch, own, version);
-      const Run run(fmu, version);
-      const std::vector<unsigned> inputs = fmu.references(own.inputs);
-      const std::vector<unsigned> outputs = fmu.references(own.outputs());
-      LONGS_EQUAL(0, run.enter());
-      LONGS_EQUAL(0, run.set(inputs, inputs_at(own, 0)));
-      LONGS_EQUAL(0, run.call("ExitInitializationMode"));
-      double time = 0.0;
-      for (std::size_t period = 0; period < own.periods(); ++period) {
-        if (own.reads_at(period)) {
-          check_same_bits(own.readings_at(period), run.got(outputs));
-        }
-        LONGS_EQUAL(0, run.set(inputs, inputs_at(own, period)));
-        LONGS_EQUAL(0, run.step(time, own.period));
-        time += own.period;
+  for_every_fmu(scratch, 300, [&](const Case& own, int version, const Fmu& fmu, const Ids& inputs, const Ids& outputs) {
+    const Run run(fmu, version);
+    LONGS_EQUAL(0, run.enter());
+    LONGS_EQUAL(0, run.set(inputs, inputs_at(own, 0)));
+    LONGS_EQUAL(0, run.call("ExitInitializationMode"));
+    double time = 0.0;
+    for (std::size_t period = 0; period < own.periods(); ++period) {
+      if (own.reads_at(period)) {
+        check_same_bits(own.readings_at(period), run.got(outputs));
       }
-      LONGS_EQUAL(0, run.call("Terminate"));
+      LONGS_EQUAL(0, run.set(inputs, inputs_at(own, period)));
+      LONGS_EQUAL(0, run.step(time, own.period));
+      time += own.period;
     }
-  }
+    LONGS_EQUAL(0, run.call("Terminate"));
+  });
 }
 
 TEST(Fmu, TakesNoMemoryInAHundredThousandStepsOfEveryTopology) {
   if (!AllocationGuard::available) {
     return;
   }
-  for (const Case& own : cases(20)) {
-    for (const int version : kVersions) {
-      const Fmu fmu(scratch, own, version);
-      const Run run(fmu, version);
-      const std::vector<unsigned> inputs = fmu.references(own.inputs);
-      const std::vector<unsigned> outputs = fmu.references(own.outputs());
-      run.enter();
-      run.call("ExitInitializationMode");
-      std::vector<double> values(inputs.size());
-      std::vector<double> readings(outputs.size());
-      const AllocationGuard guard;
-      int worst = 0;
-      for (int i = 0; i < 100'000; ++i) {
-        for (std::size_t k = 0; k < values.size(); ++k) {
-          values[k] = own.driven[k][static_cast<std::size_t>(i) % own.periods()];
-        }
-        worst = std::max(worst, run.set(inputs, values));
-        worst = std::max(worst, run.step(i * own.period, own.period));
-        worst = std::max(worst, run.get(outputs, readings));
+  for_every_fmu(scratch, 20, [&](const Case& own, int version, const Fmu& fmu, const Ids& inputs, const Ids& outputs) {
+    const Run run(fmu, version);
+    run.enter();
+    run.call("ExitInitializationMode");
+    std::vector<double> values(inputs.size());
+    std::vector<double> readings(outputs.size());
+    const AllocationGuard guard;
+    int worst = 0;
+    for (int i = 0; i < 100'000; ++i) {
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        values[k] = own.driven[k][static_cast<std::size_t>(i) % own.periods()];
       }
-      LONGS_EQUAL(0, guard.allocations());
-      LONGS_EQUAL(0, worst);
+      worst = std::max(worst, run.set(inputs, values));
+      worst = std::max(worst, run.step(i * own.period, own.period));
+      worst = std::max(worst, run.get(outputs, readings));
     }
-  }
+    LONGS_EQUAL(0, guard.allocations());
+    LONGS_EQUAL(0, worst);
+  });
 }
 
 TEST(Fmu, InstancesInThreadsGiveTheBitsOfOneAlone) {
-  for (const Case& own : cases(150)) {
-    for (const int version : kVersions) {
-      const Fmu fmu(scratch, own, version);
-      const std::vector<unsigned> inputs = fmu.references(own.inputs);
-      const std::vector<unsigned> outputs = fmu.references(own.outputs());
-      // No two instances have the same inputs.
-      const auto drive = [&](const Run& run, int instance) {
-        double last = 0.0;
-        bool uneventful = true;
-        run.enter();
-        run.call("ExitInitializationMode");
-        for (int i = 0; i < 400; ++i) {
-          run.set(inputs, std::vector<double>(inputs.size(), 0.01 * std::sin(0.02 * i * (instance + 1))));
-          run.advance(i * own.period, own.period, last, uneventful);
-        }
-      };
-      std::vector<std::unique_ptr<Run>> together;
-      std::vector<std::thread> threads;
-      for (int instance = 0; instance < 6; ++instance) {
-        together.push_back(std::make_unique<Run>(fmu, version));
+  for_every_fmu(scratch, 150, [&](const Case& own, int version, const Fmu& fmu, const Ids& inputs, const Ids& outputs) {
+    // No two instances have the same inputs.
+    const auto drive = [&](const Run& run, int instance) {
+      double last = 0.0;
+      bool uneventful = true;
+      run.enter();
+      run.call("ExitInitializationMode");
+      for (int i = 0; i < 400; ++i) {
+        run.set(inputs, std::vector<double>(inputs.size(), 0.01 * std::sin(0.02 * i * (instance + 1))));
+        run.advance(i * own.period, own.period, last, uneventful);
       }
-      for (int instance = 0; instance < 6; ++instance) {
-        threads.emplace_back([&, instance] { drive(*together[static_cast<std::size_t>(instance)], instance); });
-      }
-      for (std::thread& thread : threads) {
-        thread.join();
-      }
-      for (int instance = 0; instance < 6; ++instance) {
-        const Run alone(fmu, version);
-        drive(alone, instance);
-        check_same_bits(alone.got(outputs), together[static_cast<std::size_t>(instance)]->got(outputs));
-      }
-      CHECK(together[0]->got(outputs) != together[1]->got(outputs));
+    };
+    std::vector<std::unique_ptr<Run>> together;
+    std::vector<std::thread> threads;
+    for (int instance = 0; instance < 6; ++instance) {
+      together.push_back(std::make_unique<Run>(fmu, version));
     }
-  }
+    for (int instance = 0; instance < 6; ++instance) {
+      threads.emplace_back([&, instance] { drive(*together[static_cast<std::size_t>(instance)], instance); });
+    }
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+    for (int instance = 0; instance < 6; ++instance) {
+      const Run alone(fmu, version);
+      drive(alone, instance);
+      check_same_bits(alone.got(outputs), together[static_cast<std::size_t>(instance)]->got(outputs));
+    }
+    CHECK(together[0]->got(outputs) != together[1]->got(outputs));
+  });
 }
 
 TEST(Fmu, StepsThatAreNoMultiplesOfTheInternalStepReachTheSameReadings) {

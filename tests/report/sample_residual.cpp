@@ -3,39 +3,47 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace hotfire::test {
 
 using nlohmann::json;
 
-json autocorrelation() {
+namespace {
+
+/// Values over a lag, before and after: `values(index, noise)` gives both.
+template <class Values>
+json over_lags(unsigned seed, Values&& values) {
   std::vector<double> lag;
   std::vector<double> before;
   std::vector<double> after;
-  std::mt19937 generator(7);
+  std::mt19937 generator(seed);
   std::normal_distribution<double> noise(0.0, 0.02);
   for (int index = 0; index <= 120; ++index) {
+    const auto [one, other] = values(index, [&] { return noise(generator); });
     lag.push_back(0.004 * index);
-    before.push_back(std::exp(-0.01 * index) * std::cos(0.07 * index));
-    after.push_back(index == 0 ? 1.0 : noise(generator));
+    before.push_back(one);
+    after.push_back(other);
   }
   return {{"lag_s", lag}, {"before", before}, {"after", after}, {"bound99", 0.052}};
 }
 
+}  // namespace
+
+json autocorrelation() {
+  return over_lags(7, [](int index, auto&& noise) {
+    return std::pair(std::exp(-0.01 * index) * std::cos(0.07 * index), index == 0 ? 1.0 : noise());
+  });
+}
+
 json input_correlation(bool independent) {
-  std::vector<double> lag;
-  std::vector<double> before;
-  std::vector<double> after;
-  std::mt19937 generator(8);
-  std::normal_distribution<double> noise(0.0, 0.02);
-  for (int index = 0; index <= 120; ++index) {
+  json result = over_lags(8, [independent](int index, auto&& noise) {
     const double response = std::exp(-0.02 * index) * std::sin(0.06 * index);
-    lag.push_back(0.004 * index);
-    before.push_back(0.7 * response);
-    after.push_back((independent ? 0.0 : 0.25 * response) + noise(generator));
-  }
-  return {{"lag_s", lag}, {"before", before}, {"after", after}, {"bound99", 0.052}, {"independent", independent}};
+    return std::pair(0.7 * response, (independent ? 0.0 : 0.25 * response) + noise());
+  });
+  result["independent"] = independent;
+  return result;
 }
 
 json by_frequency(double noise, double declared_error) {

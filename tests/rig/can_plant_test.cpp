@@ -21,6 +21,7 @@
 #include "firmware/plant/reference_plant.hpp"
 #include "hal/linux/posix_clock.hpp"
 #include "hal/linux/socket_can.hpp"
+#include "tests/rig/raw_can.hpp"
 
 namespace hotfire::firmware {
 namespace {
@@ -31,11 +32,7 @@ using PlantLoop = Loop<Plant<model::Simplex<double>>, CanBus, hal::PosixClock>;
 constexpr can::PlantBusSettings kSettings{can::Layout::classic, 1, model::Simplex<double>::channels.size(), 5.0};
 constexpr std::int64_t kPeriodNs = 1'000'000;
 
-void shell(const std::string& command) {
-  if (std::system(command.c_str()) != 0) {
-    FAIL(command.c_str());
-  }
-}
+using test::shell;
 
 /// The plant, answering can0 in a thread of its own.
 class Answering {
@@ -90,16 +87,6 @@ class Answering {
 /// The controller's side: a plain socket that takes every frame in its order.
 class Controller {
  public:
-  Controller() : socket_(socket(PF_CAN, SOCK_RAW, CAN_RAW)) {
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = static_cast<int>(if_nametoindex("can0"));
-    CHECK_EQUAL(0, bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address));
-  }
-  ~Controller() { close(socket_); }
-  Controller(const Controller&) = delete;
-  Controller& operator=(const Controller&) = delete;
-
   void command(double current) {
     hal::CanFrame frame;
     CHECK(can::encode(can::servovalve_command::kMessage, std::array{current, 0.0}, counter_++, frame));
@@ -107,18 +94,18 @@ class Controller {
     sent.can_id = frame.id.value;
     sent.len = frame.length;
     std::copy_n(frame.data.begin(), frame.length, sent.data);
-    CHECK_EQUAL(static_cast<ssize_t>(sizeof sent), write(socket_, &sent, sizeof sent));
+    CHECK_EQUAL(static_cast<ssize_t>(sizeof sent), write(socket_.file, &sent, sizeof sent));
     ++commands;
   }
 
   /// Takes in all readings that are there, waiting for the first up to this long. False if none came.
   bool take_readings(int wait_ms) {
-    pollfd ready{socket_, POLLIN, 0};
+    pollfd ready{socket_.file, POLLIN, 0};
     if (poll(&ready, 1, wait_ms) <= 0) {
       return false;
     }
     can_frame seen{};
-    while (recv(socket_, &seen, sizeof seen, MSG_DONTWAIT) == static_cast<ssize_t>(sizeof seen)) {
+    while (recv(socket_.file, &seen, sizeof seen, MSG_DONTWAIT) == static_cast<ssize_t>(sizeof seen)) {
       hal::CanFrame frame;
       frame.id = {seen.can_id, false};
       frame.length = seen.len;
@@ -156,7 +143,7 @@ class Controller {
   std::uint64_t out_of_order = 0;
 
  private:
-  int socket_;
+  test::RawCan socket_;
   std::uint8_t counter_ = 0;
   can::Sequence sequence_;
 };

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "hal/linux/posix_clock.hpp"
+#include "tests/rig/raw_can.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::hal {
@@ -28,33 +29,22 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kQueued = 2000 * kMillisecond;
 constexpr std::int64_t kPatience = 30'000 * kMillisecond;
 
-void shell(const std::string& command) {
-  if (std::system(command.c_str()) != 0) {
-    FAIL(command.c_str());
-  }
-}
+using test::shell;
 
 /// The other side of the bus: a plain socket that sends and sees everything.
 class Peer {
  public:
-  Peer() : socket_(socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK, CAN_RAW)) {
+  Peer() : socket_(SOCK_NONBLOCK) {
     const int on = 1;
-    setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = static_cast<int>(if_nametoindex("can0"));
-    CHECK_EQUAL(0, bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address));
+    setsockopt(socket_.file, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
   }
-  ~Peer() { close(socket_); }
-  Peer(const Peer&) = delete;
-  Peer& operator=(const Peer&) = delete;
 
   void send(canid_t id, std::uint8_t first, std::size_t size = CAN_MTU) const {
     canfd_frame frame{};
     frame.can_id = id;
     frame.len = size == CAN_MTU ? 8 : 64;
     frame.data[0] = first;
-    CHECK_EQUAL(static_cast<ssize_t>(size), write(socket_, &frame, size));
+    CHECK_EQUAL(static_cast<ssize_t>(size), write(socket_.file, &frame, size));
   }
 
   void report(canid_t classes, std::uint8_t controller) const {
@@ -62,7 +52,7 @@ class Peer {
     frame.can_id = CAN_ERR_FLAG | classes;
     frame.len = CAN_ERR_DLC;
     frame.data[1] = controller;
-    CHECK_EQUAL(static_cast<ssize_t>(CAN_MTU), write(socket_, &frame, CAN_MTU));
+    CHECK_EQUAL(static_cast<ssize_t>(CAN_MTU), write(socket_.file, &frame, CAN_MTU));
   }
 
   /// First bytes of the data frames seen since the last call.
@@ -70,7 +60,7 @@ class Peer {
     std::vector<int> result;
     for (;;) {
       canfd_frame frame{};
-      const ssize_t size = read(socket_, &frame, sizeof frame);
+      const ssize_t size = read(socket_.file, &frame, sizeof frame);
       if (size < 0 && errno != ENETDOWN) {
         return result;
       }
@@ -81,7 +71,7 @@ class Peer {
   }
 
  private:
-  int socket_;
+  test::RawCan socket_;
 };
 
 CanFrame frame(const CanId& id, std::uint8_t first, bool fd = false) {

@@ -17,9 +17,21 @@ TEST_GROUP(ImportMatlab) {
 
   /// Imports the variable "X" of a file, which has rows of 1 ms.
   Record imported(const std::filesystem::path& path) const {
-    const auto map = load_import_map(
-        scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
-    return import_record(path, map, scratch.path("run.csv"));
+    return import_record(path, map_of("X"), scratch.path("run.csv"));
+  }
+
+  /// Of a column in rows of 1 ms.
+  ImportMap map_of(const std::string& column) const {
+    return load_import_map(scratch.write(
+        "map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"" + column + "\"\n"));
+  }
+
+  /// The bytes of a file with the struct X, whose member beta has three numbers.
+  std::string struct_file() const {
+    const std::filesystem::path path = scratch.path("struct.mat");
+    write_matlab(path, {}, {"X", "beta", {1.0, 2.0, 3.0}});
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
   }
 
   template <class T>
@@ -126,19 +138,14 @@ TEST(ImportMatlab, AMatlabVariableThatIsNotThereIsRefusedWithThoseThatAre) {
   expect_message(refused_column("X:3"), {"has 2 columns"});
   expect_message(refused_column("data.gamma"), {"no field \"gamma\""});
   const auto text = scratch.write("text.mat", "time,piston\n");
-  const auto map = load_import_map(
-      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
+  const ImportMap map = map_of("X");
   expect_message(refusal([&] { import_record(text, map, scratch.path("run.csv")); }), {"text.mat", "no MATLAB file"});
 }
 
 // matio 1.5.23 crashes on some of these: a struct whose tags say what is not so.
 TEST(ImportMatlab, struct_with_any_byte_damaged_is_read_or_refused_and_the_program_goes_on) {
-  const std::filesystem::path path = scratch.path("struct.mat");
-  write_matlab(path, {}, {"X", "beta", {1.0, 2.0, 3.0}});
-  const auto map = load_import_map(
-      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X.beta\"\n"));
-  std::ifstream file(path, std::ios::binary);
-  const std::string whole(std::istreambuf_iterator<char>(file), {});
+  const ImportMap map = map_of("X.beta");
+  const std::string whole = struct_file();
   constexpr std::size_t kPreamble = 128;  // of text, which says nothing
 #ifdef __SANITIZE_ADDRESS__
   constexpr std::size_t kStep = 10;  // such a process is slow to copy
@@ -160,12 +167,8 @@ TEST(ImportMatlab, struct_with_any_byte_damaged_is_read_or_refused_and_the_progr
 }
 
 TEST(ImportMatlab, element_that_goes_beyond_its_file_or_its_matrix_is_refused_with_its_byte) {
-  const std::filesystem::path path = scratch.path("struct.mat");
-  write_matlab(path, {}, {"X", "beta", {1.0, 2.0, 3.0}});
-  const auto map = load_import_map(
-      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X.beta\"\n"));
-  std::ifstream file(path, std::ios::binary);
-  const std::string whole(std::istreambuf_iterator<char>(file), {});
+  const ImportMap map = map_of("X.beta");
+  const std::string whole = struct_file();
   const auto refused = [&](std::size_t at, char value) {
     std::string damaged = whole;
     damaged[at] = value;
@@ -191,8 +194,7 @@ TEST(ImportMatlab, doubles_are_read_from_a_file_of_version_4) {
 }
 
 TEST(ImportMatlab, variable_of_version_4_that_goes_beyond_its_file_is_refused_with_its_byte) {
-  const auto map = load_import_map(
-      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
+  const ImportMap map = map_of("X");
   std::ifstream file(written<double>(MatlabVersion::v4, "double", {1.0, 2.0, 3.0}), std::ios::binary);
   const std::string variable(std::istreambuf_iterator<char>(file), {});
   constexpr std::size_t kSize = 20 + 2 + 3 * sizeof(double);  // header, name with its end, values
@@ -222,7 +224,6 @@ TEST(ImportMatlab, variable_of_version_4_that_goes_beyond_its_file_is_refused_wi
 }
 
 TEST(ImportMatlab, what_is_no_file_is_refused) {
-  const auto map = load_import_map(
-      scratch.write("map.toml", "schema = 1\nperiod = \"1 ms\"\n[channels.piston]\nunit = \"m\"\ncolumn = \"X\"\n"));
+  const ImportMap map = map_of("X");
   expect_message(refusal([&] { read_matlab_columns("/dev/zero", map); }), {"/dev/zero: is no file"});
 }

@@ -16,7 +16,19 @@ class LabOnWireGroup : public Utest, public test_lab::LabOnWire {
 
 }  // namespace
 
-TEST_GROUP_BASE(LabRig, LabOnWireGroup){};
+TEST_GROUP_BASE(LabRig, LabOnWireGroup){
+    /// The emergency stop is released: no command leaves before the operator has acknowledged and armed.
+    void expect_no_command_until_armed(std::uint64_t sent){plant.rearm();
+drive(kEmergencyStopReleased, true);
+cycles(10);
+UNSIGNED_LONGS_EQUAL(sent, commands);
+press();
+UNSIGNED_LONGS_EQUAL(sent, commands);
+press();
+CHECK(commands > sent);
+}  // namespace hotfire::firmware
+}
+;
 
 TEST(LabRig, LinesFollowTheInterlockAndNoCommandIsSentUntilArmed) {
   cycles(5);
@@ -71,14 +83,7 @@ TEST(LabRig, CommandThatIsStillBeforeTheBusAtAFaultNeverLeaves) {
   const std::uint64_t sent = commands;
   cycles(3);
   wire.release();
-  plant.rearm();
-  drive(kEmergencyStopReleased, true);
-  cycles(10);
-  UNSIGNED_LONGS_EQUAL(sent, commands);
-  press();
-  UNSIGNED_LONGS_EQUAL(sent, commands);
-  press();
-  CHECK(commands > sent);
+  expect_no_command_until_armed(sent);
 }
 
 TEST(LabRig, EmergencyStopWhileTheBusIsDownAndBothReleasedLetsNoCommandOutUntilArmed) {
@@ -89,14 +94,7 @@ TEST(LabRig, EmergencyStopWhileTheBusIsDownAndBothReleasedLetsNoCommandOutUntilA
   const std::uint64_t sent = commands;
   cycles(5);
   wire.set_down(false);
-  plant.rearm();
-  drive(kEmergencyStopReleased, true);
-  cycles(10);
-  UNSIGNED_LONGS_EQUAL(sent, commands);
-  press();
-  UNSIGNED_LONGS_EQUAL(sent, commands);
-  press();
-  CHECK(commands > sent);
+  expect_no_command_until_armed(sent);
 }
 
 TEST(LabRig, CycleAfterTheFirstOneThatIsNotRecordedIsSafe) {

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "tests/model/cost/disturbed.hpp"
 #include "tests/model/support/plants.hpp"
 
 namespace hotfire::test {
@@ -25,14 +26,7 @@ Plant::State random_state(const Plant& plant, Random& random) {
   const auto& friction = std::get<kFriction>(plant.parameters().effects.values);
   Plant::State state = plant.steady(random.uniform(-0.05, 0.05));
   const double size = random.one_in(2) ? 1.0 : 1e-5;
-  state.y(Plant::kOpening) += size * random.either_sign(1e-4, 1.0);
-  state.y(Plant::kOpeningRate) = size * random.either_sign(1e-3, 100.0);
-  state.y(Plant::kPressure) += size * random.either_sign(1e3, 2e7);
-  state.y(Plant::kWashout) += size * random.either_sign(1e3, 2e7);
-  state.y(Plant::kPiston) += size * random.either_sign(1e-9, 1e-2);
-  state.y(Plant::kPistonRate) = size * random.either_sign(1e-9, 1.0);
-  state.y(Plant::kAngle) += size * random.either_sign(1e-9, 1e-2);
-  state.y(Plant::kAngleRate) = size * random.either_sign(1e-7, 2.0);
+  disturb(state, random, size);
   const double part = size * random.uniform(-1.0, 1.0);
   std::get<kFriction>(state.effects.values).deflection = part * friction.coulomb_torque / friction.stiffness;
   state.effects.outputs[kFriction] = part * friction.coulomb_torque;

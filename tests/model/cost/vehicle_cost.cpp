@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/model/cost/disturbed.hpp"
 #include "tests/model/cvode/axis_comparison.hpp"
 #include "tests/model/support/vehicles.hpp"
 
@@ -16,19 +17,6 @@ using Axis = model::Simplex<double>;
 
 constexpr int kSteps = 200;
 constexpr double kStep = 5e-4;
-
-/// Moves one axis anywhere it can be. Half of them are all but at rest, so that the bristle sticks.
-template <class State>
-void disturb(State& state, Random& random, double size) {
-  state.y(Axis::kOpening) += size * random.either_sign(1e-4, 1.0);
-  state.y(Axis::kOpeningRate) = size * random.either_sign(1e-3, 100.0);
-  state.y(Axis::kPressure) += size * random.either_sign(1e3, 2e7);
-  state.y(Axis::kWashout) += size * random.either_sign(1e3, 2e7);
-  state.y(Axis::kPiston) += size * random.either_sign(1e-9, 1e-2);
-  state.y(Axis::kPistonRate) = size * random.either_sign(1e-9, 1.0);
-  state.y(Axis::kAngle) += size * random.either_sign(1e-9, 1e-2);
-  state.y(Axis::kAngleRate) = size * random.either_sign(1e-7, 2.0);
-}
 
 }  // namespace
 

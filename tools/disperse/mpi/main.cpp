@@ -86,46 +86,56 @@ std::string everything_from(int descriptor) {
   }
 }
 
-/// Runs a program and gives what it prints.
-int run_printing(const std::vector<std::string>& words, std::string& printed) {
-  const Pipe out = make_pipe();
+/// A program that runs beside this one, and our end of the pipe to it.
+struct Child {
+  pid_t process = -1;
+  int ours = -1;
+};
+
+/// Starts a program whose standard input or output, `stream`, is a pipe from or to this one.
+Child start(const std::vector<std::string>& words, int stream) {
+  const Pipe pipe = make_pipe();
+  const bool is_input = stream == STDIN_FILENO;
+  const int theirs = is_input ? pipe.read : pipe.write;
+  const int ours = is_input ? pipe.write : pipe.read;
   const pid_t parent = getpid();
   const pid_t child = fork();
+  if (child < 0) {
+    std::perror("hotfire-disperse-mpi: fork");
+    MPI_Abort(MPI_COMM_WORLD, kCannotStart);
+  }
   if (child == 0) {
-    dup2(out.write, STDOUT_FILENO);
-    close(out.read);
-    close(out.write);
+    dup2(theirs, stream);
+    close(ours);
+    close(theirs);
     become(words, parent);
   }
-  close(out.write);
-  printed = everything_from(out.read);
-  close(out.read);
-  return status_of(child);
+  close(theirs);
+  return {child, ours};
+}
+
+/// Runs a program and gives what it prints.
+int run_printing(const std::vector<std::string>& words, std::string& printed) {
+  const Child child = start(words, STDOUT_FILENO);
+  printed = everything_from(child.ours);
+  close(child.ours);
+  return status_of(child.process);
 }
 
 /// Runs a program that is given a text on its standard input.
 int run_reading(const std::vector<std::string>& words, const std::string& text) {
-  const Pipe in = make_pipe();
-  const pid_t parent = getpid();
-  const pid_t child = fork();
-  if (child == 0) {
-    dup2(in.read, STDIN_FILENO);
-    close(in.read);
-    close(in.write);
-    become(words, parent);
-  }
-  close(in.read);
+  const Child child = start(words, STDIN_FILENO);
   // A program that ends early says so by its status.
   std::signal(SIGPIPE, SIG_IGN);
   for (std::size_t sent = 0; sent < text.size();) {
-    const ssize_t count = write(in.write, text.data() + sent, text.size() - sent);
+    const ssize_t count = write(child.ours, text.data() + sent, text.size() - sent);
     if (count < 0 && errno != EINTR) {
       break;
     }
     sent += static_cast<std::size_t>(std::max<ssize_t>(count, 0));
   }
-  close(in.write);
-  return status_of(child);
+  close(child.ours);
+  return status_of(child.process);
 }
 
 void send(const std::string& text, int to) {
