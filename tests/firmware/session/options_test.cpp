@@ -18,6 +18,11 @@ namespace hotfire::firmware {
 
 namespace {
 
+/// Whether an option begins a line of a help.
+bool lists(const std::string& help, std::string_view option) {
+  return help.find("\n  " + std::string(option) + " ") != std::string::npos;
+}
+
 /// The options of one mode that these arguments give.
 template <class Own>
 Own accepted(std::vector<std::string> arguments) {
@@ -228,11 +233,6 @@ TEST(Options, ReplayTakesOneRecording) {
   refused({"replay"}, "needs a recording");
   refused({"replay", "a.hfr", "b.hfr"}, "unknown argument b.hfr");
   refused({"replay", "a.hfr", "--image"}, "unknown argument --image");
-}
-
-/// Whether an option begins a line of a help.
-bool lists(const std::string& help, std::string_view option) {
-  return help.find("\n  " + std::string(option) + " ") != std::string::npos;
 }
 
 TEST(Options, HelpOfAModeNamesItsOptionsAndNoOther) {
