@@ -9,6 +9,8 @@
 #include <iterator>
 #include <limits>
 
+#include "tools/files/exchange/xml_text.hpp"
+
 namespace hotfire::analysis {
 
 namespace {
@@ -42,20 +44,6 @@ struct Range {
     return {low - room, high + room};
   }
 };
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char letter : text) {
-    if (letter == '<') {
-      result.append("&lt;");
-    } else if (letter == '&') {
-      result.append("&amp;");
-    } else {
-      result.push_back(letter);
-    }
-  }
-  return result;
-}
 
 /// Round numbers over a range, four to eight of them.
 std::vector<double> ticks(const Range& range) {

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "tools/export/xml_text.hpp"
+#include "tools/files/exchange/xml_text.hpp"
 
 namespace hotfire {
 

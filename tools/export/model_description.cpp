@@ -10,7 +10,7 @@
 #include <set>
 
 #include "tools/export/unit_definition.hpp"
-#include "tools/export/xml_text.hpp"
+#include "tools/files/exchange/xml_text.hpp"
 
 namespace hotfire {
 

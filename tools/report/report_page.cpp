@@ -4,34 +4,12 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "tools/files/exchange/xml_text.hpp"
 #include "tools/report/page_template.hpp"
 #include "tools/report/series_data.hpp"
 
 namespace hotfire {
 namespace {
-
-std::string as_text(std::string_view text) {
-  std::string escaped;
-  for (const char character : text) {
-    switch (character) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += character;
-    }
-  }
-  return escaped;
-}
 
 /// JSON that can be inside a script element: outside of a string JSON has no `<`, and inside one the escape means the
 /// same, so nothing in it can close the element or open a comment. Bytes that are not UTF-8 become U+FFFD.
@@ -88,8 +66,8 @@ std::string report_page(const nlohmann::json& report, const ReportSeries& series
   std::string_view rest = frame;
   std::string page;
   page.reserve(frame.size() + data.size() + 1000);
-  fill(page, rest, "@title@", as_text(name.empty() ? "Hotfire report" : name + ": Hotfire report"));
-  fill(page, rest, "@headline@", as_text(text_at(report, "sentence")));
+  fill(page, rest, "@title@", escaped(name.empty() ? "Hotfire report" : name + ": Hotfire report"));
+  fill(page, rest, "@headline@", escaped(text_at(report, "sentence")));
   fill(page, rest, "@data@", data);
   page += rest;
   return page;

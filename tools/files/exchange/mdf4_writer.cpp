@@ -6,6 +6,7 @@
 
 #include "tools/files/exchange/mdf4.hpp"
 #include "tools/files/exchange/mdf4_blocks.hpp"
+#include "tools/files/exchange/xml_text.hpp"
 #include "tools/files/text/whole_file.hpp"
 
 namespace hotfire {
@@ -70,15 +71,6 @@ std::string channel_data(ChannelType type, SyncType sync, std::size_t byte_offse
     append(data, 0.0);  // ranges, which no flag declares valid
   }
   return data;
-}
-
-/// A name that XML takes as text.
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  }
-  return result;
 }
 
 std::string identification() {
