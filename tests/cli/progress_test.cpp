@@ -51,6 +51,23 @@ TEST(Progress, of_a_share_and_a_time_limit_the_shorter_time_left_is_said) {
   STRCMP_EQUAL("\r\x1b[K[##..................] 10 %, at most 45 s left: round 1", to.str().c_str());
 }
 
+TEST(Progress, of_a_work_of_unknown_extent_the_line_has_the_shortest_and_the_longest_time_left) {
+  Progress progress(to, true, std::nullopt, clock());
+  now = 15.0;
+  progress.say("round 1", 0.5, 0.1);
+  STRCMP_EQUAL("\r\x1b[K[##########..........] 50 %, about 15 s to 2 min 15 s left: round 1", to.str().c_str());
+  to.str("");
+  progress.say("concluding", 0.5, 0.5);
+  STRCMP_EQUAL("\r\x1b[K[##########..........] 50 %, about 15 s left: concluding", to.str().c_str());
+}
+
+TEST(Progress, the_longest_time_left_ends_at_the_time_limit) {
+  Progress progress(to, true, 60.0, clock());
+  now = 15.0;
+  progress.say("round 1", 0.5, 0.1);
+  STRCMP_EQUAL("\r\x1b[K[##########..........] 50 %, about 15 s to 45 s left: round 1", to.str().c_str());
+}
+
 TEST(Progress, in_a_log_a_short_command_leaves_nothing_and_a_long_one_a_line_every_ten_seconds) {
   {
     Progress progress(to, false, std::nullopt, clock());

@@ -24,7 +24,8 @@ void add_next_experiment(const Dataset& data, const Rival& rival, const Fitted& 
                          Explanation& explanation) {
   std::string text = words::explain_equally(label(rival.kept), label(rival.other));
   if (is_hydraulic_axis(explained.base)) {
-    options.watch.progress("searching for the experiment that separates them");
+    options.watch.progress(
+        {Work::concluding, "searching for the experiment that separates them", SharesOfWork::kFittedToAllRows});
     const std::string limits = options.limits ? words::limits_of_rig() : words::limits_of_records();
     NextExperiment next =
         best_separation(data, explained, rival.model, options.limits.value_or(limits_of(data)), options.threads);
@@ -53,7 +54,7 @@ void refuse_turned_sign(const Dataset& data, const ModelFile& model, const Searc
   if (!found.searched || found.interrupted || left.fit_percent >= kFollowsMass) {
     return;
   }
-  options.watch.progress("nothing follows the mass: the same with its force turned");
+  options.watch.progress({Work::concluding, "nothing follows the mass: the same with its force turned"});
   Dataset turned = data;
   for (Experiment& experiment : turned.experiments) {
     std::ranges::transform(experiment.input, experiment.input.begin(), std::negate<>());
@@ -86,10 +87,10 @@ Explanation explain(const ModelFile& model, const std::vector<Record>& records, 
   if (!is_axis) {
     refuse_turned_sign(data, model, search_options, found);
   }
-  options.watch.progress("fitting a linear black box, to compare");
+  options.watch.progress({Work::concluding, "fitting a linear black box, to compare"});
   const BlackBox box = black_box(data);
   if (!found.interrupted) {
-    options.watch.progress("fitting what was found to all rows");
+    options.watch.progress({Work::concluding, "fitting what was found to all rows", SharesOfWork::kComparedWithBlackBox});
     fit_to_all_rows(data, options.threads, found);
   }
   Explanation explanation{result_of(model, records, data, found), series_of(records, data, found), model, {}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <type_traits>
@@ -50,15 +51,18 @@ VehicleParameters together(const VehicleParameters& declared, const FoundAxes& f
 }
 
 /// Progress and messages that say which axis they are about.
-Watch watch_of(const Watch& watch, const std::string& axis) {
+Watch watch_of(const Watch& watch, const std::string& axis, std::size_t searches_to_come) {
   Watch own = watch;
-  own.progress = [progress = watch.progress, axis](const std::string& what) { progress(axis + ": " + what); };
+  own.progress = [progress = watch.progress, axis, searches_to_come](const Doing& doing) {
+    progress({doing.work, axis + ": " + doing.what, doing.share, searches_to_come});
+  };
   return own;
 }
 
-Found search_axis(const AxisOfVehicle& axis, const ExplainOptions& options) {
+Found search_axis(const AxisOfVehicle& axis, const ExplainOptions& options, std::size_t searches_to_come) {
   try {
-    return search(axis.data, axis.model, {options.threads, options.most_effects, watch_of(options.watch, axis.name)});
+    return search(axis.data, axis.model,
+                  {options.threads, options.most_effects, watch_of(options.watch, axis.name, searches_to_come)});
   } catch (const FileError& error) {
     throw FileError(words::of_axis(axis.name, error.what()));
   }
@@ -75,7 +79,7 @@ void fit_beside_explained(const VehicleParameters& declared, const ExplainOption
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i]) {
       const AxisOfVehicle& axis = vehicle.axes[i];
-      options.watch.progress(axis.name + ": fitting beside the rest of the vehicle as explained");
+      options.watch.progress({Work::concluding, axis.name + ": fitting beside the rest of the vehicle as explained"});
       const Evaluator fine(axis.data, Resolution::fine);
       Assessed again = refined(fine, fine, options.threads, found[i]->explained.model, kFinal);
       if (again.good()) {
@@ -171,9 +175,10 @@ VehicleExplanation explain(const VehicleFile& model, const std::vector<Record>& 
   put_beside(*before, vehicle);
   FoundAxes found(vehicle.axes.size());
   bool interrupted = false;
+  auto searches_to_come = static_cast<std::size_t>(std::ranges::count_if(vehicle.axes, &AxisOfVehicle::measured));
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (vehicle.axes[i].measured) {
-      found[i] = search_axis(vehicle.axes[i], options);
+      found[i] = search_axis(vehicle.axes[i], options, --searches_to_come);
       interrupted = interrupted || found[i]->interrupted;
     }
   }
@@ -192,7 +197,8 @@ VehicleExplanation explain(const VehicleFile& model, const std::vector<Record>& 
     }
     const AxisOfVehicle& axis = vehicle.axes[i];
     if (!interrupted) {
-      options.watch.progress(axis.name + ": fitting what was found to all rows");
+      options.watch.progress(
+          {Work::concluding, axis.name + ": fitting what was found to all rows", SharesOfWork::kFittedBesideAxis});
       fit_to_all_rows(axis.data, options.threads, *found[i]);
     }
     results.push_back({axis.name, result_of(axis.model, axis.records, axis.data, *found[i])});

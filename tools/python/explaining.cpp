@@ -48,7 +48,7 @@ class Watcher {
   explicit Watcher(py::object progress) : progress_(std::move(progress)) {}
 
   explain::Watch watch() {
-    return {[this](const std::string& what) { say(what); }, [this] { return is_interrupted(); }};
+    return {[this](const explain::Doing& doing) { say(doing.what); }, [this] { return is_interrupted(); }};
   }
 
   bool was_interrupted() const { return interrupted_; }

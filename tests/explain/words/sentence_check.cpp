@@ -124,7 +124,8 @@ std::vector<std::string> sentences_elsewhere(const std::string& source) {
     for (std::size_t number = 1; std::getline(file, line); ++number) {
       const std::size_t comment = line.find("//");
       line = line.substr(0, comment);
-      if (line.find("progress(") != std::string::npos || line.find("#include") != std::string::npos) {
+      if (line.find("progress(") != std::string::npos || line.find("Work::") != std::string::npos ||
+          line.find("#include") != std::string::npos) {
         continue;
       }
       for (auto text = std::sregex_iterator(line.begin(), line.end(), literal); text != std::sregex_iterator(); ++text) {

@@ -20,6 +20,7 @@
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
 #include "tools/cli/shared/progress.hpp"
+#include "tools/explain/pace.hpp"
 #include "tools/explain/report/report_json.hpp"
 #include "tools/files/rig/profile_file.hpp"
 #include "tools/files/text/error.hpp"
@@ -205,7 +206,11 @@ void run_explain(const ExplainArguments& arguments, const std::string& command_l
   options.threads = arguments.threads;
   options.most_effects = arguments.most_effects;
   options.keep_drift = arguments.keep_drift;
-  options.watch.progress = [&](const std::string& what) { progress.say(what); };
+  explain::Pace pace(arguments.most_effects);
+  options.watch.progress = [&](const explain::Doing& doing) {
+    const explain::ShareDone done = pace.done(doing);
+    progress.say(doing.what, done.expected, done.least);
+  };
   options.watch.interrupted = [&] {
     return interrupted != 0 || (arguments.seconds && progress.seconds() > *arguments.seconds);
   };

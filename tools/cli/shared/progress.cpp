@@ -32,6 +32,11 @@ std::string in_words(double seconds) {
   return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {} s", whole / 60, whole % 60);
 }
 
+/// The time that the rest takes if `done` took `seconds` [s].
+double time_left(double seconds, double done) {
+  return done < kLeastShare ? std::numeric_limits<double>::infinity() : seconds * (1.0 - done) / done;
+}
+
 }  // namespace
 
 std::function<double()> stopwatch() {
@@ -51,12 +56,18 @@ Progress::~Progress() {
   }
 }
 
-std::string Progress::line(double seconds, const std::string& what, std::optional<double> done) const {
+std::string Progress::line(double seconds, const std::string& what, std::optional<double> done,
+                           std::optional<double> least_done) const {
   if (done) {
-    const double expected = *done < kLeastShare ? std::numeric_limits<double>::infinity() : seconds * (1.0 - *done) / *done;
-    std::string left = std::isfinite(expected) ? fmt::format(", about {} left", in_words(expected)) : "";
+    const double expected = time_left(seconds, *done);
+    const double longest = time_left(seconds, least_done.value_or(*done));
+    std::string left;
     if (limit_ && *limit_ - seconds < expected) {
       left = fmt::format(", at most {} left", in_words(*limit_ - seconds));
+    } else if (std::isfinite(expected)) {
+      const double most = std::min(longest, limit_ ? *limit_ - seconds : longest);
+      const std::string to = std::isfinite(most) && in_words(most) != in_words(expected) ? " to " + in_words(most) : "";
+      left = fmt::format(", about {}{} left", in_words(expected), to);
     }
     return fmt::format("[{}] {:.0f} %{}: {}", bar(*done), 100.0 * *done, left, what);
   }
@@ -67,14 +78,14 @@ std::string Progress::line(double seconds, const std::string& what, std::optiona
   return fmt::format("[{:5.1f} s] {}", seconds, what);
 }
 
-void Progress::say(const std::string& what, std::optional<double> done) {
+void Progress::say(const std::string& what, std::optional<double> done, std::optional<double> least_done) {
   const std::lock_guard guard(mutex_);
   const double seconds = clock_();
   if (is_terminal_) {
-    to_ << "\r\x1b[K" << line(seconds, what, done) << std::flush;
+    to_ << "\r\x1b[K" << line(seconds, what, done, least_done) << std::flush;
   } else if (seconds >= next_) {
     next_ = seconds + kLogPeriod;
-    to_ << line(seconds, what, done) << std::endl;
+    to_ << line(seconds, what, done, least_done) << std::endl;
   }
 }
 

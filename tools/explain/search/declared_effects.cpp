@@ -25,7 +25,7 @@ std::vector<Candidate> effects_without_support(const Dataset& data, const Refine
     if (is_needed) {
       continue;
     }
-    watch.progress(fmt::format("do the records support the declared {}", label(candidate)));
+    watch.progress({Work::concluding, fmt::format("do the records support the declared {}", label(candidate))});
     const Assessed rest = refiner.without(explained.model, candidate);
     Trial trial{0, candidate, true, 0.0, 1.0, 0.0, "", ""};
     if (rest.good()) {

@@ -105,7 +105,8 @@ Assessed Refiner::from_other_starts(int round, Assessed winner, const Candidate&
   if (is_done(winner) || !candidate.choices.empty()) {
     return winner;
   }
-  watch_.progress(fmt::format("round {}: fitting {} from other starts", round, label(candidate)));
+  watch_.progress({Work::fitting, fmt::format("round {}: fitting {} from other starts", round, label(candidate)),
+                   SharesOfWork::kFittedWithAll});
   if (is_far_from_declared(winner.model)) {
     Assessed afresh = ranked(with_declared_values(winner.model), kRanking);
     winner = better_of(std::move(winner), std::move(afresh));
@@ -129,7 +130,9 @@ std::vector<OfLaw> Refiner::of_richer_laws(int round, const Assessed& winner, co
     if (parameters.size() <= own || watch_.interrupted()) {
       continue;
     }
-    watch_.progress(fmt::format("round {}: fitting {} from where {} ended", round, label(law), label(candidate)));
+    watch_.progress({Work::fitting,
+                     fmt::format("round {}: fitting {} from where {} ended", round, label(law), label(candidate)),
+                     SharesOfWork::kFittedWithAll});
     Fitted start = rest;
     activate(start.base, law);
     for (const FreeParameter& parameter : parameters) {

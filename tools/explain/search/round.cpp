@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "tools/explain/policy/policy.hpp"
@@ -106,14 +107,15 @@ bool Round::is_near_noise(std::size_t finalist) const {
 }
 
 void Round::fit_finalists() {
-  for (const std::size_t i : simplest_laws_first(order_, screened_)) {
-    if (watch_.interrupted()) {
-      return;
-    }
+  const auto finalists = simplest_laws_first(order_, screened_);
+  for (std::size_t k = 0; k < finalists.size() && !watch_.interrupted(); ++k) {
+    const std::size_t i = finalists[k];
     if (is_decided_against(i)) {
       continue;
     }
-    report_progress("with everything else", i);
+    report_progress("with everything else", i,
+                    std::lerp(SharesOfWork::kFittedAlone, SharesOfWork::kFittedWithAll,
+                              static_cast<double>(k) / static_cast<double>(finalists.size())));
     const Stopwatch stopwatch;
     finalists_[i] = refiner_.of_screened(screened_[i].fitted, current_.model.u);
     trials_[i].seconds += stopwatch.seconds();
@@ -122,7 +124,7 @@ void Round::fit_finalists() {
 
 void Round::cross_ripples() {
   for (const std::size_t i : contenders_of(order_, screened_, finalists_)) {
-    report_progress("over ripples", i);
+    report_progress("over ripples", i, SharesOfWork::kFittedWithAll);
     const Stopwatch stopwatch;
     finalists_[i] = refiner_.over_ripples(std::move(finalists_[i]));
     trials_[i].seconds += stopwatch.seconds();
@@ -172,7 +174,7 @@ void Round::rank() {
 Assessed Round::winner() {
   Assessed winner = finalists_[*best_];
   if (is_near_noise(*best_)) {
-    report_progress("with fine steps", *best_);
+    report_progress("with fine steps", *best_, SharesOfWork::kFittedWithAll);
     if (!is_supported(trials_[*best_])) {
       winner = refiner_.settled(winner.model, kCheck);
       if (winner.good()) {
@@ -221,8 +223,9 @@ std::optional<Rival> Round::rival_of(const Kept& kept) const {
   return std::nullopt;
 }
 
-void Round::report_progress(const std::string& what, std::size_t finalist) const {
-  watch_.progress(fmt::format("round {}: fitting {} {}", number_, label(screened_[finalist].candidate), what));
+void Round::report_progress(const std::string& what, std::size_t finalist, double share) const {
+  watch_.progress(
+      {Work::fitting, fmt::format("round {}: fitting {} {}", number_, label(screened_[finalist].candidate), what), share});
 }
 
 }  // namespace hotfire::explain

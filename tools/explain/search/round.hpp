@@ -43,7 +43,7 @@ class Round {
   Assessed winner();
   RoundResult undecided();
   std::optional<Rival> rival_of(const Kept& kept) const;
-  void report_progress(const std::string& what, std::size_t finalist) const;
+  void report_progress(const std::string& what, std::size_t finalist, double share) const;
 
   int number_;
   const Dataset& data_;

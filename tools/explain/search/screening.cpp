@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <span>
 
@@ -121,12 +122,19 @@ std::vector<Screened> Screening::run(const std::vector<Candidate>& candidates, c
                                      const Watch& watch) const {
   std::vector<Screened> screened(candidates.size());
   const std::vector<std::vector<double>> sharpened = sharpened_for(candidates);
-  std::atomic<std::size_t> done{0};
+  std::mutex one_at_a_time;
+  std::size_t done = 0;
+  const auto report = [&](const char* what, Work work, std::size_t count, double all) {
+    const std::lock_guard guard(one_at_a_time);
+    ++done;
+    const double share = all * static_cast<double>(done) / static_cast<double>(count);
+    watch.progress({work, fmt::format("{}: {} of {} {}", stage, done, count, what), share});
+  };
   parallel_for(candidates.size(), threads_, [&](std::size_t i) {
     if (!watch.interrupted()) {
       screened[i] = start(candidates[i], sharpened);
     }
-    watch.progress(fmt::format("{}: {} of {} candidates screened", stage, ++done, candidates.size()));
+    report("candidates screened", Work::screening, candidates.size(), 1.0);
   });
   sort_best_first(screened);
 
@@ -151,7 +159,7 @@ std::vector<Screened> Screening::run(const std::vector<Candidate>& candidates, c
     for (int pass = 0; pass < kFullFits && semifinalist.scanned && !watch.interrupted(); ++pass) {
       improve(semifinalist, Stage::full_fit);
     }
-    watch.progress(fmt::format("{}: {} of {} best candidates fitted", stage, ++done, semifinalists.size()));
+    report("best candidates fitted", Work::fitting, semifinalists.size(), SharesOfWork::kFittedAlone);
   });
   sort_best_first(screened);
   start_from_siblings(screened, names, watch);

@@ -3,12 +3,12 @@
 
 #include <Eigen/Cholesky>
 #include <array>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "tools/explain/fit/fit.hpp"
 #include "tools/explain/fit/goodness.hpp"
+#include "tools/explain/search/watch.hpp"
 #include "tools/explain/terms/candidates.hpp"
 
 namespace hotfire::explain {
@@ -22,12 +22,6 @@ struct Screened {
   double seconds = 0.0;
   bool good = false;    ///< false: no start could be simulated
   bool scanned = true;  ///< false: still waits for a law that it contains, to start from there
-};
-
-/// How a search reports what it is doing, and how it is stopped.
-struct Watch {
-  std::function<void(const std::string&)> progress = [](const std::string&) {};
-  std::function<bool()> interrupted = [] { return false; };
 };
 
 /// Ranks candidates around one model. A candidate's own parameters are simulated with exact gradients; what was free before

@@ -67,7 +67,7 @@ class Search {
     if (is_hydraulic_axis(start.base)) {
       refuse_impossible_channels(data_, result_.declared.prediction);
     }
-    options_.watch.progress("calibrating the declared parameters within their tolerances");
+    options_.watch.progress({Work::calibrating, "calibrating the declared parameters within their tolerances"});
     result_.calibrated = calibrated(start);
     result_.explained = result_.calibrated;
     for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
@@ -143,7 +143,7 @@ class Search {
         break;
       }
       any = true;
-      options_.watch.progress("what was found is worse than the calibrated model: " + harm);
+      options_.watch.progress({Work::settling, "what was found is worse than the calibrated model: " + harm});
       auto [out, rest] = without_harm();
       const Kept taken = std::move(result_.kept[out]);
       result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(out));
@@ -198,7 +198,7 @@ class Search {
   /// What was found under fine steps, and over ripples: a model may reach the noise in a ripple of its error beside the one
   /// where nothing is left. The records in hand hardly show it, but a motion beyond them would.
   void settle() {
-    options_.watch.progress("fitting what was found with fine steps and over ripples");
+    options_.watch.progress({Work::settling, "fitting what was found with fine steps and over ripples"});
     if (!is_settled_) {
       take(refiner_.settled(result_.explained.model));
     }
@@ -262,7 +262,8 @@ class Search {
       return;
     }
     Candidate& candidate = kept->trial.candidate;
-    options_.watch.progress(fmt::format("is {} still as good as {}", label(rival.other), label(candidate)));
+    options_.watch.progress(
+        {Work::settling, fmt::format("is {} still as good as {}", label(rival.other), label(candidate))});
     Assessed with = refiner_.in_place_of(result_.explained.model, candidate, rival.other, rival.model);
     if (!with.good()) {
       return;
@@ -324,7 +325,7 @@ class Search {
           0.0,
           "taken out",
           std::string(words::text(i == newest ? words::Reason::superfluous_newest : words::Reason::superfluous_earlier))};
-      options_.watch.progress(fmt::format("round {}: is {} still needed", round, label(trial.candidate)));
+      options_.watch.progress({Work::deciding, fmt::format("round {}: is {} still needed", round, label(trial.candidate))});
       const Stopwatch stopwatch;
       Assessed rest = refiner_.without(result_.explained.model, trial.candidate);
       if (rest.good()) {

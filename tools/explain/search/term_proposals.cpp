@@ -143,7 +143,7 @@ std::vector<Screened> propose_terms(const Dataset& data, const Fitted& around, c
     if (!place.is_likely || watch.interrupted()) {
       continue;
     }
-    watch.progress(fmt::format("regressing what is left on terms at {}", place.sites.front()));
+    watch.progress({Work::unlisted, fmt::format("regressing what is left on terms at {}", place.sites.front())});
     LatentInput input;
     input.prior = place.prior;
     input.move = place.move;

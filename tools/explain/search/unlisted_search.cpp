@@ -98,7 +98,8 @@ void fit_finalists(const Dataset& data, const Refiner& refiner, const Assessed& 
     const bool is_decided = result.reaches_noise(data) && s.candidate.site == result.trials[*result.best].candidate.site;
     if (fitted < most && !is_decided && !watch.interrupted()) {
       ++fitted;
-      watch.progress(fmt::format("unlisted: fitting {} with everything else", label(s.candidate)));
+      watch.progress({Work::unlisted, fmt::format("unlisted: fitting {} with everything else", label(s.candidate)),
+                      SharesOfWork::kProposed});
       const Stopwatch stopwatch;
       Assessed finalist = refiner.of_screened(s.fitted, frozen, effort);
       trial.seconds += stopwatch.seconds();
@@ -161,7 +162,12 @@ UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, cons
       return is_active(around.base, candidate.effect) || !located.allows(candidate.site) ||
              is_measured_load(data, candidate.site);
     });
-    auto screened = screening.run(candidates, "unlisted", watch);
+    Watch of_unlisted = watch;
+    of_unlisted.progress = [&watch](Doing doing) {
+      doing.work = Work::unlisted;
+      watch.progress(doing);
+    };
+    auto screened = screening.run(candidates, "unlisted", of_unlisted);
     const std::size_t wanted = unlisted_finalists(screened);
     fit_finalists(data, refiner, beside, around.u, screened, wanted, kRanking, round, watch, result);
   }

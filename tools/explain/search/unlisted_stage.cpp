@@ -80,7 +80,7 @@ Located UnlistedStage::locate_about(const Assessed& model) const {
   if (!is_hydraulic_axis(model.model.base)) {
     return {};
   }
-  options_.watch.progress("locating what is missing");
+  options_.watch.progress({Work::locating, "locating what is missing"});
   return locate(coarse_.data(), is_within_tolerances(model.model) ? model.model : with_declared_values(model.model),
                 options_.threads);
 }
