@@ -24,16 +24,19 @@ class Pace {
 
   /// The shares that are done, when this is being done.
   ShareDone done(const Doing& doing) {
-    const std::size_t work = index(where(doing.work));
+    // What is left is also located for the report, behind the rounds.
+    const bool is_for_report = doing.work == Work::locating && work_ >= index(Work::settling);
+    const std::size_t work = is_for_report ? work_ : index(doing.work);
+    const double share = is_for_report ? share_ : doing.share;
     if (work != work_) {
       before_ += kCosts[work_];
       begin(work);
-    } else if (doing.share < share_) {
+    } else if (share < share_) {
       // The same once more, in another round.
       before_ += share_ * kCosts[work];
       begin(work);
     }
-    share_ = std::clamp(doing.share, share_, 1.0);
+    share_ = std::clamp(share, share_, 1.0);
     const double now = before_ + share_ * kCosts[work];
     const auto to_come = static_cast<double>(doing.searches_to_come);
     const double expected = (1.0 - share_) * kCosts[work] + expected_from(work + 1) + to_come * expected_from(0);
@@ -67,18 +70,14 @@ class Pace {
     return sum;
   }
 
-  /// What is left is also located for the report, behind the rounds.
-  Work where(Work work) const {
-    return work == Work::locating && work_ >= index(Work::settling) ? static_cast<Work>(work_) : work;
-  }
-
   void begin(std::size_t work) {
     if (work == index(Work::calibrating)) {
       // The search of another axis.
       rounds_ = 0;
       is_past_unlisted_ = false;
     }
-    rounds_ += work == index(Work::screening) ? 1 : 0;
+    const bool is_first_of_round = work == index(Work::locating) || work == index(Work::screening);
+    rounds_ += is_first_of_round && (work <= work_ || rounds_ == 0) ? 1 : 0;
     is_past_unlisted_ = is_past_unlisted_ || work >= index(Work::unlisted);
     work_ = work;
     share_ = 0.0;
