@@ -101,57 +101,79 @@ double half_range(std::span<const double> samples) {
   return 0.5 * (*most - *least);
 }
 
+/// A frequency [Hz] and an amplitude [rad] where a cycle is looked for.
+struct Start {
+  double frequency = 0.0;
+  double amplitude = 0.0;
+};
+
+/// Where a gain margin of the same branch passes 0 dB between two amplitudes.
+void add_crossings(const MarginsAt& smaller, const MarginsAt& larger, std::vector<Start>& starts) {
+  constexpr double kSameBranch = 0.35;  // logarithm of the frequencies of two neighbouring amplitudes
+  for (const GainMargin& own : larger.margins.gain) {
+    for (const GainMargin& before : smaller.margins.gain) {
+      const double apart = std::log(own.frequency / before.frequency);
+      if (std::abs(apart) < kSameBranch && (before.decibels > 0.0) != (own.decibels > 0.0)) {
+        const double share = before.decibels / (before.decibels - own.decibels);
+        starts.push_back({before.frequency * std::exp(share * apart),
+                          smaller.amplitude * std::pow(larger.amplitude / smaller.amplitude, share)});
+      }
+    }
+  }
+}
+
+/// Margins from which a cycle is looked for: those near 0, and those that pass it.
+std::vector<Start> starts_of(const std::vector<MarginsAt>& at) {
+  constexpr double kNearDecibels = 3.0;
+  constexpr double kNearDegrees = 20.0;
+  std::vector<Start> starts;
+  const MarginsAt* before = nullptr;
+  for (const MarginsAt& own : at) {
+    if (!(own.amplitude > 0.0)) {
+      continue;
+    }
+    for (const PhaseMargin& margin : own.margins.phase) {
+      if (std::abs(margin.degrees) < kNearDegrees) {
+        starts.push_back({margin.frequency, own.amplitude});
+      }
+    }
+    for (const GainMargin& margin : own.margins.gain) {
+      if (std::abs(margin.decibels) < kNearDecibels) {
+        starts.push_back({margin.frequency, own.amplitude});
+      }
+    }
+    if (before != nullptr) {
+      add_crossings(*before, own, starts);
+    }
+    before = &own;
+  }
+  return starts;
+}
+
+/// True if another start led to the same cycle.
+bool is_among(const std::vector<LimitCycle>& cycles, const LimitCycle& cycle) {
+  constexpr double kSame = 0.02;  // logarithm
+  return std::any_of(cycles.begin(), cycles.end(), [&](const LimitCycle& own) {
+    return std::abs(std::log(own.amplitude / cycle.amplitude)) < kSame &&
+           std::abs(std::log(own.frequency / cycle.frequency)) < kSame;
+  });
+}
+
 }  // namespace
 
 std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const DescribedLoop& anew,
                                                const std::vector<MarginsAt>& at) {
-  constexpr double kSameBranch = 0.35;  // logarithm of the frequencies of two neighbouring amplitudes
-  // Margins from which a cycle is looked for without a second one.
-  constexpr double kNearDecibels = 3.0;
-  constexpr double kNearDegrees = 20.0;
-  constexpr double kSame = 0.02;    // logarithm: two starts that lead to one cycle
   constexpr double kAgrees = 0.02;  // of the loop: 0.17 dB or 1.1 deg, above the accuracy of a balance
   constexpr double kBeyond = 2.0;   // factor by which a cycle may be beyond the amplitudes that are given
   std::vector<LimitCycle> cycles;
-  const auto add = [&](double frequency, double amplitude) {
-    const auto cycle = refined(loop, frequency, amplitude);
-    const auto is_same = [&](const LimitCycle& own) {
-      return std::abs(std::log(own.amplitude / cycle->amplitude)) < kSame &&
-             std::abs(std::log(own.frequency / cycle->frequency)) < kSame;
-    };
-    if (!cycle || !(cycle->amplitude < kBeyond * at.back().amplitude) ||
-        std::any_of(cycles.begin(), cycles.end(), is_same)) {
-      return;
+  for (const auto& [frequency, amplitude] : starts_of(at)) {
+    const std::optional<LimitCycle> cycle = refined(loop, frequency, amplitude);
+    if (!cycle || !(cycle->amplitude < kBeyond * at.back().amplitude) || is_among(cycles, *cycle)) {
+      continue;
     }
     const std::optional<Complex> again = anew(cycle->frequency, cycle->amplitude);
     if (again && std::abs(*again + 1.0) < kAgrees) {
       cycles.push_back(*cycle);
-    }
-  };
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    if (!(at[k].amplitude > 0.0)) {
-      continue;
-    }
-    for (const PhaseMargin& own : at[k].margins.phase) {
-      if (std::abs(own.degrees) < kNearDegrees) {
-        add(own.frequency, at[k].amplitude);
-      }
-    }
-    for (const GainMargin& own : at[k].margins.gain) {
-      if (std::abs(own.decibels) < kNearDecibels) {
-        add(own.frequency, at[k].amplitude);
-      }
-      if (k == 0 || !(at[k - 1].amplitude > 0.0)) {
-        continue;
-      }
-      for (const GainMargin& smaller : at[k - 1].margins.gain) {
-        if (std::abs(std::log(own.frequency / smaller.frequency)) < kSameBranch &&
-            (smaller.decibels > 0.0) != (own.decibels > 0.0)) {
-          const double share = smaller.decibels / (smaller.decibels - own.decibels);
-          add(smaller.frequency * std::pow(own.frequency / smaller.frequency, share),
-              at[k - 1].amplitude * std::pow(at[k].amplitude / at[k - 1].amplitude, share));
-        }
-      }
     }
   }
   return cycles;
