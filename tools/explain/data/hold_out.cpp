@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+
+#include "tools/explain/data/statistics.hpp"
 
 namespace hotfire::explain {
 
@@ -18,29 +19,15 @@ constexpr std::size_t kRatesInBlock = 200;
 /// Rows that a fit sees reach an extreme where they come this close to it, as a share of the range.
 constexpr double kReached = 0.05;
 
-/// Least and largest value of one quantity.
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  void include(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  void include(const Range& other) {
-    include(other.low);
-    include(other.high);
-  }
-  /// True if this range comes as close to both ends of `whole` as a fit needs.
-  bool reaches_over(const Range& whole) const {
-    const double margin = kReached * (whole.high - whole.low);
-    return !(low > whole.low + margin) && !(high < whole.high - margin);
-  }
-};
+/// True if the values of a quantity come as close to both ends of `whole` as a fit needs.
+bool reaches_over(const Extent& extent, const Extent& whole) {
+  const double margin = kReached * (whole.high - whole.low);
+  return !(extent.low > whole.low + margin) && !(extent.high < whole.high - margin);
+}
 
 struct CutBlock {
   Block rows;
-  std::vector<Range> ranges;  ///< of every quantity: value and rate of the input and of each channel
+  std::vector<Extent> ranges;  ///< of every quantity: value and rate of the input and of each channel
   bool is_held = false;
 };
 
@@ -48,19 +35,19 @@ bool is_in(const std::vector<Block>& blocks, std::size_t row) {
   return std::ranges::any_of(blocks, [&](const Block& block) { return row >= block.first && row < block.last; });
 }
 
-std::vector<Range> ranges_of(const Experiment& experiment, Block rows) {
-  std::vector<Range> ranges;
+std::vector<Extent> ranges_of(const Experiment& experiment, Block rows) {
+  std::vector<Extent> ranges;
   const std::size_t span = std::max<std::size_t>(1, (rows.last - rows.first) / kRatesInBlock);
   const auto add = [&](const std::vector<double>& values) {
-    Range value;
-    Range rate;
+    Extent value;
+    Extent rate;
     for (std::size_t row = rows.first; row < rows.last && !values.empty(); ++row) {
       if (is_in(experiment.excluded, row)) {
         continue;
       }
-      value.include(values[row]);
+      value.take(values[row]);
       if (row >= rows.first + span && !is_in(experiment.excluded, row - span)) {
-        rate.include((values[row] - values[row - span]) / (static_cast<double>(span) * experiment.period));
+        rate.take((values[row] - values[row - span]) / (static_cast<double>(span) * experiment.period));
       }
     }
     ranges.push_back(value);
@@ -91,23 +78,23 @@ using Cuts = std::vector<std::vector<CutBlock>>;
 std::optional<std::pair<std::size_t, std::size_t>> uncovered(const Cuts& cuts) {
   const std::size_t quantities = cuts.front().front().ranges.size();
   for (std::size_t q = 0; q < quantities; ++q) {
-    Range whole;
-    Range fitted;
+    Extent whole;
+    Extent fitted;
     for (const auto& blocks : cuts) {
       for (const CutBlock& block : blocks) {
-        whole.include(block.ranges[q]);
+        whole.take(block.ranges[q]);
         if (!block.is_held) {
-          fitted.include(block.ranges[q]);
+          fitted.take(block.ranges[q]);
         }
       }
     }
-    if (!(whole.high > whole.low) || fitted.reaches_over(whole)) {
+    if (!(whole.high > whole.low) || reaches_over(fitted, whole)) {
       continue;
     }
     const bool at_high = fitted.high < whole.high - kReached * (whole.high - whole.low);
     for (std::size_t e = 0; e < cuts.size(); ++e) {
       for (std::size_t b = 0; b < cuts[e].size(); ++b) {
-        const Range& own = cuts[e][b].ranges[q];
+        const Extent& own = cuts[e][b].ranges[q];
         if (cuts[e][b].is_held && (at_high ? own.high >= whole.high : own.low <= whole.low)) {
           return std::pair(e, b);
         }
@@ -120,19 +107,19 @@ std::optional<std::pair<std::size_t, std::size_t>> uncovered(const Cuts& cuts) {
 /// True if of all blocks that are fitted this one alone reaches an extreme.
 bool is_needed(const Cuts& cuts, const CutBlock& wanted) {
   for (std::size_t q = 0; q < wanted.ranges.size(); ++q) {
-    Range whole;
-    Range others;
+    Extent whole;
+    Extent others;
     for (const auto& blocks : cuts) {
       for (const CutBlock& block : blocks) {
-        whole.include(block.ranges[q]);
+        whole.take(block.ranges[q]);
         if (!block.is_held && &block != &wanted) {
-          others.include(block.ranges[q]);
+          others.take(block.ranges[q]);
         }
       }
     }
-    if (whole.high > whole.low && !others.reaches_over(whole)) {
-      Range with = others;
-      with.include(wanted.ranges[q]);
+    if (whole.high > whole.low && !reaches_over(others, whole)) {
+      Extent with = others;
+      with.take(wanted.ranges[q]);
       if (with.low < others.low || with.high > others.high) {
         return true;
       }

@@ -1,11 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace hotfire::explain {
+
+/// Least and largest of the values that it has taken.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void take(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void take(const Extent& other) {
+    take(other.low);
+    take(other.high);
+  }
+};
 
 /// Root mean square.
 double root_mean_square(std::span<const double> values);

@@ -101,10 +101,6 @@ class AxisInVehicle {
     double force = 0.0;
   };
 
-  static Excitation interpolated(const std::vector<double>& values, int steps) {
-    return {values, steps, Excitation::Between::interpolated};
-  }
-
   model::Coupling<S> coupling_at(const S& angle) const {
     model::Coupling<S> coupling = beside_(angle, other_.angle, other_.rate, other_.force);
     coupling.torque += further_torque_;

@@ -12,6 +12,11 @@
 
 namespace hotfire::explain {
 
+/// A continuous quantity of the vehicle, between the rows of its run.
+inline Excitation interpolated(const std::vector<double>& values, int steps) {
+  return {values, steps, Excitation::Between::interpolated};
+}
+
 /// The friction of an engine's bearing about one axis, beside the given slip about the other: `model::BearingFriction` as
 /// declared, under the force through the bearing of the run of the whole vehicle. What the friction itself turns is found
 /// with it (`model::GimbalSpring`); all other rotation of the two sides is given.
@@ -68,10 +73,6 @@ class BearingInVehicle {
   const S& torque() const { return own_ == 0 ? torque_.pitch : torque_.yaw; }
 
  private:
-  static Excitation interpolated(const std::vector<double>& values, int steps) {
-    return {values, steps, Excitation::Between::interpolated};
-  }
-
   /// Mean rate over a row: a bearing breaks away within less than a row, and what it turns there must not be lost.
   double rate_of(const std::vector<double>& angle, std::size_t row) const {
     return row + 1 < angle.size() ? (angle[row + 1] - angle[row]) / period_ : 0.0;

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "model/numerics/step_size.hpp"
+#include "tools/explain/data/statistics.hpp"
 #include "tools/explain/fit/curve_points.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/terms/unlisted.hpp"
@@ -20,21 +20,11 @@ namespace {
 /// Of a table as it is laid for the search.
 constexpr int kPoints = 11;
 
-/// Least and largest value of a quantity over the rows that a fit sees: beyond them a table would be a guess.
-struct Extent {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
+/// Of the distances of a quantity from zero.
+Extent distances(const Extent& extent) { return {0.0, std::max(std::abs(extent.low), std::abs(extent.high))}; }
 
-  void take(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-
-  /// Of the distances from zero.
-  Extent distances() const { return {0.0, std::max(std::abs(low), std::abs(high))}; }
-};
-
-/// What the plant runs through, by the name that the tables give it.
+/// What the plant runs through over the rows that a fit sees, by the name that the tables give it: beyond an extent a table
+/// would be a guess.
 struct Extents {
   Extent input, opening, flow, pressure, position, rate, angle, angle_rate, other_angle, other_rate, deflection, drive, load,
       time;
@@ -43,10 +33,10 @@ struct Extents {
     using model::Site;
     const bool is_rate = x_name == "rate";
     if (x_name.starts_with("distance")) {
-      return of(site, "position").distances();
+      return distances(of(site, "position"));
     }
     if (x_name == "load_of_friction") {
-      return (site == Site::piston ? drive : load).distances();
+      return distances(site == Site::piston ? drive : load);
     }
     if (x_name.starts_with("other")) {
       return x_name == "other_rate" ? other_rate : other_angle;
@@ -55,7 +45,7 @@ struct Extents {
       return time;
     }
     if (x_name == "recent_flow") {
-      return flow.distances();
+      return distances(flow);
     }
     if (x_name == "load_pressure") {
       return pressure;
