@@ -19,13 +19,13 @@ namespace {
 
 /// The words of two pages in turn; numbers may differ by a hundredth: another machine's library rounds the last digit of an
 /// exponential otherwise, and a figure that is searched for moves with it.
-void check_same_page(const std::string& computed, const std::string& published) {
+void check_same_page(const std::string& name, const std::string& computed, const std::string& published) {
   std::istringstream one(computed);
   std::istringstream other(published);
   std::string word;
   std::string wanted;
   while (one >> word) {
-    CHECK_TRUE_TEXT(static_cast<bool>(other >> wanted), "docs/findings.md ends early");
+    CHECK_TRUE_TEXT(static_cast<bool>(other >> wanted), (name + " ends early").c_str());
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
     if (*end == '\0') {
@@ -34,7 +34,7 @@ void check_same_page(const std::string& computed, const std::string& published) 
       STRCMP_EQUAL(word.c_str(), wanted.c_str());
     }
   }
-  CHECK_TRUE_TEXT(!(other >> wanted), "docs/findings.md goes on");
+  CHECK_TRUE_TEXT(!(other >> wanted), (name + " goes on").c_str());
 }
 
 std::string text_of(const std::filesystem::path& path) {
@@ -101,7 +101,9 @@ TEST(Findings, AreInsideTheirTolerancesAndPublishedAsTheyCameOut) {
     CHECK_TRUE(std::filesystem::exists(std::filesystem::path(HOTFIRE_SOURCE_DIR "/docs/pictures/findings") /
                                        picture_name(finding)));
   }
-  check_same_page(markdown(rows), text_of(HOTFIRE_SOURCE_DIR "/docs/findings.md"));
+  for (const auto& [name, text] : pages(rows)) {
+    check_same_page(name, text, text_of(std::filesystem::path(HOTFIRE_SOURCE_DIR "/docs") / name));
+  }
 }
 
 TEST(Findings, AreReachedWithTheSameActuatorInTheLaboratoryAndOnTheStage) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <span>
 
 namespace hotfire::findings {
 
@@ -14,8 +15,8 @@ namespace {
 constexpr std::string_view kHead = R"(# Results of the two papers, reproduced
 
 With this page you can check which published results the model reproduces, and repeat each one with
-`hotfire findings --only F1`. `hotfire findings --markdown` writes the page. The test `findings_tests` compares the page with
-that output, and every figure with its tolerance. The parameter sets are files in [tools/findings/sets](../tools/findings/sets): `lab`, one actuator in its
+`hotfire findings --only F1`. `hotfire findings --pages docs` writes this page and those of the figures. The test
+`findings_tests` compares the pages with that output, and every figure with its tolerance. The parameter sets are files in [tools/findings/sets](../tools/findings/sets): `lab`, one actuator in its
 laboratory, and `core-stage`, one engine with two axes, at hot fire and, with `--thrust 0`, at ambient. *Representative, tuned
 to the published frequencies*; NASA's own values are not public. Each number there says where it comes from.
 
@@ -98,30 +99,19 @@ std::string own_command(const Finding& finding) {
              : fmt::format(" This command runs the test by itself: `{}`", finding.command);
 }
 
-}  // namespace
-
-bool is_tuned(const Finding& finding, const Figure& figure) {
-  return std::ranges::any_of(kPublished, [&](const Published& one) {
-    return one.finding == finding.id && figure.what.starts_with(one.figure) && one.tuned != "no" &&
-           !one.tuned.starts_with("given up");
-  });
+/// "findings/f1-f10.md".
+std::string page_name(std::span<const Row> rows) {
+  return fmt::format("findings/f{}-f{}.md", rows.front().finding->id.substr(1), rows.back().finding->id.substr(1));
 }
 
-std::string figure_text(double value, const std::string& unit) {
-  return unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
-}
-
-std::string picture_name(const Finding& finding) { return fmt::format("{}.svg", finding.id); }
-
-std::string markdown(const std::vector<Row>& rows) {
-  std::string text(kHead);
-  append_published(text, rows);
+/// The figures of some findings, each with its tolerance, and the physics without which it fails.
+std::string figures_page(std::span<const Row> rows) {
+  std::string text = fmt::format(
+      "# Figures of the findings {} to {}\n\nWith this page you can read what each figure came to, what is allowed, and "
+      "without "
+      "which physics the finding\nfails. [findings.md](../findings.md) has the table of all findings.\n",
+      rows.front().finding->id, rows.back().finding->id);
   const auto add = std::back_inserter(text);
-  fmt::format_to(add, "| | finding | shown when | verdict |\n|---|---|---|---|\n");
-  for (const Row& row : rows) {
-    fmt::format_to(add, "| [{}](#f{}) | {} | {} | {} |\n", row.finding->id, row.finding->id.substr(1), row.finding->title,
-                   row.finding->shown, row.outcome.inside() ? "found" : "**not found**");
-  }
   for (const Row& row : rows) {
     fmt::format_to(add,
                    "\n## {}\n\n{}: {}.\n\n`hotfire findings --only {}` prints these figures.{}\n\n"
@@ -140,9 +130,44 @@ std::string markdown(const std::vector<Row>& rows) {
     if (!row.outcome.note.empty()) {
       fmt::format_to(add, "\n{}\n", row.outcome.note);
     }
-    fmt::format_to(add, "\n![{}](pictures/findings/{})\n", row.finding->id, picture_name(*row.finding));
+    fmt::format_to(add, "\n![{}](../pictures/findings/{})\n", row.finding->id, picture_name(*row.finding));
   }
   return text;
+}
+
+}  // namespace
+
+bool is_tuned(const Finding& finding, const Figure& figure) {
+  return std::ranges::any_of(kPublished, [&](const Published& one) {
+    return one.finding == finding.id && figure.what.starts_with(one.figure) && one.tuned != "no" &&
+           !one.tuned.starts_with("given up");
+  });
+}
+
+std::string figure_text(double value, const std::string& unit) {
+  return unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+}
+
+std::string picture_name(const Finding& finding) { return fmt::format("{}.svg", finding.id); }
+
+std::map<std::string, std::string> pages(const std::vector<Row>& rows) {
+  std::map<std::string, std::string> all;
+  std::string overview(kHead);
+  append_published(overview, rows);
+  overview += "| | finding | shown when | verdict |\n|---|---|---|---|\n";
+  const auto add = std::back_inserter(overview);
+  constexpr std::size_t kOnPage = 10;
+  for (std::size_t first = 0; first < rows.size(); first += kOnPage) {
+    const std::span<const Row> some(&rows[first], std::min(kOnPage, rows.size() - first));
+    const std::string name = page_name(some);
+    for (const Row& row : some) {
+      fmt::format_to(add, "| [{}]({}#f{}) | {} | {} | {} |\n", row.finding->id, name, row.finding->id.substr(1),
+                     row.finding->title, row.finding->shown, row.outcome.inside() ? "found" : "**not found**");
+    }
+    all[name] = figures_page(some);
+  }
+  all["findings.md"] = overview;
+  return all;
 }
 
 }  // namespace hotfire::findings

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ struct Row {
   Outcome outcome = {};
 };
 
-/// The page docs/findings.md.
-std::string markdown(const std::vector<Row>& rows);
+/// The pages of the documentation about the findings, by their path in docs/: findings.md with the table of all, and pages
+/// of ten findings each with their figures.
+std::map<std::string, std::string> pages(const std::vector<Row>& rows);
 
 /// Whether a number of the parameter sets was tuned to this figure.
 bool is_tuned(const Finding& finding, const Figure& figure);

@@ -161,18 +161,12 @@ bool is_among(const std::vector<LimitCycle>& cycles, const LimitCycle& cycle) {
 
 }  // namespace
 
-std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const DescribedLoop& anew,
-                                               const std::vector<MarginsAt>& at) {
-  constexpr double kAgrees = 0.02;  // of the loop: 0.17 dB or 1.1 deg, above the accuracy of a balance
-  constexpr double kBeyond = 2.0;   // factor by which a cycle may be beyond the amplitudes that are given
+std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const std::vector<MarginsAt>& at) {
+  constexpr double kBeyond = 2.0;  // factor by which a cycle may be beyond the amplitudes that are given
   std::vector<LimitCycle> cycles;
   for (const auto& [frequency, amplitude] : starts_of(at)) {
     const std::optional<LimitCycle> cycle = refined(loop, frequency, amplitude);
-    if (!cycle || !(cycle->amplitude < kBeyond * at.back().amplitude) || is_among(cycles, *cycle)) {
-      continue;
-    }
-    const std::optional<Complex> again = anew(cycle->frequency, cycle->amplitude);
-    if (again && std::abs(*again + 1.0) < kAgrees) {
+    if (cycle && cycle->amplitude < kBeyond * at.back().amplitude && !is_among(cycles, *cycle)) {
       cycles.push_back(*cycle);
     }
   }

@@ -27,12 +27,10 @@ struct MarginsAt {
 
 /// The limit cycles that describing functions predict: open loop = -1 [Gelb and Vander Velde 1968, ch. 3]. They are looked
 /// for from the margins `at` of every amplitude, in ascending order: from those near 0, and between two amplitudes of which
-/// a gain margin passes it. Newton's method refines them with `loop`, which may start each answer from the one before, and
-/// those that `anew`, the loop from a start of its own, has not are none: a balance can follow another motion than the axis.
+/// a gain margin passes it. Newton's method refines them.
 /// Stable if a disturbance s = sigma + i omega that a change of amplitude causes decays for a larger amplitude:
 /// Im(dL/da / (dL/domega)) < 0 (Loeb's criterion).
-std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const DescribedLoop& anew,
-                                               const std::vector<MarginsAt>& at);
+std::vector<LimitCycle> predicted_limit_cycles(const DescribedLoop& loop, const std::vector<MarginsAt>& at);
 
 /// What becomes of a closed loop in time.
 enum class Outcome { decays, oscillates, grows, unsettled };

@@ -133,28 +133,6 @@ std::optional<Complex> VehicleLoop::described(double frequency, double amplitude
       nearest = &own;
     }
   }
-  std::optional<Known> found = balanced(frequency, amplitude, nearest == nullptr ? nullptr : &nearest->balance);
-  if (!found && nearest != nullptr) {
-    found = balanced(frequency, amplitude, nullptr);
-  }
-  if (!found) {
-    return {};
-  }
-  const Complex loop = found->loop;
-  known_.push_back(std::move(*found));
-  constexpr std::size_t kWithSlopes = 40;  // 9 MB each for eight axes
-  if (known_.size() > kWithSlopes) {
-    known_[known_.size() - 1 - kWithSlopes].balance.slopes.reset();
-  }
-  return loop;
-}
-
-std::optional<Complex> VehicleLoop::described_anew(double frequency, double amplitude) {
-  const std::optional<Known> found = balanced(frequency, amplitude, nullptr);
-  return found ? std::optional(found->loop) : std::nullopt;
-}
-
-std::optional<VehicleLoop::Known> VehicleLoop::balanced(double frequency, double amplitude, const linear::Balance* near) {
   if (!balance_) {
     balance_ = std::make_unique<linear::HarmonicBalance>(plant_);
   }
@@ -163,7 +141,11 @@ std::optional<VehicleLoop::Known> VehicleLoop::balanced(double frequency, double
   std::vector<Complex> commands;
   std::transform(commanded_.begin(), commanded_.end(), std::back_inserter(commands),
                  [&](double own) { return own * acting; });
-  std::optional<linear::Balance> found = balance_->solve(frequency, commands, near);
+  std::optional<linear::Balance> found =
+      balance_->solve(frequency, commands, nearest == nullptr ? nullptr : &nearest->balance);
+  if (!found && nearest != nullptr) {
+    found = balance_->solve(frequency, commands);
+  }
   if (!found) {
     return {};
   }
@@ -173,7 +155,12 @@ std::optional<VehicleLoop::Known> VehicleLoop::balanced(double frequency, double
   }
   const VectorXcd read = stage_.response(frequency) * angles;
   const Complex loop = controller_.response(frequency, read(0), read(1));
-  return Known{frequency, amplitude, loop, std::move(*found)};
+  known_.push_back({frequency, amplitude, loop, std::move(*found)});
+  constexpr std::size_t kWithSlopes = 12;  // 12 MB each for eight axes, four times as much where a motion is not symmetric
+  if (known_.size() > kWithSlopes) {
+    known_[known_.size() - 1 - kWithSlopes].balance.slopes.reset();
+  }
+  return loop;
 }
 
 }  // namespace hotfire::loop

@@ -32,9 +32,6 @@ class VehicleLoop {
   /// What was computed before is remembered, and the search starts from the nearest of it.
   std::optional<Complex> described(double frequency, double amplitude);
 
-  /// The same from rest, whatever was computed before.
-  std::optional<Complex> described_anew(double frequency, double amplitude);
-
  private:
   struct Known {
     double frequency;
@@ -42,8 +39,6 @@ class VehicleLoop {
     Complex loop;
     linear::Balance balance;
   };
-
-  std::optional<Known> balanced(double frequency, double amplitude, const linear::Balance* near);
 
   const linear::Plant& plant_;
   const Stage& stage_;

@@ -99,9 +99,7 @@ loop::LoopResult result_of(const LoopOptions& options, const Parts& parts) {
     add(trials::radians(amplitude), kAccuracy,
         [&](double frequency) { return loop.described(frequency, trials::radians(amplitude)); });
   }
-  result.predicted =
-      loop::predicted_limit_cycles([&](double f, double a) { return loop.described(f, a); },
-                                   [&](double f, double a) { return loop.described_anew(f, a); }, result.margins);
+  result.predicted = loop::predicted_limit_cycles([&](double f, double a) { return loop.described(f, a); }, result.margins);
   constexpr double kFloor = 1e-6;  // rad of command: a fiftieth of what a potentiometer of an actuator tells apart
   for (const double attitude : options.attitudes) {
     const auto record =

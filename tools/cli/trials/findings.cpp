@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +13,7 @@
 #include "tools/cli/shared/progress.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
+#include "tools/files/text/whole_file.hpp"
 #include "tools/findings/document.hpp"
 #include "tools/trials/pictures.hpp"
 
@@ -22,7 +25,7 @@ struct FindingsOptions {
   std::string sets = HOTFIRE_SETS;
   std::vector<std::string> only;
   std::string pictures;
-  bool markdown = false;
+  std::string pages;
   bool json = false;
   bool mutants = false;
 };
@@ -120,6 +123,15 @@ bool run_mutants(const FindingsOptions& options, const findings::Bench& bench) {
   return all_fail;
 }
 
+void write_pages(const std::map<std::string, std::string>& pages, const std::filesystem::path& folder) {
+  for (const auto& [name, text] : pages) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    WholeFile file(folder / name);
+    file.write(text);
+    file.commit();
+  }
+}
+
 void run_findings(const FindingsOptions& options) {
   const findings::Bench bench = findings::load_bench(options.sets);
   if (options.mutants) {
@@ -144,9 +156,10 @@ void run_findings(const FindingsOptions& options) {
                             std::filesystem::path(options.pictures) / findings::picture_name(*finding));
     }
   }
-  if (options.markdown) {
-    std::cout << findings::markdown(rows);
-  } else if (options.json) {
+  if (!options.pages.empty()) {
+    write_pages(findings::pages(rows), options.pages);
+  }
+  if (options.json) {
     std::cout << to_json(rows).dump(2) << '\n';
   } else {
     print(rows);
@@ -165,12 +178,14 @@ void add_findings(CLI::App& program) {
   command->add_option("--sets", options->sets, "folder with lab.toml and core-stage.toml; default: the shipped ones");
   command->add_option("--only", options->only, "only these findings, as in F1,F9")->delimiter(',');
   command->add_option("--pictures", options->pictures, "folder for a picture of each finding (.svg)");
-  command->add_flag("--markdown", options->markdown, "print the page docs/findings.md");
-  command->add_flag("--json", options->json, "print the result as JSON")->excludes("--markdown");
+  command->add_option("--pages", options->pages, "folder for the pages findings.md and findings/ (Markdown)")
+      ->type_name("FOLDER")
+      ->excludes("--only");
+  command->add_flag("--json", options->json, "print the result as JSON");
   command
       ->add_flag("--mutants", options->mutants,
                  "remove the physics of each finding from the model: every one of these runs must fail")
-      ->excludes("--markdown")
+      ->excludes("--pages")
       ->excludes("--pictures");
   command->footer(
       "Example: hotfire findings --only F1,F2 --pictures pictures\nExit status: 1 if a figure is outside its tolerance, or "
