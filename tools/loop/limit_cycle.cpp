@@ -101,7 +101,7 @@ double half_range(std::span<const double> samples) {
   return 0.5 * (*most - *least);
 }
 
-/// A frequency [Hz] and an amplitude [rad] where a cycle is looked for.
+/// A frequency [Hz] and an amplitude [rad] where the search for a cycle starts.
 struct Start {
   double frequency = 0.0;
   double amplitude = 0.0;
@@ -122,7 +122,7 @@ void add_crossings(const MarginsAt& smaller, const MarginsAt& larger, std::vecto
   }
 }
 
-/// Margins from which a cycle is looked for: those near 0, and those that pass it.
+/// Margins where the search for a cycle starts: those near 0, and those that pass it.
 std::vector<Start> starts_of(const std::vector<MarginsAt>& at) {
   constexpr double kNearDecibels = 3.0;
   constexpr double kNearDegrees = 20.0;
