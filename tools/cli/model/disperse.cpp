@@ -164,7 +164,7 @@ void add_disperse(CLI::App& program, const disperse::CommandRunner& run) {
       "pitch\n"
       "         mpirun -n 8 hotfire-disperse-mpi --model taos.toml --out spread -- sweep --axis pitch --coarse --profile "
       "sines\n"
-      "The number of the draw replaces {draw} in a word of the command.\n"
+      "The number of the draw replaces {draw} in an argument of the command.\n"
       "Exit status: 1 if the command failed for some draws; the table says which.");
   command->callback([options, &program, run] {
     require_command(program, options->plan.command.front());

@@ -13,7 +13,7 @@ function stateOf(answer, program) {
     case "absent": return ["WAITING", "", `no program shows itself at ${answer.file} yet`];
     case "refused": return ["REFUSED", "bad", answer.why];
     case "silent": return ["NO CYCLES", "bad", "the program is there and shows no cycle"];
-    case "died": return ["PROGRAM GONE", "bad", "it has ended without a word: killed, or failed"];
+    case "died": return ["PROGRAM GONE", "bad", "it has ended without a message: killed, or failed"];
     case "ended": return ["ENDED", "", [answer.why, faultText].filter(Boolean).join(" · ")];
     default:
       return answer.interlock ? [answer.interlock.state.toUpperCase(), INTERLOCK[answer.interlock.state] ?? "", faultText]
