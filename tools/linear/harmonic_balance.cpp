@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tools/linear/periodic_motion.hpp"
 
@@ -29,9 +30,11 @@ class Search {
     start(near);
     for (const bool symmetric : {true, false}) {
       choose_unknowns(symmetric);
-      if (iterate() && unchosen() < HarmonicBalance::kBalanced) {
-        Balance balance = waves_.balance(all_);
-        balance.residual = rest_.lpNorm<Eigen::Infinity>();
+      iterate();
+      all_ = all_of(x_);
+      Balance balance = waves_.balance(all_);
+      found_ = waves_.signals_of(balance.ports);
+      if (size() < HarmonicBalance::kBalanced && unchosen() < HarmonicBalance::kBalanced) {
         if (inverse_.rows() == x_.size()) {
           balance.slopes = std::make_shared<const SearchSlopes>(SearchSlopes{parts_, scale_, unknowns_, inverse_});
         }
@@ -138,8 +141,7 @@ class Search {
 
   void differentiate() { inverse_ = waves_.slopes(all_of(x_), unknowns_, scale_).partialPivLu().inverse(); }
 
-  /// True if it arrives.
-  bool iterate() {
+  void iterate() {
     constexpr int kMatrices = 12;
     for (int matrix = 0; matrix < kMatrices && size() > kDone; ++matrix) {
       const bool own = inverse_.rows() != x_.size();
@@ -153,7 +155,6 @@ class Search {
         inverse_.resize(0, 0);
       }
     }
-    return arrived();
   }
 
   /// Steps with one matrix while they help. False if not even the first does.
@@ -192,11 +193,6 @@ class Search {
       }
     }
     return true;
-  }
-
-  bool arrived() {
-    evaluate(x_);
-    return size() < HarmonicBalance::kBalanced;
   }
 
   /// What the laws give for the unknowns, as parts of them.
@@ -244,6 +240,8 @@ std::optional<Balance> HarmonicBalance::solve(double frequency, const std::vecto
   }
   return find(harmonics, few ? &*few : near);
 }
+
+Complex delay_factor(double frequency, double delay) { return std::polar(1.0, -2.0 * std::numbers::pi * frequency * delay); }
 
 Complex hold_factor(double frequency, double period, double step) {
   const int steps = static_cast<int>(std::lround(period / step));

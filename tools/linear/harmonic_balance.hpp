@@ -30,7 +30,6 @@ struct Balance {
   std::vector<AxisWaves> axes;    ///< deviations from rest
   std::vector<PortWaves> ports;   ///< what the nonlinear laws put in
   std::vector<Complex> outputs;   ///< fundamentals, in the order of the map
-  double residual = 0.0;          ///< largest disagreement of a port, relative to its signal
   std::shared_ptr<const SearchSlopes> slopes;
 };
 
@@ -63,6 +62,9 @@ class HarmonicBalance {
   LinearParts parts_;
   Eigen::MatrixXd at_rest_;
 };
+
+/// What a delay [s] makes of a sine of `frequency` [Hz].
+Complex delay_factor(double frequency, double delay);
 
 /// What a command held over `period`, in steps of `step`, has of a sine's fundamental at the middle of a step: the hold's
 /// lag.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 
 namespace hotfire::linear {
 
@@ -41,8 +40,6 @@ Complex late(const Plant& plant, const Quantity& signal, double frequency) {
 }
 
 }  // namespace
-
-Complex delay_factor(double frequency, double delay) { return std::polar(1.0, -2.0 * std::numbers::pi * frequency * delay); }
 
 PeriodicMotion::PeriodicMotion(const HarmonicBalance& system, double frequency, int harmonics,
                                const std::vector<Complex>& commands)

@@ -54,7 +54,4 @@ class PeriodicMotion {
   std::vector<Eigen::VectorXcd> acting_{};  ///< commands behind the effects of their site, one a harmonic
 };
 
-/// What a delay [s] makes of a sine of `frequency` [Hz].
-Complex delay_factor(double frequency, double delay);
-
 }  // namespace hotfire::linear

@@ -137,7 +137,7 @@ std::optional<Complex> VehicleLoop::described(double frequency, double amplitude
     balance_ = std::make_unique<linear::HarmonicBalance>(plant_);
   }
   const Complex acting = amplitude * linear::hold_factor(frequency, controller_.period, step_) *
-                         std::polar(1.0, -kTurn * frequency * controller_.delay);
+                         linear::delay_factor(frequency, controller_.delay);
   std::vector<Complex> commands;
   std::transform(commanded_.begin(), commanded_.end(), std::back_inserter(commands),
                  [&](double own) { return own * acting; });

@@ -40,7 +40,7 @@ set(pages README.md CONTRIBUTING.md CHANGELOG.md examples/README.md)
 file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/docs/*.md)
 list(APPEND pages ${found})
 # Pages that a program writes.
-list(REMOVE_ITEM pages docs/findings.md docs/findings/f1-f10.md docs/findings/f11-f20.md docs/performance.md)
+list(FILTER pages EXCLUDE REGEX "^docs/(findings/.*|findings|performance)\\.md$")
 
 function(fault file number word instead line)
   string(STRIP "${line}" line)

@@ -12,23 +12,22 @@ namespace {
 class LabOnWireGroup : public Utest, public test_lab::LabOnWire {
  public:
   LabOnWireGroup() : LabOnWire(test_lab::settings()) {}
+
+  /// No command leaves before the operator has acknowledged and armed.
+  void expect_no_command_until_armed(std::uint64_t sent) {
+    plant.rearm();
+    cycles(10);
+    UNSIGNED_LONGS_EQUAL(sent, commands);
+    press();
+    UNSIGNED_LONGS_EQUAL(sent, commands);
+    press();
+    CHECK(commands > sent);
+  }
 };
 
 }  // namespace
 
-TEST_GROUP_BASE(LabRig, LabOnWireGroup){
-    /// The emergency stop is released: no command leaves before the operator has acknowledged and armed.
-    void expect_no_command_until_armed(std::uint64_t sent){plant.rearm();
-drive(kEmergencyStopReleased, true);
-cycles(10);
-UNSIGNED_LONGS_EQUAL(sent, commands);
-press();
-UNSIGNED_LONGS_EQUAL(sent, commands);
-press();
-CHECK(commands > sent);
-}  // namespace hotfire::firmware
-}
-;
+TEST_GROUP_BASE(LabRig, LabOnWireGroup){};
 
 TEST(LabRig, LinesFollowTheInterlockAndNoCommandIsSentUntilArmed) {
   cycles(5);
@@ -83,6 +82,7 @@ TEST(LabRig, CommandThatIsStillBeforeTheBusAtAFaultNeverLeaves) {
   const std::uint64_t sent = commands;
   cycles(3);
   wire.release();
+  drive(kEmergencyStopReleased, true);
   expect_no_command_until_armed(sent);
 }
 
@@ -94,6 +94,7 @@ TEST(LabRig, EmergencyStopWhileTheBusIsDownAndBothReleasedLetsNoCommandOutUntilA
   const std::uint64_t sent = commands;
   cycles(5);
   wire.set_down(false);
+  drive(kEmergencyStopReleased, true);
   expect_no_command_until_armed(sent);
 }
 
@@ -233,13 +234,7 @@ TEST(LabRig, TakeBackThatTheKernelRefusesIsAFaultThatIsHeldUntilItIsGranted) {
   // Asked again within a tenth of a second.
   cycles(100);
   wire.release();
-  plant.rearm();
-  cycles(10);
-  UNSIGNED_LONGS_EQUAL(sent, commands);
-  press();
-  UNSIGNED_LONGS_EQUAL(sent, commands);
-  press();
-  CHECK(commands > sent);
+  expect_no_command_until_armed(sent);
 }
 
 TEST(LabRig, EndOfTheProgramWaitsASecondForACommandThatTheKernelKeeps) {
