@@ -38,9 +38,14 @@ const auto& term_of(const explain::Fitted& fitted) {
   return std::get<typename E::template Params<double>>(std::get<SimplexParameters>(fitted.base).effects.values);
 }
 
-std::vector<Screened> proposed_for(const ModelFile& truth, explain::Fitted around) {
+/// Proposals at every likely place, or, where `site` is named, at its place alone: the regression takes seconds a place.
+std::vector<Screened> proposed_for(const ModelFile& truth, explain::Fitted around, const std::string& site = "") {
   const explain::Dataset data = data_of(truth);
-  const explain::Located located = explain::locate(data, about_declared(), 2);
+  explain::Located located = explain::locate(data, about_declared(), 2);
+  if (!site.empty()) {
+    std::erase_if(located.places, [&](const explain::Place& place) { return !place.has(site); });
+    CHECK(!located.places.empty() && located.places.front().is_likely);
+  }
   const explain::Scales scales;
   return explain::propose_terms(data, around, located, scales, 2, {});
 }
@@ -96,7 +101,7 @@ TEST(TermProposals, AMemoryOfAProductIsFoundWhereTheSmoothedSignalHidesIt) {
                                         term.gain = 5e-11;
                                         term.time = 0.455;
                                       }),
-                                      about_declared());
+                                      about_declared(), "flow");
   const auto right = std::ranges::find_if(proposals, [](const auto& proposal) {
     const auto& term = term_of<FlowTerm>(proposal.fitted);
     const auto kind = static_cast<Memory>(term.option);
@@ -117,7 +122,7 @@ TEST(TermProposals, ASiteThatHasATermGetsNoSecondOne) {
       explain::set_active(around.base, index, true);
     }
   });
-  for (const auto& proposal : proposed_for(with_product(), around)) {
+  for (const auto& proposal : proposed_for(with_product(), around, "flow")) {
     CHECK(proposal.candidate.name != FlowTerm::name);
   }
 }

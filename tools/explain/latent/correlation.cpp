@@ -22,18 +22,23 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
   for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kSampled) {
     sample.push_back(x[i]);
   }
-  std::ranges::sort(sample);
-  const double low = quantile(sample, 0.01);
-  const double high = quantile(sample, 0.99);
+  const auto at = [&](double share) {
+    const auto place = sample.begin() + static_cast<std::ptrdiff_t>(quantile_place(sample.size(), share));
+    std::ranges::nth_element(sample, place);
+    return *place;
+  };
+  const double low = at(0.01);
+  const double high = at(0.99);
   if (!(high > low)) {
     return 0.0;
   }
+  const double bins_per_unit = static_cast<double>(kBins) / (high - low);
   std::array<double, kBins> sum{};
   std::array<double, kBins> count{};
   double whole = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double place = std::clamp((x[i] - low) / (high - low), 0.0, 1.0);
-    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(place * static_cast<double>(kBins)));
+    const double place = std::clamp((x[i] - low) * bins_per_unit, 0.0, static_cast<double>(kBins));
+    const auto bin = std::min(kBins - 1, static_cast<std::size_t>(place));
     sum[bin] += signal[i];
     count[bin] += 1.0;
     whole += signal[i] * signal[i];

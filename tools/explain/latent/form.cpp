@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tools/explain/words/conclusions.hpp"
 
@@ -25,6 +26,18 @@ void add_hats(const std::vector<double>& points, double value, Row&& row) {
     const double share = (value - *(above - 1)) / (*above - *(above - 1));
     row(k - 1) = 1.0 - share;
     row(k) = share;
+  }
+}
+
+/// Output of a memory by row. A search runs thousands of them over all rows: of a kind that the compiler knows, with all
+/// that it calls in one function, the constants of the run leave the loop.
+template <model::Memory kKind>
+[[gnu::flatten]] void run_memory(model::MemoryParameters<double> memory, const Eigen::VectorXd& argument, double period,
+                                 Eigen::VectorXd& output) {
+  model::MemoryState<double> state;
+  memory.kind = kKind;
+  for (Eigen::Index row = 0; row < argument.size(); ++row) {
+    output(row) = state.step(memory, argument(row), period);
   }
 }
 
@@ -75,13 +88,21 @@ Eigen::VectorXd argument_of(const Form& form, const Eigen::MatrixXd& quantities)
 }
 
 Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& argument, double period) {
-  model::MemoryState<double> state;
   Eigen::VectorXd output(argument.size());
-  for (Eigen::Index row = 0; row < argument.size(); ++row) {
-    output(row) = form.is_stops()
-                      ? state.stop(form.points, static_cast<int>(form.points.size()), argument(row))[form.points.size() - 1]
-                      : state.step(form.memory, argument(row), period);
+  if (form.is_stops()) {
+    model::MemoryState<double> state;
+    for (Eigen::Index row = 0; row < argument.size(); ++row) {
+      output(row) = state.stop(form.points, static_cast<int>(form.points.size()), argument(row))[form.points.size() - 1];
+    }
+    return output;
   }
+  [&]<std::size_t... kKinds>(std::index_sequence<kKinds...>) {
+    ((static_cast<std::size_t>(form.memory.kind) == kKinds
+          ? run_memory<static_cast<model::Memory>(kKinds)>(form.memory, argument, period, output)
+          : void()),
+     ...);
+  }
+  (std::make_index_sequence<model::kMemoryNames.size()>());
   return output;
 }
 

@@ -37,26 +37,35 @@ constexpr double kDelayStep = 0.085;
 /// Widths of stop operators, over the 99th percentile of the argument.
 constexpr std::array kStopWidths{0.05, 0.15, 0.35, 0.7};
 
-/// Sorted values of what a form is a law of, or of its memory's output.
-std::vector<double> sorted_values(const FormRegression& regression, const Form& form, bool of_output) {
+/// Sorted values of what a form is a law of.
+std::vector<double> sorted_values(const FormRegression& regression, const Form& form) {
   std::vector<double> values;
-  for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
-    Eigen::VectorXd own = argument_of(form, regression.quantities()[e]);
-    if (of_output) {
-      own = remembered(form, own, regression.problem().data.experiments[e].period);
-    }
+  for (const Eigen::MatrixXd& quantities : regression.quantities()) {
+    const Eigen::VectorXd own = argument_of(form, quantities);
     values.insert(values.end(), own.begin(), own.end());
   }
   std::ranges::sort(values);
   return values;
 }
 
+/// The 99th percentile of sizes.
+double most_of(std::vector<double> sizes) {
+  if (sizes.empty()) {
+    return 0.0;
+  }
+  const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(quantile_place(sizes.size(), 0.99));
+  std::ranges::nth_element(sizes, place);
+  return *place;
+}
+
 /// The 99th percentile of the size of an argument: what its widths, quanta and pitches are measured by.
 double size_of(const FormRegression& regression, const Form& form) {
-  std::vector<double> values = sorted_values(regression, form, false);
-  std::ranges::transform(values, values.begin(), [](double x) { return std::abs(x); });
-  std::ranges::sort(values);
-  return quantile(values, 0.99);
+  std::vector<double> sizes;
+  for (const Eigen::MatrixXd& quantities : regression.quantities()) {
+    const Eigen::VectorXd own = argument_of(form, quantities).cwiseAbs();
+    sizes.insert(sizes.end(), own.begin(), own.end());
+  }
+  return most_of(std::move(sizes));
 }
 
 /// The 99th percentile of how fast an argument changes [1/s].
@@ -69,8 +78,7 @@ double rate_of(const FormRegression& regression, const Form& form) {
       rates.push_back(std::abs(own(row) - own(row - 1)) / period);
     }
   }
-  std::ranges::sort(rates);
-  return rates.empty() ? 0.0 : quantile(rates, 0.99);
+  return most_of(std::move(rates));
 }
 
 std::vector<double> comb(double low, double high, int count) {
@@ -255,7 +263,7 @@ std::optional<Form> with_curve(const FormRegression& regression, Form form, bool
     return std::nullopt;
   }
   form.curve_first = curve_first;
-  form.points = curve_first && form.memory.kind != Memory::none ? spread_points(sorted_values(regression, form, false))
+  form.points = curve_first && form.memory.kind != Memory::none ? spread_points(sorted_values(regression, form))
                                                                 : followed_points(regression, form);
   return form.points.size() >= 3 ? std::optional(std::move(form)) : std::nullopt;
 }

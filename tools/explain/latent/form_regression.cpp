@@ -11,42 +11,77 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Regressors that run along the flow together: their states stay in the processor's first cache.
+/// Regressors that run along the flow together: their states stay in the processor's registers and first cache.
 constexpr Eigen::Index kBatch = 24;
+static_assert(static_cast<Eigen::Index>(model::kUnlistedPoints) + 1 <= kBatch, "a form fits into a batch");
 
-/// Normal equations of one form's regressors, with the declared parameters and what is left.
-struct Normal {
-  Eigen::MatrixXd own;
-  Eigen::MatrixXd cross;  ///< a row a regressor, a column a parameter of the problem
-  Eigen::VectorXd right;
+/// Rows that are multiplied together: enough for a matrix product, few enough for the first cache.
+constexpr Eigen::Index kRows = 64;
+
+/// Sums over rows of products of regressors among themselves, and with the parameters of an experiment and what is left. A
+/// matrix product of many rows takes a fraction of the time of as many outer products.
+class Products {
+ public:
+  Products(Eigen::Index columns, Eigen::Index parameters)
+      : own(Eigen::MatrixXd::Zero(columns, columns)),
+        cross(Eigen::MatrixXd::Zero(columns, parameters + 1)),
+        regressors_(columns, kRows),
+        others_(parameters + 1, kRows) {}
+
+  /// One row: the readings of the regressors, the slopes of the parameters and what is left.
+  template <class Readings, class Slopes>
+  void add(const Readings& readings, const Slopes& slopes, double left) {
+    regressors_.col(rows_) = readings.transpose();
+    others_.col(rows_) << slopes, left;
+    if (++rows_ == kRows) {
+      flush();
+    }
+  }
+
+  /// Adds the rows that wait.
+  void flush() {
+    const auto regressors = regressors_.leftCols(rows_);
+    own.noalias() += regressors * regressors.transpose();
+    cross.noalias() += regressors * others_.leftCols(rows_).transpose();
+    rows_ = 0;
+  }
+
+  Eigen::MatrixXd own;    ///< a row and a column a regressor
+  Eigen::MatrixXd cross;  ///< a row a regressor; a column a parameter, then what is left
+
+ private:
+  Eigen::MatrixXd regressors_;
+  Eigen::MatrixXd others_;
+  Eigen::Index rows_ = 0;
 };
 
-/// Every form's regressors by experiment, side by side, each over its largest value: its coefficient is then what it adds
-/// there over the port's scale.
+/// Every form's regressors by experiment, a row each and a column a row of the record, each over its largest value: its
+/// coefficient is then what it adds there over the port's scale.
 struct Regressors {
-  std::vector<Eigen::MatrixXd> added;
+  std::vector<Eigen::Matrix<double, kBatch, Eigen::Dynamic>> added;
   Eigen::VectorXd largest;
 };
 
 Regressors scaled_regressors(std::span<const Form> forms, const std::vector<Eigen::MatrixXd>& quantities,
-                             const Dataset& data, Eigen::Index columns) {
-  Regressors all{{}, Eigen::VectorXd::Zero(columns)};
+                             const Dataset& data) {
+  Regressors all{{}, Eigen::VectorXd::Zero(kBatch)};
   for (std::size_t e = 0; e < quantities.size(); ++e) {
-    Eigen::MatrixXd& added = all.added.emplace_back(quantities[e].rows(), columns);
+    auto& added = all.added.emplace_back(decltype(all.added)::value_type::Zero(kBatch, quantities[e].rows()));
     Eigen::Index first = 0;
     for (const Form& form : forms) {
-      added.middleCols(first, form.size()) = regressors(form, quantities[e], data.experiments[e].period);
+      added.middleRows(first, form.size()) = regressors(form, quantities[e], data.experiments[e].period).transpose();
       first += form.size();
     }
-    if (added.rows() > 0) {
-      all.largest = all.largest.cwiseMax(added.cwiseAbs().colwise().maxCoeff().transpose());
+    if (added.cols() > 0) {
+      all.largest = all.largest.cwiseMax(added.cwiseAbs().rowwise().maxCoeff());
     }
   }
   for (double& size : all.largest) {
     size = size > 0.0 && std::isfinite(size) ? size : 1.0;
   }
-  for (Eigen::MatrixXd& added : all.added) {
-    added.array().rowwise() /= all.largest.transpose().array();
+  const Eigen::Matrix<double, kBatch, 1> scale = all.largest.cwiseInverse();
+  for (auto& added : all.added) {
+    added.array().colwise() *= scale.array();
   }
   return all;
 }
@@ -124,67 +159,57 @@ double FormRegression::to_port(const Form& form) const {
 
 void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore> scores) const {
   const Eigen::Index parameters = problem_.expected.size();
-  std::vector<Normal> normals;
   std::vector<Eigen::Index> first;
   Eigen::Index columns = 0;
   for (const Form& form : forms) {
-    const Eigen::Index size = form.size();
-    normals.push_back(
-        {Eigen::MatrixXd::Zero(size, size), Eigen::MatrixXd::Zero(size, parameters), Eigen::VectorXd::Zero(size)});
     first.push_back(columns);
-    columns += size;
+    columns += form.size();
   }
-  const auto [added, largest] = scaled_regressors(forms, quantities_, problem_.data, columns);
-  Eigen::Matrix<double, kFlowStates, Eigen::Dynamic> state(kFlowStates, columns);
-  Eigen::Matrix<double, kFlowStates, Eigen::Dynamic> next(kFlowStates, columns);
-  Eigen::RowVectorXd reading(columns);
+  const auto [added, largest] = scaled_regressors(forms, quantities_, problem_.data);
+  // Columns beyond those of the forms are zero: of a fixed size, the flow takes a fraction of the time.
+  using States = Eigen::Matrix<double, kFlowStates, kBatch, Eigen::RowMajor>;
+  using Row = Eigen::Matrix<double, 1, kBatch>;
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns, columns);
+  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(columns, parameters);
+  Eigen::VectorXd own_right = Eigen::VectorXd::Zero(columns);
   for (std::size_t e = 0; e < quantities_.size(); ++e) {
-    state.setZero();
+    States state = States::Zero();
     const Eigen::MatrixXd& left = problem_.left[e];
-    Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(columns, static_cast<Eigen::Index>(problem_.own[e].size()));
+    const auto of_record = static_cast<Eigen::Index>(problem_.own[e].size());
+    Products products(columns, of_record);
     for (Eigen::Index row = 0; row < left.rows(); ++row) {
       for (Eigen::Index c = 0; c < left.cols(); ++c) {
-        if (std::isnan(left(row, c))) {
-          continue;
-        }
         const auto channel = static_cast<std::size_t>(c);
-        const double noise = problem_.data.experiments[e].noise[channel];
-        if (place_.port) {
-          reading = state.row(kReadState[channel]) * (problem_.scales.state(kReadState[channel]) / noise);
-        } else if (place_.channel == channel) {
-          reading = added[e].row(row) * (problem_.scales.reading[channel] / noise);
-        } else {
+        if (std::isnan(left(row, c)) || (!place_.port && place_.channel != channel)) {
           continue;
         }
-        const auto slopes = problem_.sensitivity[e][channel].col(row);
-        for (std::size_t f = 0; f < forms.size(); ++f) {
-          const auto own = reading.segment(first[f], forms[f].size()).transpose();
-          normals[f].own.noalias() += own * own.transpose();
-          normals[f].right.noalias() += own * left(row, c);
-        }
-        cross.noalias() += reading.transpose() * slopes.transpose();
+        const double noise = problem_.data.experiments[e].noise[channel];
+        const Row reading = place_.port
+                                ? Row(state.row(kReadState[channel]) * (problem_.scales.state(kReadState[channel]) / noise))
+                                : Row(added[e].col(row).transpose() * (problem_.scales.reading[channel] / noise));
+        products.add(reading.leftCols(columns), problem_.sensitivity[e][channel].col(row), left(row, c));
       }
       if (place_.port && row + 1 < left.rows()) {
         const RowFlow& flow = problem_.flows[e].rows[static_cast<std::size_t>(row)];
-        next.noalias() = flow.transition * state;
-        next.noalias() +=
-            flow.response.col(static_cast<int>(*place_.port)) * (0.5 * (added[e].row(row) + added[e].row(row + 1)));
-        state.swap(next);
+        const Row input = 0.5 * (added[e].col(row) + added[e].col(row + 1)).transpose();
+        const States next = flow.transition.lazyProduct(state);
+        state = next + flow.response.col(static_cast<int>(*place_.port)).lazyProduct(input);
       }
     }
-    for (std::size_t f = 0; f < forms.size(); ++f) {
-      normals[f].cross(Eigen::all, problem_.own[e]) += cross.middleRows(first[f], forms[f].size());
-    }
+    products.flush();
+    own += products.own;
+    own_right += products.cross.rightCols(1);
+    cross(Eigen::all, problem_.own[e]) += products.cross.leftCols(of_record);
   }
   for (std::size_t f = 0; f < forms.size(); ++f) {
     const Eigen::Index size = forms[f].size();
     Eigen::MatrixXd whole(size + parameters, size + parameters);
-    whole.topLeftCorner(size, size) = normals[f].own + Eigen::MatrixXd::Identity(size, size);
-    whole.topRightCorner(size, parameters) = normals[f].cross;
-    whole.bottomLeftCorner(parameters, size) = normals[f].cross.transpose();
+    whole.topLeftCorner(size, size) = own.block(first[f], first[f], size, size) + Eigen::MatrixXd::Identity(size, size);
+    whole.topRightCorner(size, parameters) = cross.middleRows(first[f], size);
+    whole.bottomLeftCorner(parameters, size) = cross.middleRows(first[f], size).transpose();
     whole.bottomRightCorner(parameters, parameters) = nuisance_;
     Eigen::VectorXd right(size + parameters);
-    right << normals[f].right, nuisance_right_;
+    right << own_right.segment(first[f], size), nuisance_right_;
     const Eigen::LDLT<Eigen::MatrixXd> factor(whole);
     const Eigen::VectorXd solution = factor.solve(right);
     scores[f].left = std::max(1e-12, (square_ - right.dot(solution)) / count_);
