@@ -27,11 +27,15 @@ constexpr int kTiming = static_cast<int>(ExitStatus::timing);
 /// One period that was run.
 struct Trial {
   long overruns = 0;
+  bool is_good = false;                 ///< the program's verdict: no overrun, and the limits that are given hold
+  std::string verdict{};                ///< in words
   std::map<std::string, long> blame{};  ///< cycles that each phase made late
   double latest_us = 0.0;
   double median_step_us = 0.0;
   double longest_step_us = 0.0;
   bool real_time = false;
+
+  bool holds() const { return overruns == 0 && is_good; }
 };
 
 std::string blamed(const Trial& trial) {
@@ -57,6 +61,8 @@ Trial run_at(const PeriodSearch& search, int period_us) {
   const auto report = nlohmann::json::parse(output.text).at("hotfire");
   Trial trial;
   trial.overruns = report.at("overruns").get<long>();
+  trial.is_good = output.status == 0;
+  trial.verdict = report.at("reason").get<std::string>();
   for (const auto& [phase, count] : report.at("blame").items()) {
     trial.blame[phase] = count.get<long>();
   }
@@ -70,6 +76,8 @@ Trial run_at(const PeriodSearch& search, int period_us) {
 nlohmann::json json_of(int period_us, const Trial& trial) {
   return {{"period_us", period_us},
           {"overruns", trial.overruns},
+          {"held", trial.holds()},
+          {"reason", trial.verdict},
           {"blame", trial.blame},
           {"latest_wake_up_us", trial.latest_us},
           {"median_step_us", trial.median_step_us},
@@ -83,12 +91,13 @@ int find_shortest_period(const PeriodSearch& search) {
   const auto holds = [&](int period_us) {
     const Trial& trial = trials[period_us] = run_at(search, period_us);
     if (!search.json) {
-      fmt::print("{:6} us: {} overruns{}; wake-up {:.1f} us at the latest, step {:.1f} us (median), {:.1f} us (longest)\n",
+      fmt::print("{:6} us: {} overruns{}; wake-up {:.1f} us at the latest, step {:.1f} us (median), {:.1f} us (longest){}\n",
                  period_us, trial.overruns, trial.overruns > 0 ? " (" + blamed(trial) + ")" : "", trial.latest_us,
-                 trial.median_step_us, trial.longest_step_us);
+                 trial.median_step_us, trial.longest_step_us,
+                 trial.overruns == 0 && !trial.is_good ? "; beyond a limit" : "");
       std::fflush(stdout);
     }
-    return trial.overruns == 0;
+    return trial.holds();
   };
   // Bisection over the logarithm: a period that holds, and a shorter one that does not.
   int good = kLongest;
@@ -119,12 +128,18 @@ int find_shortest_period(const PeriodSearch& search) {
     return good > 0 ? 0 : kTiming;
   }
   if (good == 0) {
-    fmt::print("no period up to {} us is without an overrun in {:g} s\n", kLongest, search.seconds);
+    fmt::print("no period up to {} us is without an overrun in {:g} s{}\n", kLongest, search.seconds,
+               trials.at(kLongest).overruns > 0 ? "" : " and within the limits: " + trials.at(kLongest).verdict);
     return kTiming;
   }
   fmt::print("shortest period without an overrun in {:g} s: {} us\n", search.seconds, good);
   if (bad > 0) {
-    fmt::print("at {} us these phases made cycles late: {}\n", bad, blamed(trials.at(bad)));
+    const Trial& shorter = trials.at(bad);
+    if (shorter.overruns > 0) {
+      fmt::print("at {} us these phases made cycles late: {}\n", bad, blamed(shorter));
+    } else {
+      fmt::print("at {} us a limit was exceeded: {}\n", bad, shorter.verdict);
+    }
   }
   if (!real_time) {
     fmt::print("this machine refused real-time running: the figure says nothing about a real-time machine\n");

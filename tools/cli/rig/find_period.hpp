@@ -14,8 +14,8 @@ struct PeriodSearch {
 };
 
 /// Runs `hotfire-rt timing` at one period after the other and prints the shortest one at which no cycle was late in the
-/// given time, to 5 %, and what made the next shorter one fail. Exit status: 0, or 4 if no period is long enough. Throws
-/// UsageError if the program cannot be run or refuses its options.
+/// given time and the limits of --max-latency-us and --max-step-us held, to 5 %, and what made the next shorter one fail.
+/// Exit status: 0, or 4 if no period is long enough. Throws UsageError if the program cannot be run or refuses its options.
 int find_shortest_period(const PeriodSearch& search);
 
 }  // namespace hotfire
