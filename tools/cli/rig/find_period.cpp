@@ -84,10 +84,55 @@ nlohmann::json json_of(int period_us, const Trial& trial) {
           {"longest_step_us", trial.longest_step_us}};
 }
 
+using Trials = std::map<int, Trial>;  ///< by period [us]
+
+bool all_in_real_time(const Trials& trials) {
+  return std::all_of(trials.begin(), trials.end(), [](const auto& own) { return own.second.real_time; });
+}
+
+/// `shortest`: the shortest period that held, 0 for none.
+void print_json(const PeriodSearch& search, const Trials& trials, int shortest) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& [period, trial] : trials) {
+    all.push_back(json_of(period, trial));
+  }
+  fmt::print("{}\n",
+             nlohmann::json{{"shortest_period_us", shortest > 0 ? nlohmann::json(shortest) : nlohmann::json(nullptr)},
+                            {"seconds_each", search.seconds},
+                            {"real_time", all_in_real_time(trials)},
+                            {"trials", all}}
+                 .dump(2));
+}
+
+/// The shortest period that held and the longest that did not [us]; 0 for none.
+struct Ends {
+  int held;
+  int failed;
+};
+
+void print_words(const PeriodSearch& search, const Trials& trials, const Ends& ends) {
+  if (ends.held == 0) {
+    const Trial& longest = trials.at(kLongest);
+    fmt::print("no period up to {} us is without an overrun in {:g} s{}\n", kLongest, search.seconds,
+               longest.overruns > 0 ? "" : " and within the limits: " + longest.verdict);
+    return;
+  }
+  fmt::print("shortest period without an overrun in {:g} s: {} us\n", search.seconds, ends.held);
+  if (ends.failed > 0) {
+    const Trial& shorter = trials.at(ends.failed);
+    fmt::print("at {} us {}\n", ends.failed,
+               shorter.overruns > 0 ? "these phases made cycles late: " + blamed(shorter)
+                                    : "a limit was exceeded: " + shorter.verdict);
+  }
+  if (!all_in_real_time(trials)) {
+    fmt::print("this machine refused real-time running: the figure says nothing about a real-time machine\n");
+  }
+}
+
 }  // namespace
 
 int find_shortest_period(const PeriodSearch& search) {
-  std::map<int, Trial> trials;
+  Trials trials;
   const auto holds = [&](int period_us) {
     const Trial& trial = trials[period_us] = run_at(search, period_us);
     if (!search.json) {
@@ -113,38 +158,8 @@ int find_shortest_period(const PeriodSearch& search) {
       (holds(middle) ? good : bad) = middle;
     }
   }
-  const bool real_time = std::all_of(trials.begin(), trials.end(), [](const auto& own) { return own.second.real_time; });
-  if (search.json) {
-    nlohmann::json all = nlohmann::json::array();
-    for (const auto& [period, trial] : trials) {
-      all.push_back(json_of(period, trial));
-    }
-    const nlohmann::json shortest = good > 0 ? nlohmann::json(good) : nlohmann::json(nullptr);
-    fmt::print(
-        "{}\n",
-        nlohmann::json{
-            {"shortest_period_us", shortest}, {"seconds_each", search.seconds}, {"real_time", real_time}, {"trials", all}}
-            .dump(2));
-    return good > 0 ? 0 : kTiming;
-  }
-  if (good == 0) {
-    fmt::print("no period up to {} us is without an overrun in {:g} s{}\n", kLongest, search.seconds,
-               trials.at(kLongest).overruns > 0 ? "" : " and within the limits: " + trials.at(kLongest).verdict);
-    return kTiming;
-  }
-  fmt::print("shortest period without an overrun in {:g} s: {} us\n", search.seconds, good);
-  if (bad > 0) {
-    const Trial& shorter = trials.at(bad);
-    if (shorter.overruns > 0) {
-      fmt::print("at {} us these phases made cycles late: {}\n", bad, blamed(shorter));
-    } else {
-      fmt::print("at {} us a limit was exceeded: {}\n", bad, shorter.verdict);
-    }
-  }
-  if (!real_time) {
-    fmt::print("this machine refused real-time running: the figure says nothing about a real-time machine\n");
-  }
-  return 0;
+  search.json ? print_json(search, trials, good) : print_words(search, trials, {good, bad});
+  return good > 0 ? 0 : kTiming;
 }
 
 }  // namespace hotfire
