@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "tools/explain/data/statistics.hpp"
 
@@ -52,11 +53,8 @@ Compressed compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradie
 /// Simulation error of all experiments and the priors, as one block of Ceres.
 class SimulationError : public ceres::CostFunction {
  public:
-  SimulationError(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options)
-      : fitted_(fitted),
-        options_(options),
-        tangent_(evaluator, fitted.base, fitted.free, simulated(), options.slopes, options.threads),
-        weight_(weights_of(evaluator, fitted.temper)) {
+  SimulationError(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options, Tangent& tangent)
+      : fitted_(fitted), options_(options), tangent_(tangent), weight_(weights_of(evaluator, fitted.temper)) {
     set_num_residuals(static_cast<int>(fitted.free.size()) + 1);
     mutable_parameter_block_sizes()->push_back(static_cast<int>(fitted.free.size()));
   }
@@ -91,7 +89,7 @@ class SimulationError : public ceres::CostFunction {
   }
 
   /// Drops derivatives that were not taken at the fit's current point. False if they were.
-  bool renew() {
+  bool renew() const {
     if (!tangent_.is_borrowed_at(simulated_at(fitted_.u))) {
       return false;
     }
@@ -100,14 +98,6 @@ class SimulationError : public ceres::CostFunction {
   }
 
  private:
-  /// The parameters that are not frozen.
-  std::vector<std::size_t> simulated() const {
-    const std::size_t frozen = options_.frozen != nullptr ? options_.frozen->u.size() : 0;
-    std::vector<std::size_t> rest(fitted_.free.size() - frozen);
-    std::iota(rest.begin(), rest.end(), frozen);
-    return rest;
-  }
-
   /// Brings what depends on the derivatives alone up to them: the weighted Jacobian of all parameters, and J^T J with the
   /// priors.
   void weigh() const {
@@ -154,7 +144,7 @@ class SimulationError : public ceres::CostFunction {
 
   Fitted& fitted_;
   FitOptions options_;
-  mutable Tangent tangent_;
+  Tangent& tangent_;
   Eigen::VectorXd weight_;
   mutable Eigen::MatrixXd weighted_;
   mutable int weighted_revision_ = 0;  ///< the derivatives that `weighted_` is of
@@ -168,12 +158,24 @@ double relative_variance(const Dataset& data, const Stretch& stretch) {
 
 }  // namespace
 
+Tangent tangent_of(const Evaluator& evaluator, const Fitted& fitted, const FitOptions& options) {
+  const std::size_t frozen = options.frozen != nullptr ? options.frozen->u.size() : 0;
+  std::vector<std::size_t> simulated(fitted.free.size() - frozen);
+  std::iota(simulated.begin(), simulated.end(), frozen);
+  return {evaluator, fitted.base, fitted.free, std::move(simulated), options.slopes, options.threads};
+}
+
 bool fit(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options) {
+  Tangent tangent = tangent_of(evaluator, fitted, options);
+  return fit(evaluator, fitted, options, tangent);
+}
+
+bool fit(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options, Tangent& tangent) {
   if (fitted.free.empty()) {
     fitted.converged = true;
     return true;
   }
-  auto* error = new SimulationError(evaluator, fitted, options);  // the problem owns it
+  auto* error = new SimulationError(evaluator, fitted, options, tangent);  // the problem owns it
   ceres::Problem problem;
   problem.AddResidualBlock(error, nullptr, fitted.u.data());
   for (std::size_t k = 0; k < fitted.free.size(); ++k) {

@@ -51,6 +51,11 @@ struct FitOptions {
 /// in Ceres), and leaves the result there. False if the start itself can't be simulated.
 bool fit(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options);
 
+/// Simulations and derivatives for fits of `fitted`, which must live as long and keep its base and its parameters. Several
+/// fits in a row, each under another temper, share them.
+Tangent tangent_of(const Evaluator& evaluator, const Fitted& fitted, const FitOptions& options);
+bool fit(const Evaluator& evaluator, Fitted& fitted, const FitOptions& options, Tangent& tangent);
+
 /// The temper that residuals ask for: mean square times statistical inefficiency over the channel's mean noise variance, at
 /// least 1.
 Temper temper_of(const Evaluator& evaluator, const Eigen::VectorXd& residual);

@@ -45,7 +45,7 @@ class Search {
         model_(model),
         options_(options),
         thin_(for_ranking(data, model)),
-        fine_(data, Resolution::fine),
+        fine_(data, Resolution::fine, is_ranked_coarsely(model) ? Resolution::coarse : Resolution::fine),
         coarse_(thin_, is_ranked_coarsely(model) ? Resolution::coarse : Resolution::fine,
                 is_ranked_coarsely(model) ? Resolution::rough : Resolution::fine),
         rough_(thin_, Resolution::rough),

@@ -34,8 +34,11 @@ Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned thr
   }
   fitted.temper = temper_of(evaluator, evaluator.residuals(prediction));
   double left = Goodness::combined(goodness(evaluator.data(), prediction).fitted);
+  // A temper weighs the residuals and changes none of their derivatives.
+  const FitOptions options{effort.iterations, threads, effort.tolerance, effort.slopes, nullptr};
+  Tangent tangent = tangent_of(evaluator, fitted, options);
   for (int pass = 0; pass < effort.passes; ++pass) {
-    if (!fit(evaluator, fitted, {effort.iterations, threads, effort.tolerance, effort.slopes, nullptr}) ||
+    if (!fit(evaluator, fitted, options, tangent) ||
         !evaluator.predict(fitted.base, fitted.free, fitted.u, threads, prediction)) {
       return failed;
     }
