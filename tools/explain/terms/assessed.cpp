@@ -48,6 +48,9 @@ Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned thr
       change = std::max(change, std::abs(std::log(next[c] / fitted.temper[c])));
     }
     fitted.temper = next;
+    if (tangent.slopes() == Slopes::wide) {
+      tangent.forget();  // they say something of the ripples that they were taken over, and of no others
+    }
     const double before = std::exchange(left, Goodness::combined(goodness(evaluator.data(), prediction).fitted));
     if (change < kTemperStands && (fitted.converged || left > kStillFalling * before)) {
       break;
