@@ -38,6 +38,7 @@ double dead_zone(double amplitude) {
 
 std::vector<MarginsAt> margins_by_amplitude(const DescribedLoop& loop, const std::vector<double>& amplitudes) {
   std::vector<MarginsAt> all;
+  all.reserve(amplitudes.size());
   for (const double amplitude : amplitudes) {
     all.push_back({amplitude, margins_of([&](double f) { return loop(f, amplitude); }, trials::spaced(0.01, 3.0, 40))});
   }
