@@ -12,6 +12,8 @@
 #include "tests/files/scratch.hpp"
 #include "tools/analysis/chart.hpp"
 #include "tools/disperse/dispersion_report.hpp"
+#include "tools/disperse/worker.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::disperse {
 
@@ -133,6 +135,54 @@ TEST(Dispersion, ResultsOfAnotherMachineAreMerged) {
   here.run(inertia(), kSilent);
   LONGS_EQUAL(0, calls);
   STRCMP_EQUAL(whole.c_str(), DispersionReport(here, {}).table().c_str());
+}
+
+TEST(Dispersion, AWorkerRunsWhatItIsGivenAndTakesWhatOthersRan) {
+  const std::string whole = table_of("whole");
+  Dispersion there(plan(), scratch.path("there"), {2, 2});
+  std::istringstream asked("20\n3\n3\n");
+  std::ostringstream printed;
+  calls = 0;
+  CHECK_FALSE(work(there, inertia(), kSilent, asked, printed));
+  LONGS_EQUAL(2, calls);
+  const DrawStore& store = there.store();
+  STRCMP_EQUAL((store.header() + "20\n" + store.line(20) + store.line(3) + store.line(3)).c_str(), printed.str().c_str());
+
+  // The other worker takes the two results, and runs the rest.
+  std::string lines = store.header() + store.line(20) + store.line(3);
+  for (int draw = 0; draw < 20; ++draw) {
+    lines += draw == 3 ? "" : fmt::format("{}\n", draw);
+  }
+  Dispersion here(plan(), scratch.path("here"), {1, 2});
+  std::istringstream rest(lines + "report\n");
+  calls = 0;
+  CHECK_TRUE(work(here, inertia(), kSilent, rest, printed));
+  LONGS_EQUAL(19, calls);
+  STRCMP_EQUAL(whole.c_str(), DispersionReport(here, {}).table().c_str());
+
+  // What it took is on its own disk, and it says so when it starts again.
+  Dispersion again(plan(), scratch.path("here"), {1, 1});
+  std::istringstream nothing;
+  std::ostringstream known;
+  CHECK_FALSE(work(again, inertia(), kSilent, nothing, known));
+  STRCMP_EQUAL((again.store().header() + "20 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20\n").c_str(),
+               known.str().c_str());
+}
+
+TEST(Dispersion, AWorkerRefusesOtherInputsAndWhatIsNoDraw) {
+  Plan other = plan();
+  other.seed = 5;
+  Dispersion there(other, scratch.path("there"), {2, 2});
+  Dispersion here(plan(), scratch.path("here"), {1, 2});
+  const auto work_on = [&](const std::string& lines) {
+    std::istringstream in(lines);
+    std::ostringstream out;
+    work(here, inertia(), kSilent, in, out);
+  };
+  test::expect_message(test::refusal([&] { work_on(there.store().header()); }),
+                       {"a result of another worker:1:", "seed was 5, now 4"});
+  CHECK_THROWS(UsageError, work_on("21\n"));
+  CHECK_THROWS(UsageError, work_on("repot\n"));
 }
 
 TEST(Dispersion, ResultsOfOtherInputsAreRefusedAndNamed) {

@@ -5,10 +5,13 @@
 
 #include "tests/files/scratch.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/linear/plant/plant.hpp"
 #include "tools/loop/controller.hpp"
-#include "tools/loop/limit_cycle.hpp"
+#include "tools/loop/cycle_check.hpp"
+#include "tools/loop/flight.hpp"
 #include "tools/loop/margins.hpp"
 #include "tools/loop/stage.hpp"
+#include "tools/loop/vehicle_loop.hpp"
 #include "tools/trials/profiles.hpp"
 
 #include <CppUTest/TestHarness.h>
@@ -35,6 +38,7 @@ double dead_zone(double amplitude) {
 
 std::vector<MarginsAt> margins_by_amplitude(const DescribedLoop& loop, const std::vector<double>& amplitudes) {
   std::vector<MarginsAt> all;
+  all.reserve(amplitudes.size());
   for (const double amplitude : amplitudes) {
     all.push_back({amplitude, margins_of([&](double f) { return loop(f, amplitude); }, trials::spaced(0.01, 3.0, 40))});
   }
@@ -167,6 +171,77 @@ TEST(Loop, AMeasuredControllerIsTheLineBetweenItsPoints) {
   DOUBLES_EQUAL(0.0, std::abs(std::arg(-middle)), 1e-9);
   scratch.write("m.csv", "frequency[Hz],gain[dB],phase[deg]\n1,0,-170\n0.5,-12,170\n");
   CHECK_THROWS(FileError, load_controller(scratch.path("c.toml")));
+}
+
+TEST(Loop, APredictedCycleIsKeptIfItsSimulationEndsNearestToIt) {
+  const std::vector<LimitCycle> predicted{{0.150, 0.35, true}, {0.159, 0.32, true}, {0.5, 2.0, false}};
+  const auto checks = [&](const Oscillation& end) {
+    std::vector<Check> all;
+    for (const CheckedCycle& own : checked(predicted, [&](const LimitCycle&) { return end; })) {
+      all.push_back(own.check);
+    }
+    return all;
+  };
+  const auto expected = [](Check first, Check second) { return std::vector<Check>{first, second, Check::none}; };
+  CHECK_TRUE(checks({Outcome::oscillates, 0.151, 0.345}) == expected(Check::stays, Check::leaves));
+  // Within the bound of both: the nearer one.
+  CHECK_TRUE(checks({Outcome::oscillates, 0.153, 0.336}) == expected(Check::stays, Check::leaves));
+  CHECK_TRUE(checks({Outcome::oscillates, 0.157, 0.324}) == expected(Check::leaves, Check::stays));
+  CHECK_TRUE(checks({Outcome::oscillates, 0.130, 0.35}) == expected(Check::leaves, Check::leaves));
+  CHECK_TRUE(checks({Outcome::decays, 0.150, 0.35}) == expected(Check::leaves, Check::leaves));
+  CHECK_TRUE(checks({Outcome::unsettled, 0.150, 0.35}) == expected(Check::unsettled, Check::unsettled));
+  for (const CheckedCycle& own : checked(predicted, {})) {
+    CHECK_TRUE(own.check == Check::none);
+  }
+}
+
+TEST(Loop, AFlightThatStartsOnTheCycleOfALoopAtItsLimitGoesOnWithIt) {
+  model::InstrumentedVehicle<model::Masv<double>> instrumented;
+  MasvParameters& vehicle = instrumented.vehicle;
+  for (auto& gimbal : vehicle.gimbals) {
+    gimbal.bearing.thrust = 1e6;
+  }
+  FlightModes modes;
+  modes.frequency = Eigen::Vector2d(0.0, 3.0);
+  modes.damping_ratio = Eigen::Vector2d(0.0, 0.02);
+  modes.side = Eigen::MatrixXd::Constant(8, 2, 1e-3);
+  modes.sensor = Eigen::MatrixXd::Constant(2, 2, 4e-5);
+  modes.sensor(0, 1) = 1e-6;
+  const Stage stage(vehicle, modes, "pitch");
+  Controller controller;
+  controller.axis = "pitch";
+  controller.period = 0.02;
+  controller.delay = 0.03;
+  controller.gain = 2.5;
+  controller.rate_gain = 1.5;
+  controller.integral_gain = 0.3;
+  const plant::AnyParameters parameters = instrumented;
+  const auto linear = linear::make_plant(parameters, controller.period, {});
+  const VehicleLoop loop(*linear, stage, controller);
+  const Margins margins =
+      margins_of([&](double f) { return std::optional(loop.small_signal(f)); }, trials::spaced(0.15, 8.0, 60));
+  CHECK_TRUE(!margins.gain.empty());
+  const double factor = std::pow(10.0, margins.gain.front().decibels / 20.0);
+  controller.gain *= factor;
+  controller.rate_gain *= factor;
+  controller.integral_gain *= factor;
+
+  // On the limit a linear loop goes on with any amplitude, and with what a wrong start adds to it. Motions this small are
+  // linear.
+  const LimitCycle cycle{margins.gain.front().frequency, 1e-5, true};
+  constexpr double kCycles = 12.0;
+  const auto end_of = [&](const LimitCycle& on) {
+    const FlightRecord record = fly(parameters, stage, controller, {0.0, kCycles / cycle.frequency, on});
+    return oscillation_of(record.command, controller.period, 1e-6);
+  };
+  const Oscillation end = end_of(cycle);
+  CHECK_TRUE(end.outcome == Outcome::oscillates);
+  DOUBLES_EQUAL(1.0, end.amplitude / cycle.amplitude, 2e-3);
+  DOUBLES_EQUAL(1.0, end.frequency / cycle.frequency, 2e-3);
+
+  controller.gain *= 0.8;
+  controller.rate_gain *= 0.8;
+  CHECK_TRUE(end_of(cycle).outcome == Outcome::decays);
 }
 
 TEST(Loop, AStageInTimeHasTheResponseOfItsModes) {

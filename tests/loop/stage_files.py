@@ -78,6 +78,7 @@ FILES = {
     "friction.toml": MODEL + FRICTION,
     "axis.toml": 'schema = 1\ntopology = "simplex"\n',
     "pid.toml": CONTROLLER.format("PID", 2.5, 1.5, 0.3),
+    "pid_weak.toml": CONTROLLER.format("PID", 2.0, 2.0, 0.6),
     "pd.toml": CONTROLLER.format("PD", 1.5, 2.5, 0.0),
     "pid_bad.toml": CONTROLLER.format("PID", '"high"', 3.0, 0.6),
 }

@@ -243,18 +243,24 @@ void Dispersion::run(const CommandRunner& run, const std::function<void(int, int
   }
   int done = all - static_cast<int>(missing.size());
   for (const int draw : missing) {
-    const DrawResult result = result_of(draw, run, scratch.path());
-    // The same words are wrong in every draw, and the declared model must run.
-    if (result.status == static_cast<int>(ExitStatus::wrong_use)) {
-      throw UsageError(fmt::format("'{}' is refused: {}", fmt::join(plan_.command, " "), result.complaint));
-    }
-    if (draw == 0 && !result.complaint.empty()) {
-      throw FileError(
-          fmt::format("{}: the declared model itself cannot be run: {}", plan_.model.string(), result.complaint));
-    }
-    store_.add(result);
+    this->run(draw, run, scratch.path());
     progress(++done, all);
   }
+}
+
+void Dispersion::run(int draw, const CommandRunner& run, const std::filesystem::path& scratch) {
+  if (store_.results().contains(draw)) {
+    return;
+  }
+  const DrawResult result = result_of(draw, run, scratch);
+  // The same words are wrong in every draw, and the declared model must run.
+  if (result.status == static_cast<int>(ExitStatus::wrong_use)) {
+    throw UsageError(fmt::format("'{}' is refused: {}", fmt::join(plan_.command, " "), result.complaint));
+  }
+  if (draw == 0 && !result.complaint.empty()) {
+    throw FileError(fmt::format("{}: the declared model itself cannot be run: {}", plan_.model.string(), result.complaint));
+  }
+  store_.add(result);
 }
 
 }  // namespace hotfire::disperse

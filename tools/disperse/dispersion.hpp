@@ -48,6 +48,9 @@ class Dispersion {
   /// declared model itself cannot be run, both with what the command said.
   void run(const CommandRunner& run, const std::function<void(int, int)>& progress);
 
+  /// The same for one draw of any share. `scratch` is a folder for its files.
+  void run(int draw, const CommandRunner& run, const std::filesystem::path& scratch);
+
   const Plan& plan() const { return plan_; }
   const Tolerances& tolerances() const { return tolerances_; }
   DrawStore& store() { return store_; }

@@ -100,7 +100,7 @@ DrawStore::DrawStore(const std::filesystem::path& folder, const Json& inputs, Sh
     read_own_file();
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
       if (entry.path().extension() == kEnding && entry.path().filename() != file_.filename()) {
-        read(content_of_file(entry.path()), entry.path().string());
+        read(content_of_file(entry.path()), entry.path().string(), From::folder);
       }
     }
   } catch (...) {
@@ -119,19 +119,20 @@ void DrawStore::read_own_file() {
   if (text.empty()) {
     append(header_);
   } else {
-    read(text, file_.string());
+    read(text, file_.string(), From::folder);
   }
 }
 
-void DrawStore::read(std::string_view text, const std::string& name) {
+void DrawStore::read(std::string_view text, const std::string& name, From from) {
   const Json wanted = Json::parse(header_.substr(kCheckDigits + 1));
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     const std::string place = fmt::format("{}:{}", name, number);
-    Json content = checked(text.substr(0, end), place);
+    const std::string_view line = text.substr(0, end);
+    Json content = checked(line, place);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     // Files behind each other have a line of inputs each.
-    if (number == 1 || !content.contains("draw")) {
+    if ((number == 1 && from != From::line) || !content.contains("draw")) {
       require_same_inputs(content, wanted, place);
       continue;
     }
@@ -140,6 +141,9 @@ void DrawStore::read(std::string_view text, const std::string& name) {
     if (known != results_.end() && content_of(known->second) != content) {
       throw FileError(fmt::format("{}: draw {} has another result elsewhere in the folder; remove the folder and run again",
                                   place, result.draw));
+    }
+    if (known == results_.end() && from != From::folder) {
+      append(std::string(line) + '\n');
     }
     results_[result.draw] = std::move(result);
   }
@@ -161,15 +165,11 @@ void DrawStore::add(const DrawResult& result) {
   results_[result.draw] = result;
 }
 
-void DrawStore::merge(std::string_view text, const std::string& name) {
-  const std::map<int, DrawResult> before = results_;
-  read(text, name);
-  for (const auto& [draw, result] : results_) {
-    if (!before.contains(draw)) {
-      append(line_of(content_of(result)));
-    }
-  }
-}
+void DrawStore::merge(std::string_view text, const std::string& name) { read(text, name, From::text); }
+
+void DrawStore::merge_line(std::string_view line, const std::string& name) { read(line, name, From::line); }
+
+std::string DrawStore::line(int draw) const { return line_of(content_of(results_.at(draw))); }
 
 std::string DrawStore::text(Share share) const {
   std::string text = header_;

@@ -51,11 +51,19 @@ class DrawStore {
   /// FileError as above.
   void merge(std::string_view text, const std::string& name);
 
+  /// The same for one of its lines.
+  void merge_line(std::string_view line, const std::string& name);
+
+  /// The line with the inputs, and that of a draw that has a result.
+  const std::string& header() const { return header_; }
+  std::string line(int draw) const;
+
   /// The results of a share as its file has them, in the order of the draws.
   std::string text(Share share) const;
 
  private:
-  void read(std::string_view text, const std::string& name);
+  enum class From { folder, text, line };
+  void read(std::string_view text, const std::string& name, From from);
   void read_own_file();
   void append(const std::string& line) const;
 

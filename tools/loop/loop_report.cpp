@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -32,6 +33,35 @@ const char* word_of(Outcome outcome) {
   return "unsettled";
 }
 
+std::string words_of(double amplitude, double frequency) {
+  return fmt::format("{:.4g} deg of command at {:.4g} Hz", amplitude * kDegrees, frequency);
+}
+
+std::string words_of(const Oscillation& own) {
+  const std::string outcome = word_of(own.outcome);
+  return own.outcome == Outcome::oscillates ? outcome + ", " + words_of(own.amplitude, own.frequency) : outcome;
+}
+
+std::string words_of(const CheckedCycle& own) {
+  if (!own.cycle.stable) {
+    return "not stable";
+  }
+  switch (own.check) {
+    case Check::stays:
+      return "stable; a simulation that starts on it stays";
+    case Check::unsettled:
+      return "stable; a simulation that starts on it is unsettled";
+    case Check::leaves:
+    case Check::none:
+      break;
+  }
+  return "stable; not checked by a simulation";
+}
+
+Json json_of(const Oscillation& own) {
+  return {{"outcome", word_of(own.outcome)}, {"amplitude_degrees", own.amplitude * kDegrees}, {"hertz", own.frequency}};
+}
+
 }  // namespace
 
 std::string text_of(const LoopResult& result) {
@@ -54,21 +84,25 @@ std::string text_of(const LoopResult& result) {
                           own.without.size(), own.without.front());
     }
   }
-  for (const LimitCycle& own : result.predicted) {
-    text += fmt::format("limit cycle by describing function: {:.4g} deg of command at {:.4g} Hz, {}\n",
-                        own.amplitude * kDegrees, own.frequency, own.stable ? "stable" : "not stable");
+  for (const CheckedCycle& own : result.predicted) {
+    if (own.check != Check::leaves) {
+      text += fmt::format("limit cycle by describing function: {}, {}\n", words_of(own.cycle.amplitude, own.cycle.frequency),
+                          words_of(own));
+    }
   }
-  if (result.predicted.empty() && result.curves.size() > 1) {
+  for (const CheckedCycle& own : result.predicted) {
+    if (own.check == Check::leaves) {
+      text += fmt::format("no limit cycle: {} is a balance as well; a simulation that starts on it leaves it (end: {})\n",
+                          words_of(own.cycle.amplitude, own.cycle.frequency), words_of(own.end));
+    }
+  }
+  if (std::all_of(result.predicted.begin(), result.predicted.end(),
+                  [](const CheckedCycle& own) { return own.check == Check::leaves; }) &&
+      result.curves.size() > 1) {
     text += "no limit cycle by describing function between these amplitudes\n";
   }
   for (const Flown& own : result.flown) {
-    text +=
-        fmt::format("simulated from {:.4g} deg of attitude: {}", own.attitude * kDegrees, word_of(own.oscillation.outcome));
-    if (own.oscillation.outcome == Outcome::oscillates) {
-      text += fmt::format(", {:.4g} deg of command at {:.4g} Hz", own.oscillation.amplitude * kDegrees,
-                          own.oscillation.frequency);
-    }
-    text += '\n';
+    text += fmt::format("simulated from {:.4g} deg of attitude: {}\n", own.attitude * kDegrees, words_of(own.oscillation));
   }
   return text;
 }
@@ -98,16 +132,19 @@ Json to_json(const LoopResult& result) {
     json["open_loop"].push_back(std::move(own));
   }
   json["limit_cycles"] = Json::array();
-  for (const LimitCycle& own : result.predicted) {
-    json["limit_cycles"].push_back(
-        {{"amplitude_degrees", own.amplitude * kDegrees}, {"hertz", own.frequency}, {"stable", own.stable}});
+  json["balances_left"] = Json::array();
+  for (const CheckedCycle& own : result.predicted) {
+    Json cycle{{"amplitude_degrees", own.cycle.amplitude * kDegrees},
+               {"hertz", own.cycle.frequency},
+               {"stable", own.cycle.stable},
+               {"simulation", own.check == Check::none ? Json(nullptr) : json_of(own.end)}};
+    json[own.check == Check::leaves ? "balances_left" : "limit_cycles"].push_back(std::move(cycle));
   }
   json["simulations"] = Json::array();
   for (const Flown& own : result.flown) {
-    json["simulations"].push_back({{"attitude_degrees", own.attitude * kDegrees},
-                                   {"outcome", word_of(own.oscillation.outcome)},
-                                   {"amplitude_degrees", own.oscillation.amplitude * kDegrees},
-                                   {"hertz", own.oscillation.frequency}});
+    Json flown{{"attitude_degrees", own.attitude * kDegrees}};
+    flown.update(json_of(own.oscillation));
+    json["simulations"].push_back(std::move(flown));
   }
   return json;
 }

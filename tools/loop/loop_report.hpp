@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/analysis/chart.hpp"
-#include "tools/loop/limit_cycle.hpp"
+#include "tools/loop/cycle_check.hpp"
 
 namespace hotfire::loop {
 
@@ -32,7 +32,7 @@ struct LoopResult {
   std::optional<bool> stable{};  ///< in small deviations; nothing for a measured controller
   std::vector<LoopCurve> curves{};
   std::vector<MarginsAt> margins{};  ///< in the order of the curves
-  std::vector<LimitCycle> predicted{};
+  std::vector<CheckedCycle> predicted{};
   std::vector<Flown> flown{};
 };
 

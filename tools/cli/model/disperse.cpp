@@ -11,6 +11,7 @@
 #include "tools/cli/shared/commands.hpp"
 #include "tools/cli/shared/progress.hpp"
 #include "tools/disperse/dispersion_report.hpp"
+#include "tools/disperse/worker.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/sha256.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -31,6 +32,7 @@ struct DisperseOptions {
   std::string share = "1/1";
   std::string merge;
   bool print_draws = false;
+  bool worker = false;
   bool json = false;
 };
 
@@ -95,9 +97,19 @@ void run_disperse(const DisperseOptions& options, const disperse::CommandRunner&
   }
   {
     Progress progress;
-    dispersion.run(run, [&](int done, int all) {
+    const auto say = [&](int done, int all) {
       progress.say(fmt::format("draw {} of {}", done, all), static_cast<double>(done) / all);
-    });
+    };
+    const auto say_of_all = [&](int done, int all) {
+      if (share.index == 1) {  // the first worker alone knows the results of all
+        say(done, all);
+      }
+    };
+    if (!options.worker) {
+      dispersion.run(run, say);
+    } else if (!disperse::work(dispersion, run, say_of_all, std::cin, std::cout)) {
+      return;
+    }
   }
   if (options.print_draws) {
     std::cout << dispersion.store().text(share);
@@ -154,6 +166,12 @@ void add_disperse(CLI::App& program, const disperse::CommandRunner& run) {
   command->add_option("--merge", options->merge,
                       "take the results of another machine, as --print-draws prints them; -: standard input");
   command->add_flag("--print-draws", options->print_draws, "print the results of the share for --merge, and no table");
+  command
+      ->add_flag(
+          "--worker", options->worker,
+          "run the draws whose numbers come on standard input, a line each, and print each result; hotfire-disperse-mpi "
+          "starts its workers so")
+      ->excludes("--print-draws");
   command->add_flag("--json", options->json, "print the statistics as JSON");
   command
       ->add_option("command", options->plan.command,

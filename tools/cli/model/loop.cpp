@@ -30,6 +30,7 @@ struct LoopOptions {
   double from = 0.05;  ///< [Hz]
   double to = 10.0;
   int count = 40;
+  bool no_check = false;
   bool json = false;
 };
 
@@ -99,16 +100,20 @@ loop::LoopResult result_of(const LoopOptions& options, const Parts& parts) {
     add(trials::radians(amplitude), kAccuracy,
         [&](double frequency) { return loop.described(frequency, trials::radians(amplitude)); });
   }
-  result.predicted = loop::predicted_limit_cycles([&](double f, double a) { return loop.described(f, a); }, result.margins);
-  constexpr double kFloor = 1e-6;  // rad of command: a fiftieth of what a potentiometer of an actuator tells apart
+  const auto end_of = [&](const loop::FlightPlan& plan) {
+    constexpr double kFloor = 1e-6;  // rad of command: a fiftieth of what a potentiometer of an actuator tells apart
+    const auto record = loop::fly(parts.declared.parameters, *parts.stage, parts.controller, plan);
+    return record.ran_away ? loop::Oscillation{loop::Outcome::grows}
+                           : loop::oscillation_of(record.command, parts.controller.period, kFloor);
+  };
+  loop::CycleFlight from_cycle;
+  if (!options.no_check && !parts.controller.is_measured()) {
+    from_cycle = [&](const loop::LimitCycle& cycle) { return end_of({0.0, loop::kCheckedCycles / cycle.frequency, cycle}); };
+  }
+  result.predicted = loop::checked(
+      loop::predicted_limit_cycles([&](double f, double a) { return loop.described(f, a); }, result.margins), from_cycle);
   for (const double attitude : options.attitudes) {
-    const auto record =
-        loop::fly(parts.declared.parameters, *parts.stage, parts.controller, {trials::radians(attitude), options.seconds});
-    loop::Oscillation oscillation{loop::Outcome::grows};
-    if (!record.ran_away) {
-      oscillation = loop::oscillation_of(record.command, parts.controller.period, kFloor);
-    }
-    result.flown.push_back({trials::radians(attitude), oscillation});
+    result.flown.push_back({trials::radians(attitude), end_of({trials::radians(attitude), options.seconds, {}})});
   }
   return result;
 }
@@ -150,6 +155,8 @@ void add_loop(CLI::App& program) {
                    "attitudes at the start of simulations of the closed loop [deg]; left out: no simulation")
       ->delimiter(',')
       ->check(CLI::Range(1e-6, 90.0));
+  command->add_flag("--no-check", options->no_check,
+                    "list limit cycles as they are predicted, without the simulation that starts on each stable one");
   command->add_option("--seconds", options->seconds, "length of a simulation [s]")
       ->check(CLI::Range(1.0, 1e5))
       ->capture_default_str();
