@@ -80,37 +80,39 @@ struct GpiodLines::Request {
 
 namespace {
 
-bool request(gpiod_chip* chip, const std::string& consumer, gpiod_line_config* lines, Lines& into) {
+/// Requests the lines of `into`; `set(line, i)` makes the settings of the i-th of them.
+template <class Set>
+bool request(gpiod_chip* chip, const std::string& consumer, Lines& into, Set&& set) {
+  const LineConfig lines(gpiod_line_config_new());
+  const LineSettings line(gpiod_line_settings_new());
   const RequestConfig config(gpiod_request_config_new());
-  if (!config) {
+  if (!lines || !line || !config) {
     return false;
+  }
+  for (std::size_t i = 0; i < into.count; ++i) {
+    set(line.get(), i);
+    if (gpiod_line_config_add_line_settings(lines.get(), &into.offsets[i], 1, line.get()) != 0) {
+      return false;
+    }
   }
   gpiod_request_config_set_consumer(config.get(), consumer.c_str());
   gpiod_request_config_set_event_buffer_size(config.get(), kEdgeQueue);
-  into.request.reset(gpiod_chip_request_lines(chip, config.get(), lines));
+  into.request.reset(gpiod_chip_request_lines(chip, config.get(), lines.get()));
   return into.request != nullptr;
 }
 
 }  // namespace
 
 bool GpiodLines::Request::take_inputs(gpiod_chip* chip, const GpioSettings& settings) noexcept {
-  const LineConfig lines(gpiod_line_config_new());
-  const LineSettings line(gpiod_line_settings_new());
-  if (!lines || !line) {
-    return false;
-  }
-  for (std::size_t i = 0; i < inputs.count; ++i) {
+  const auto set = [&](gpiod_line_settings* line, std::size_t i) {
     const GpioInput& input = settings.inputs[i];
-    gpiod_line_settings_set_direction(line.get(), GPIOD_LINE_DIRECTION_INPUT);
-    gpiod_line_settings_set_bias(line.get(), bias_of(settings.bias));
-    gpiod_line_settings_set_active_low(line.get(), input.active_low);
-    gpiod_line_settings_set_edge_detection(line.get(), input.edges ? GPIOD_LINE_EDGE_BOTH : GPIOD_LINE_EDGE_NONE);
-    gpiod_line_settings_set_event_clock(line.get(), GPIOD_LINE_CLOCK_MONOTONIC);
-    if (gpiod_line_config_add_line_settings(lines.get(), &inputs.offsets[i], 1, line.get()) != 0) {
-      return false;
-    }
-  }
-  if (!request(chip, settings.consumer, lines.get(), inputs)) {
+    gpiod_line_settings_set_direction(line, GPIOD_LINE_DIRECTION_INPUT);
+    gpiod_line_settings_set_bias(line, bias_of(settings.bias));
+    gpiod_line_settings_set_active_low(line, input.active_low);
+    gpiod_line_settings_set_edge_detection(line, input.edges ? GPIOD_LINE_EDGE_BOTH : GPIOD_LINE_EDGE_NONE);
+    gpiod_line_settings_set_event_clock(line, GPIOD_LINE_CLOCK_MONOTONIC);
+  };
+  if (!request(chip, settings.consumer, inputs, set)) {
     return false;
   }
   buffer.reset(gpiod_edge_event_buffer_new(kEdgeQueue));
@@ -119,21 +121,12 @@ bool GpiodLines::Request::take_inputs(gpiod_chip* chip, const GpioSettings& sett
 }
 
 bool GpiodLines::Request::take_outputs(gpiod_chip* chip, const GpioSettings& settings) noexcept {
-  const LineConfig lines(gpiod_line_config_new());
-  const LineSettings line(gpiod_line_settings_new());
-  if (!lines || !line) {
-    return false;
-  }
-  for (std::size_t i = 0; i < outputs.count; ++i) {
+  return request(chip, settings.consumer, outputs, [&](gpiod_line_settings* line, std::size_t i) {
     const GpioOutput& output = settings.outputs[i];
-    gpiod_line_settings_set_direction(line.get(), GPIOD_LINE_DIRECTION_OUTPUT);
-    gpiod_line_settings_set_active_low(line.get(), output.active_low);
-    gpiod_line_settings_set_output_value(line.get(), value_of(output.safe));
-    if (gpiod_line_config_add_line_settings(lines.get(), &outputs.offsets[i], 1, line.get()) != 0) {
-      return false;
-    }
-  }
-  return request(chip, settings.consumer, lines.get(), outputs);
+    gpiod_line_settings_set_direction(line, GPIOD_LINE_DIRECTION_OUTPUT);
+    gpiod_line_settings_set_active_low(line, output.active_low);
+    gpiod_line_settings_set_output_value(line, value_of(output.safe));
+  });
 }
 
 GpiodLines::GpiodLines(GpioSettings settings) : settings_(std::move(settings)), request_(std::make_unique<Request>()) {}

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/nastran/modes.hpp"
 #include "tools/nastran/text_lines.hpp"
 

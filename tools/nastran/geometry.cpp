@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/nastran/text_lines.hpp"
 
 namespace hotfire::nastran {
@@ -44,18 +45,12 @@ std::optional<std::string_view> bulk_part(std::string_view line, bool is_printed
 std::vector<std::string> fields_of(std::string_view line, std::string& name) {
   std::vector<std::string> fields;
   if (line.find(',') != std::string_view::npos) {
-    std::vector<std::string> cells;
-    for (bool more = true; more;) {
-      const std::size_t comma = line.find(',');
-      cells.emplace_back(trimmed(line.substr(0, comma)));
-      more = comma != std::string_view::npos;
-      line.remove_prefix(more ? comma + 1 : line.size());
-    }
+    const std::vector<std::string_view> cells = parts_of(line, ',');
     name = cells.front();
-    cells.erase(cells.begin());
+    fields.assign(cells.begin() + 1, cells.end());
     // The tenth field is that of continuation.
-    cells.resize(8);
-    return cells;
+    fields.resize(8);
+    return fields;
   }
   name = trimmed(line.substr(0, kSmallField));
   const bool is_large = name.ends_with('*') || name.starts_with('*');

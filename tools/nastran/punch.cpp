@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/nastran/modes.hpp"
 #include "tools/nastran/text_lines.hpp"
 

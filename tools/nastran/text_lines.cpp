@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::nastran {
@@ -50,11 +51,6 @@ TextLines::TextLines(const std::filesystem::path& path) : path_(path), content_(
 void TextLines::refuse(std::size_t i, std::string_view problem) const {
   throw FileError(
       fmt::format("{}:{}: {}", path_.string(), std::min(i + 1, std::max(lines_.size(), std::size_t{1})), problem));
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {

@@ -33,9 +33,6 @@ class TextLines {
   std::vector<std::string_view> lines_;
 };
 
-/// Without blanks at both ends.
-std::string_view trimmed(std::string_view text);
-
 /// The words of a line between blanks.
 std::vector<std::string_view> words_of(std::string_view line);
 

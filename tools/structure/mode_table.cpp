@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/files/text/csv_lines.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -22,22 +23,6 @@ constexpr std::string_view kMode = "mode";
 constexpr std::string_view kFrequency = "frequency[Hz]";
 constexpr std::string_view kDamping = "damping[1]";
 constexpr std::string_view kResidual = "residual.";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (bool more = true; more;) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(trimmed(line.substr(0, comma)));
-    more = comma != std::string_view::npos;
-    line.remove_prefix(more ? comma + 1 : line.size());
-  }
-  return cells;
-}
 
 bool read_number(std::string_view cell, double& value) {
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -103,7 +88,7 @@ Columns read_columns(CsvLines& lines) {
   }
   std::map<std::string, std::size_t, std::less<>> at;
   Columns columns;
-  for (const std::string_view name : cells_of(line)) {
+  for (const std::string_view name : parts_of(line, ',')) {
     refuse_unknown_column(lines, name);
     if (!at.emplace(name, at.size()).second) {
       lines.refuse(fmt::format("column \"{}\": named twice; allowed: each column once", name));
@@ -244,7 +229,7 @@ ModeSet load_modes(const std::filesystem::path& path) {
   std::set<std::string> residual_rows;
   std::string_view line;
   while (next_row(lines, line)) {
-    const std::vector<std::string_view> cells = cells_of(line);
+    const std::vector<std::string_view> cells = parts_of(line, ',');
     if (cells.size() != columns.count) {
       lines.refuse(
           fmt::format("ragged row: {} cells; allowed: {}, as many as the header names", cells.size(), columns.count));

@@ -23,10 +23,7 @@ function(expect_fault file text fault)
   file(APPEND ${SCRATCH}/${file} "${text}\n")
   look(english status output)
   file(WRITE ${SCRATCH}/${file} "${old}")
-  string(FIND "${output}" "${fault}" position)
-  if(status EQUAL 0 OR position EQUAL -1)
-    message(SEND_ERROR "${file} with '${text}': expected '${fault}', got status ${status}: ${output}")
-  endif()
+  expect_words("${status}" "${output}" "${fault}" "${file} with '${text}'")
 endfunction()
 
 # expect_none(FILE TEXT): a new FILE with TEXT is allowed.

@@ -11,6 +11,14 @@ function(look check status output)
   set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
+# expect_words(STATUS OUTPUT WORDS BROKEN): a check that was run over what is BROKEN has failed, and its message has WORDS.
+function(expect_words status output words broken)
+  string(FIND "${output}" "${words}" position)
+  if(status EQUAL 0 OR position EQUAL -1)
+    message(SEND_ERROR "${broken}: expected '${words}', got status ${status}: ${output}")
+  endif()
+endfunction()
+
 # look_at_tree(CHECK): ends the test unless the check passes over the scratch copy as it is.
 function(look_at_tree check)
   look(${check} status output)

@@ -19,17 +19,24 @@ namespace hotfire {
 
 namespace {
 
+/// The record that is given, or that of `run` on the model that is given: of a model and, with several axes, the name of
+/// one.
+template <class Run>
+Record record_of_disturbed(const TrialOptions& trial, Run&& run) {
+  return record_of_trial(trial, [&] {
+    const std::optional<VehicleFile> vehicle = vehicle_of_trial(trial);
+    return vehicle ? run(*vehicle, trial.axis) : run(load_model(trial.model));
+  });
+}
+
 struct HammerOptions {
   TrialOptions trial;
   trials::Hammer blow;
 };
 
 void run_hammer(const HammerOptions& options) {
-  const Record record = record_of_trial(options.trial, [&] {
-    const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
-    return vehicle ? trials::hammer(*vehicle, options.trial.axis, options.blow)
-                   : trials::hammer(load_model(options.trial.model), options.blow);
-  });
+  const Record record = record_of_disturbed(
+      options.trial, [&](const auto& model, const auto&... axis) { return trials::hammer(model, axis..., options.blow); });
   const std::string name = record.find("position") != nullptr ? "position" : "engine";
   const Channel& channel = trials::required_channel(record, name, options.trial.axis);
   // A simulated blow hits an engine at rest; a recorded one is about zero already.
@@ -60,10 +67,8 @@ struct QuiescentOptions {
 };
 
 void run_quiescent(const QuiescentOptions& options) {
-  const Record record = record_of_trial(options.trial, [&] {
-    const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
-    return vehicle ? trials::quiescent(*vehicle, options.trial.axis, options.ambient)
-                   : trials::quiescent(load_model(options.trial.model), options.ambient);
+  const Record record = record_of_disturbed(options.trial, [&](const auto& model, const auto&... axis) {
+    return trials::quiescent(model, axis..., options.ambient);
   });
   const Channel& piston = trials::required_channel(record, "piston", options.trial.axis);
   const auto rows = static_cast<std::size_t>(std::lround(options.segment / record.period));

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "tools/files/record/axis_names.hpp"
+#include "tools/files/text/csv_cells.hpp"
 #include "tools/files/text/suggestion.hpp"
 
 namespace hotfire {
@@ -41,11 +42,6 @@ std::vector<std::string_view> known_names() {
     names.push_back(channel.name);
   }
   return names;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 /// A header of a file that is not CSV can be long and strange: a message shows
@@ -158,16 +154,13 @@ std::vector<Column> read_header(const CsvLines& lines, std::string_view header) 
   const auto has = [&columns](std::string_view name) {
     return std::any_of(columns.begin(), columns.end(), [name](const Column& column) { return column.name == name; });
   };
-  for (bool more = true; more;) {
-    const std::size_t comma = header.find(',');
-    Column column = read_column(lines, columns.size() + 1, trimmed(header.substr(0, comma)));
+  for (const std::string_view cell : parts_of(header, ',')) {
+    Column column = read_column(lines, columns.size() + 1, cell);
     if (has(column.name)) {
       lines.refuse(
           fmt::format("column {} \"{}\": named twice; allowed: each channel once", columns.size() + 1, column.name));
     }
     columns.push_back(std::move(column));
-    more = comma != std::string_view::npos;
-    header.remove_prefix(more ? comma + 1 : header.size());
   }
   if (!has("time")) {
     lines.refuse(
