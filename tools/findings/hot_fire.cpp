@@ -31,6 +31,16 @@ trials::ChannelSweep piston_at(const VehicleFile& model, double degrees, const s
   return *trials::find_sweep(sweeps, channel, trials::radians(degrees));
 }
 
+/// The linear model of the stage: a stage without friction and effects, under sines so small that the flow law is linear.
+GreenRun linear_model(const Bench& bench, const std::vector<double>& frequencies) {
+  constexpr double kSmall = 1e-3;  // deg: a thousandth of what the valve takes up in its flow law
+  VehicleFile model = without_friction(bench);
+  for (auto& axis : std::get<TaosParameters>(model.parameters).axes) {
+    axis.effects.active = {};
+  }
+  return {piston_at(model, kSmall, frequencies), piston_at(model, kSmall, frequencies, "engine")};
+}
+
 /// Where the phase that friction adds turns from lag to lead [Hz].
 double lead_begins(const Bench& bench, double degrees) {
   const std::vector<double> frequencies = trials::spaced(1.0, 9.0, 33);
@@ -188,10 +198,56 @@ Outcome one_axis_alone(const Bench& bench) {
   }
   outcome.figures.push_back({"engine's phase at 2.5 Hz, both axes over one alone",
                              phase_between(both.engine, alone.engine, 2.5), 0.5, 10.0, "deg"});
+  double gain = 0.0;
+  double phase = 0.0;
+  for (const double frequency : trials::green_run_sines().back().frequencies) {
+    gain = std::max(gain, gain_between(both.engine, alone.engine, frequency));
+    phase = std::max(phase, phase_between(both.engine, alone.engine, frequency));
+  }
+  outcome.figures.push_back({"largest of the gain, 0.4 to 6.25 Hz", gain, 1.0, 2.5, "dB"});
+  outcome.figures.push_back({"largest of the phase, 0.4 to 6.25 Hz", phase, 4.0, 15.0, "deg"});
   auto single = alone.engine;
   single.channel += ", one axis alone";
   outcome.picture = trials::bode_chart("F17: engine in pitch, yaw driven beside it or not", {both.engine, single});
   outcome.note = "A test of one axis alone overstates what friction takes in the test of both.";
+  return outcome;
+}
+
+Outcome low_frequency(const Bench& bench) {
+  const VehicleFile hot = bench.hot_fire();
+  const GreenRun both = green_run(hot, simulate(hot, trials::green_run_record()), kPitch);
+  const GreenRun alone = green_run(hot, simulate(hot, pitch_alone()), kPitch);
+  const std::vector<double> low = trials::green_run_sines().back().frequencies;
+  const GreenRun linear = linear_model(bench, {low[0], low[2], low[14]});
+  Outcome outcome;
+  for (const double frequency : {low[0], low[2]}) {
+    for (const bool engine : {false, true}) {
+      const trials::ChannelSweep& own = engine ? both.engine : both.piston;
+      const trials::ChannelSweep& other = engine ? linear.engine : linear.piston;
+      const std::string name = engine ? "engine" : "piston";
+      outcome.figures.push_back({fmt::format("{}'s gain at {:.2g} Hz against the linear model", name, frequency),
+                                 gain_between(own, other, frequency), -0.2, 0.2, "dB"});
+      outcome.figures.push_back({fmt::format("{}'s phase at {:.2g} Hz against the linear model", name, frequency),
+                                 phase_between(own, other, frequency), -3.0, 3.0, "deg"});
+    }
+  }
+  outcome.figures.push_back(
+      {"engine's gain at 5.2 Hz against it", gain_between(both.engine, linear.engine, low[14]), -4.0, -1.0, "dB"});
+  outcome.figures.push_back({"engine's gain at 0.4 Hz against it, yaw at rest",
+                             gain_between(alone.engine, linear.engine, low[0]), -2.0, -0.4, "dB"});
+  outcome.figures.push_back({"engine's phase at 0.4 Hz against it, yaw at rest",
+                             phase_between(alone.engine, linear.engine, low[0]), -15.0, -4.0, "deg"});
+  auto small = linear.engine;
+  small.channel += ", linear model";
+  auto single = alone.engine;
+  single.channel += ", one axis alone";
+  outcome.picture =
+      trials::bode_chart("F21: engine in pitch at hot fire and the linear model", {both.engine, single, small});
+  outcome.note =
+      "The paper gives no figure; the bounds are ours, a tenth of the loss at 5.2 Hz and a third of the lag of one axis "
+      "alone. The statement holds because yaw moves fast beside the slow pitch: the friction vector follows the fast axis. "
+      "A "
+      "test of one axis alone does not follow the linear model at any frequency of the band.";
   return outcome;
 }
 

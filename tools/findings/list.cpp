@@ -132,6 +132,12 @@ constexpr std::array kFindings{
             "hotfire findings --only F20",
             engine_phase,
             {Physics::modes}},
+    Finding{"F21",
+            "at low frequency the response follows the linear model [GF slide Matching GRHF]",
+            "Green Run profile on both axes: piston and engine at 0.4 and 0.58 Hz within 0.2 dB and 3 deg of it",
+            "hotfire findings --only F21",
+            low_frequency,
+            {Physics::friction_vector, Physics::friction}},
 };
 
 }  // namespace

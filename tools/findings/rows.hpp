@@ -25,5 +25,6 @@ Outcome one_axis_alone(const Bench& bench);
 Outcome thrust_and_friction(const Bench& bench);
 Outcome one_file(const Bench& bench);
 Outcome engine_phase(const Bench& bench);
+Outcome low_frequency(const Bench& bench);
 
 }  // namespace hotfire::findings
