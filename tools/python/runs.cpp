@@ -101,10 +101,13 @@ Record run_command(const Model& model, const std::string& axis, std::vector<doub
   return run(model, trials::command_record(std::move(command), trials::channel_of("command", axis)), {});
 }
 
-double settling_of(const Model& model, const Sines& sines) {
+trials::LeastDwell dwell_of(const Model& model, const Sines& sines) {
+  if (sines.coarse) {
+    return [](double) { return trials::kShortestDwell; };
+  }
   const auto* vehicle = std::get_if<VehicleFile>(&model.file);
-  return vehicle != nullptr ? trials::settling_time(*vehicle, sines.from, sines.to)
-                            : trials::settling_time(std::get<ModelFile>(model.file));
+  return vehicle != nullptr ? trials::settled_dwell(*vehicle, sines.from, sines.to)
+                            : trials::settled_dwell(std::get<ModelFile>(model.file));
 }
 
 double moment_arm(const Model& model, const std::string& axis) {
@@ -120,11 +123,10 @@ Sweep sweep(const Model& model, const Sines& sines, trials::SweepGoal goal) {
     bands.push_back({amplitude, trials::spaced(sines.from, sines.to, sines.count)});
   }
   goal.moment_arm = moment_arm(model, goal.axis);
-  const double settling = settling_of(model, sines);
-  const double dwell = sines.coarse ? trials::kShortestDwell : trials::settled_dwell(settling);
+  const trials::LeastDwell dwell = dwell_of(model, sines);
   Record record = run_command(model, goal.axis, trials::stepped_sines(bands, dwell));
   if (!sines.coarse) {
-    record = run_command(model, goal.axis, trials::fine_sines(bands, trials::analyse_sweep(record, goal), settling));
+    record = run_command(model, goal.axis, trials::fine_sines(bands, trials::analyse_sweep(record, goal), dwell));
   }
   std::string results = trials::to_json(trials::analyse_sweep(record, goal)).dump();
   return {std::move(record), std::move(results)};

@@ -5,53 +5,91 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 namespace hotfire::trials {
 
 namespace {
 
-constexpr double kSettled = 6.907755;  // ln 1000
+constexpr double kResidue = 1e-3;  // what may be left of a free motion, relative to its part of the response
 
-/// Of an amplitude that fades as e^{-rate t}; without damping it never does.
-double time_to_settle(double rate) { return rate > 0.0 ? kSettled / rate : kLongestDwell; }
+/// A free motion of the structure.
+struct Mode {
+  double frequency;  ///< [Hz]
+  double rate;       ///< its amplitude fades as e^{-rate t} [1/s]
+};
+
+/// Half a dwell for a motion that fades at `rate`; without damping it never does.
+double half_dwell_for(double rate) {
+  constexpr double kLongest = 0.5 * kLongestEngineDwell;
+  return rate > 0.0 ? std::min(-std::log(kResidue) / rate, kLongest) : kLongest;
+}
+
+double half_dwell_for(const model::Engine<double>& engine) {
+  return half_dwell_for(0.5 * engine.viscous_damping / engine.inertia);
+}
+
+/// What a fit of a sine of `frequency` over the second half of a dwell takes from a mode that began with it.
+double taken_from(const Mode& mode, double frequency, double half) {
+  const double overlap = std::numbers::pi * half * std::abs(frequency - mode.frequency);
+  return std::exp(-mode.rate * half) / std::max(1.0, overlap);
+}
+
+/// Half a dwell at `frequency` for a mode.
+double half_dwell_for(const Mode& mode, double frequency) {
+  double shortest = 0.0;
+  double longest = 0.5 * kLongestDwell;
+  constexpr int kHalvings = 24;  // to 1e-4 s
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (shortest + longest);
+    (taken_from(mode, frequency, middle) > kResidue ? shortest : longest) = middle;
+  }
+  return longest;
+}
+
+LeastDwell dwell_of(double half, std::vector<Mode> modes) {
+  return [half, modes = std::move(modes)](double frequency) {
+    double longest = std::max(half, 0.5 * kShortestDwell);
+    for (const Mode& mode : modes) {
+      longest = std::max(longest, half_dwell_for(mode, frequency));
+    }
+    return 2.0 * longest;
+  };
+}
 
 }  // namespace
 
-double settling_time(const ModelFile& model) {
+LeastDwell settled_dwell(const ModelFile& model) {
   if (const auto* direct = std::get_if<DirectParameters>(&model.parameters)) {
-    return time_to_settle(0.5 * direct->mass.damping / direct->mass.inertia);
+    return dwell_of(half_dwell_for(0.5 * direct->mass.damping / direct->mass.inertia), {});
   }
-  const auto& engine = std::get<SimplexParameters>(model.parameters).engine;
-  return time_to_settle(0.5 * engine.viscous_damping / engine.inertia);
+  return dwell_of(half_dwell_for(std::get<SimplexParameters>(model.parameters).engine), {});
 }
 
-double settling_time(const VehicleFile& model, double lowest, double highest) {
+LeastDwell settled_dwell(const VehicleFile& model, double lowest, double highest) {
   return std::visit(
       [&](const auto& parameters) {
-        double longest = 0.0;
+        double half = 0.0;
         for (const auto& axis : parameters.axes) {
-          longest = std::max(longest, time_to_settle(0.5 * axis.engine.viscous_damping / axis.engine.inertia));
+          half = std::max(half, half_dwell_for(axis.engine));
         }
+        std::vector<Mode> modes;
         for (int k = 0; k < parameters.modes.modes; ++k) {
           const auto mode = static_cast<std::size_t>(k);
           const double frequency = parameters.modes.frequency[mode];
           if (frequency >= lowest && frequency <= highest) {
-            const double rate = 2.0 * std::numbers::pi * frequency * parameters.modes.damping_ratio[mode];
-            longest = std::max(longest, time_to_settle(rate));
+            modes.push_back({frequency, 2.0 * std::numbers::pi * frequency * parameters.modes.damping_ratio[mode]});
           }
         }
-        return longest;
+        return dwell_of(half, std::move(modes));
       },
       model.parameters);
 }
 
-double settled_dwell(double settling) { return std::clamp(2.0 * settling, kShortestDwell, kLongestDwell); }
-
 std::vector<double> fine_sines(const std::vector<SineBand>& bands, const std::vector<ChannelSweep>& coarse,
-                               double settling) {
+                               const LeastDwell& dwell) {
   constexpr double kReach = 1.0 + 25 * 0.0025;
   constexpr int kFrequencies = 51;
-  const double dwell = settled_dwell(settling);
   std::vector<double> command;
   const auto append = [&command](const std::vector<double>& more) {
     // A sweep ends in a row at rest, where the next begins.

@@ -26,13 +26,17 @@ std::vector<double> spaced(double lowest, double highest, int count) {
 }
 
 std::vector<double> stepped_sines(const std::vector<SineBand>& bands, double least_seconds) {
+  return stepped_sines(bands, [least_seconds](double) { return least_seconds; });
+}
+
+std::vector<double> stepped_sines(const std::vector<SineBand>& bands, const LeastDwell& least_seconds) {
   constexpr double kFewestPeriods = 8.0;
   std::vector<double> command;
   // Time runs on from dwell to dwell, so that one of no whole number of rows does not shift the phase of the next.
   double start = 0.0;
   for (const SineBand& band : bands) {
     for (const double frequency : band.frequencies) {
-      const double periods = std::max(kFewestPeriods, std::ceil(least_seconds * frequency));
+      const double periods = std::max(kFewestPeriods, std::ceil(least_seconds(frequency) * frequency));
       const double end = start + periods / frequency;
       for (std::size_t row = command.size(); static_cast<double>(row) * kPeriod < end; ++row) {
         command.push_back(band.amplitude * std::sin(kTurn * frequency * (static_cast<double>(row) * kPeriod - start)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,12 @@ inline constexpr double kShortestDwell = 2.0;
 
 /// A stepped sine: each frequency for at least eight whole periods and `least_seconds`, from zero phase to zero phase.
 std::vector<double> stepped_sines(const std::vector<SineBand>& bands, double least_seconds = kShortestDwell);
+
+/// How long a sine of a frequency [Hz] is held for at the least [s].
+using LeastDwell = std::function<double(double frequency)>;
+
+/// The same, each frequency for its own time.
+std::vector<double> stepped_sines(const std::vector<SineBand>& bands, const LeastDwell& least_seconds);
 
 /// The frequencies and amplitudes of the Green Run hot-fire test [GF slide Green Run Hot Fire]: 7 to 14 Hz at 0.8 deg and
 /// 0.40 to 6.25 Hz at 0.4 deg. The paper does not say which frequencies lie between: here steps of 0.25 Hz above, and 16 at

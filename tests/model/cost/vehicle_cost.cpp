@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps from random states under random commands, for callgrind to count: vehicle_cost.cmake runs it.
-//   vehicle_cost axis|taos|taos-thrust|masv|masv-thrust MODES
+//   vehicle_cost axis|taos|taos-thrust|taos-disturbed|masv|masv-thrust|masv-disturbed MODES
 
 #include <cstdio>
 #include <cstdlib>
@@ -58,12 +58,24 @@ void follow_thrust(Parameters& parameters) {
   }
 }
 
-enum class Thrust { constant, followed };
+/// What a step follows beside the commands: nothing, the thrust, or the thrust and all measured disturbances.
+enum class Follows { commands, thrust, disturbances };
+
+/// Torque on the axes, force and vibration on the bearing of an engine.
+template <class Inputs>
+void disturb_inputs(Inputs& inputs, int engine, Random& random) {
+  for (int axis = 2 * engine; axis < 2 * engine + 2; ++axis) {
+    inputs.torque[static_cast<std::size_t>(axis)] = random.either_sign(1.0, 1e5);
+    inputs.vibration[static_cast<std::size_t>(axis)] = random.either_sign(1e-6, 0.1);
+  }
+  inputs.force[static_cast<std::size_t>(engine)] = {random.either_sign(1.0, 1e5), random.either_sign(1.0, 1e5),
+                                                    random.either_sign(1.0, 1e5)};
+}
 
 template <class Vehicle, class Measured>
-void step_vehicle(int modes, Thrust thrust, Measured&& measured) {
+void step_vehicle(int modes, Follows follows, Measured&& measured) {
   typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
-  if (thrust == Thrust::followed) {
+  if (follows != Follows::commands) {
     follow_thrust(parameters);
   }
   parameters.modes = random_modes<typename Vehicle::Modes>(modes, 1.0 / 1.05e8, 5);
@@ -74,8 +86,11 @@ void step_vehicle(int modes, Thrust thrust, Measured&& measured) {
     typename Vehicle::State state = rest;
     typename Vehicle::Inputs inputs;
     for (int e = 0; e < Vehicle::kEngines; ++e) {
-      if (thrust == Thrust::followed) {
+      if (follows != Follows::commands) {
         inputs.thrust[static_cast<std::size_t>(e)] = -random.uniform(0.0, 1.86e6);
+      }
+      if (follows == Follows::disturbances) {
+        disturb_inputs(inputs, e, random);
       }
       const double size = random.one_in(2) ? 1.0 : 1e-5;
       for (int axis = 2 * e; axis < 2 * e + 2; ++axis) {
@@ -101,14 +116,17 @@ int main(int argc, char** argv) {
   using namespace hotfire::test;
   const std::string what = argc > 1 ? argv[1] : "";
   const int modes = argc > 2 ? static_cast<int>(std::strtol(argv[2], nullptr, 10)) : 0;
+  const Follows follows = what.ends_with("-disturbed") ? Follows::disturbances
+                          : what.ends_with("-thrust")  ? Follows::thrust
+                                                       : Follows::commands;
   if (what == "axis") {
     step_axis();
-  } else if (what == "taos" || what == "taos-thrust") {
-    step_vehicle<Taos>(modes, what == "taos" ? Thrust::constant : Thrust::followed, hotfire_measured_taos);
-  } else if (what == "masv" || what == "masv-thrust") {
-    step_vehicle<Masv>(modes, what == "masv" ? Thrust::constant : Thrust::followed, hotfire_measured_masv);
+  } else if (what.starts_with("taos")) {
+    step_vehicle<Taos>(modes, follows, hotfire_measured_taos);
+  } else if (what.starts_with("masv")) {
+    step_vehicle<Masv>(modes, follows, hotfire_measured_masv);
   } else {
-    std::fputs("vehicle_cost axis|taos|taos-thrust|masv|masv-thrust MODES\n", stderr);
+    std::fputs("vehicle_cost axis|taos|taos-thrust|taos-disturbed|masv|masv-thrust|masv-disturbed MODES\n", stderr);
     return 2;
   }
   return 0;

@@ -58,11 +58,11 @@ Record simulate_finely(const SweepOptions& options) {
   trials::SweepGoal goal = options.goal;
   goal.moment_arm = moment_arm_of_trial(options.trial);
   const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
-  const double settling = vehicle ? trials::settling_time(*vehicle, options.from, options.to)
-                                  : trials::settling_time(load_model(options.trial.model));
+  const trials::LeastDwell dwell = vehicle ? trials::settled_dwell(*vehicle, options.from, options.to)
+                                           : trials::settled_dwell(load_model(options.trial.model));
   const std::vector<trials::SineBand> bands = bands_of(options);
-  const Record coarse = simulate_command(options.trial, trials::stepped_sines(bands, trials::settled_dwell(settling)));
-  return simulate_command(options.trial, trials::fine_sines(bands, trials::analyse_sweep(coarse, goal), settling));
+  const Record coarse = simulate_command(options.trial, trials::stepped_sines(bands, dwell));
+  return simulate_command(options.trial, trials::fine_sines(bands, trials::analyse_sweep(coarse, goal), dwell));
 }
 
 Record simulate_both(const TrialOptions& options) {
