@@ -215,6 +215,8 @@ TEST(Loop, AFlightThatStartsOnTheCycleOfALoopAtItsLimitGoesOnWithIt) {
   controller.gain = 2.5;
   controller.rate_gain = 1.5;
   controller.integral_gain = 0.3;
+  // y(k) = 0.1 x(k) + 0.9 y(k-1): a memory of ten samples.
+  controller.sections.push_back({{0.1, 0.0, 0.0}, {-0.9, 0.0}});
   const plant::AnyParameters parameters = instrumented;
   const auto linear = linear::make_plant(parameters, controller.period, {});
   const VehicleLoop loop(*linear, stage, controller);

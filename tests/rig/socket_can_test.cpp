@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "hal/linux/posix_clock.hpp"
-#include "tests/rig/raw_can.hpp"
+#include "tests/rig/can_peer.hpp"
 #include "tests/support/allocation_guard.hpp"
 
 namespace hotfire::hal {
@@ -30,85 +30,8 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kQueued = 2000 * kMillisecond;
 constexpr std::int64_t kPatience = 30'000 * kMillisecond;
 
+using test::CanPeer;
 using test::shell;
-
-/// The other side of the bus: a plain socket that sends and sees everything, what it sent itself too.
-class Peer {
- public:
-  Peer() : socket_(SOCK_NONBLOCK) {
-    const int on = 1;
-    setsockopt(socket_.file, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on);
-    setsockopt(socket_.file, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &on, sizeof on);
-    const can_err_mask_t errors = CAN_ERR_MASK;
-    setsockopt(socket_.file, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
-    const int room = 1 << 22;
-    setsockopt(socket_.file, SOL_SOCKET, SO_RCVBUFFORCE, &room, sizeof room);
-  }
-
-  void send(canid_t id, std::uint8_t first, std::size_t size = CAN_MTU) {
-    canfd_frame frame{};
-    frame.can_id = id;
-    frame.len = size == CAN_MTU ? 8 : 64;
-    frame.data[0] = first;
-    put(frame, size);
-  }
-
-  void report(canid_t classes, std::uint8_t controller) {
-    canfd_frame frame{};
-    frame.can_id = CAN_ERR_FLAG | classes;
-    frame.len = CAN_ERR_DLC;
-    frame.data[1] = controller;
-    put(frame, CAN_MTU);
-  }
-
-  /// True once the kernel has delivered every frame of this side.
-  bool is_delivered() {
-    look();
-    return delivered_ == sent_;
-  }
-
-  /// How many frames of the other side arrived that `seen` has not given.
-  std::size_t arrived() {
-    look();
-    return others_.size();
-  }
-
-  /// First bytes of the frames of the other side that were seen since the last call.
-  std::vector<int> seen() {
-    look();
-    return std::exchange(others_, {});
-  }
-
- private:
-  void put(const canfd_frame& frame, std::size_t size) {
-    CHECK_EQUAL(static_cast<ssize_t>(size), write(socket_.file, &frame, size));
-    ++sent_;
-  }
-
-  void look() {
-    for (;;) {
-      canfd_frame frame{};
-      iovec place{&frame, sizeof frame};
-      msghdr message{};
-      message.msg_iov = &place;
-      message.msg_iovlen = 1;
-      const ssize_t size = recvmsg(socket_.file, &message, 0);
-      if (size < 0 && errno != ENETDOWN) {
-        return;
-      }
-      if (size > 0 && (message.msg_flags & MSG_CONFIRM) != 0) {
-        ++delivered_;
-      } else if (size > 0) {
-        others_.push_back(frame.data[0]);
-      }
-    }
-  }
-
-  test::RawCan socket_;
-  std::size_t sent_ = 0;
-  std::size_t delivered_ = 0;
-  std::vector<int> others_{};
-};
 
 CanFrame frame(const CanId& id, std::uint8_t first, bool fd = false) {
   CanFrame made;
@@ -123,12 +46,12 @@ CanFrame frame(const CanId& id, std::uint8_t first, bool fd = false) {
 
 TEST_GROUP(SocketCan) {
   PosixClock clock;
-  std::unique_ptr<Peer> peer;
+  std::unique_ptr<CanPeer> peer;
   std::unique_ptr<SocketCan> bus;
 
   void setup() override {
     shell("ip link add dev can0 type vcan; ip link set can0 mtu 72 up");
-    peer = std::make_unique<Peer>();
+    peer = std::make_unique<CanPeer>();
     bus = std::make_unique<SocketCan>(SocketCan::Settings{
         "can0", {{kReading, false, 10 * kMillisecond}, {kLong, true}}, {kCommand, kOtherCommand, kLong}, true});
     const auto refused = bus->open();
@@ -368,7 +291,7 @@ TEST(SocketCan, InterfaceThatIsPulledOutAndPluggedInIsUsableAfterRearm) {
   CHECK(bus->state() == CanState::down);
   CHECK(!bus->rearm());
   shell("ip link add dev can0 type vcan; ip link set can0 mtu 72 up");
-  peer = std::make_unique<Peer>();
+  peer = std::make_unique<CanPeer>();
   CHECK(bus->try_send(frame(kCommand, 1)) == CanSend::unusable);
   CHECK(bus->rearm());
   CHECK(bus->try_send(frame(kCommand, 2)) == CanSend::taken);

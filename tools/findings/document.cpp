@@ -150,7 +150,11 @@ std::string figure_text(double value, const std::string& unit) {
   return unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
 }
 
-std::string picture_name(const Finding& finding) { return fmt::format("{}.svg", finding.id); }
+std::string picture_name(const Finding& finding) {
+  constexpr int kInFolder = 10;
+  const int first = (std::stoi(std::string(finding.id.substr(1))) - 1) / kInFolder * kInFolder + 1;
+  return fmt::format("f{}-f{}/{}.svg", first, first + kInFolder - 1, finding.id);
+}
 
 std::map<std::string, std::string> pages(const std::vector<Row>& rows) {
   std::map<std::string, std::string> all;

@@ -22,7 +22,7 @@ std::map<std::string, std::string> pages(const std::vector<Row>& rows);
 /// Whether a number of the parameter sets was tuned to this figure.
 bool is_tuned(const Finding& finding, const Figure& figure);
 
-/// File name of a finding's picture: "F1.svg".
+/// Path of a finding's picture among those of all: "f1-f10/F1.svg".
 std::string picture_name(const Finding& finding);
 
 /// "9.51 Hz", four digits.

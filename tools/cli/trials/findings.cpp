@@ -142,9 +142,6 @@ void run_findings(const FindingsOptions& options) {
   }
   std::vector<findings::Row> rows;
   bool all_found = true;
-  if (!options.pictures.empty()) {
-    std::filesystem::create_directories(options.pictures);
-  }
   const auto wanted = chosen(options.only);
   Progress progress;
   for (const findings::Finding* finding : wanted) {
@@ -152,8 +149,9 @@ void run_findings(const FindingsOptions& options) {
     rows.push_back({finding, finding->find(bench)});
     all_found = all_found && rows.back().outcome.inside();
     if (!options.pictures.empty()) {
-      trials::write_picture(rows.back().outcome.picture,
-                            std::filesystem::path(options.pictures) / findings::picture_name(*finding));
+      const std::filesystem::path picture = std::filesystem::path(options.pictures) / findings::picture_name(*finding);
+      std::filesystem::create_directories(picture.parent_path());
+      trials::write_picture(rows.back().outcome.picture, picture);
     }
   }
   if (!options.pages.empty()) {
