@@ -93,27 +93,30 @@ PlayedFault read_fault(Entries& entries, const std::string& prefix, const Faulty
   } else if (fault.kind == PlayedKind::thrust && !plant.has_bearing) {
     entries.refuse(prefix + "kind: thrust is of topology taos or masv");
   }
+  const auto read_value = [&](double least, double most, const char* unit) {
+    fault.value = read_bounded(entries, prefix + "value", least, most, unit);
+  };
   switch (fault.kind) {
     case PlayedKind::biased:
-      fault.value = read_bounded(entries, prefix + "value", -kAnyFinite, kAnyFinite, "in the channel's unit");
+      read_value(-kAnyFinite, kAnyFinite, "in the channel's unit");
       break;
     case PlayedKind::noisy:
-      fault.value = read_bounded(entries, prefix + "value", 0.0, kAnyFinite, "in the channel's unit");
+      read_value(0.0, kAnyFinite, "in the channel's unit");
       break;
     case PlayedKind::delayed:
-      fault.value = read_bounded(entries, prefix + "value", 0.0, kLongestSensorDelay, "s");
+      read_value(0.0, kLongestSensorDelay, "s");
       break;
     case PlayedKind::leak:
-      fault.value = read_bounded(entries, prefix + "value", 0.0, 1e-6, "m^3/s/Pa");
+      read_value(0.0, 1e-6, "m^3/s/Pa");
       break;
     case PlayedKind::lost_supply:
-      fault.value = read_bounded(entries, prefix + "value", 1e4, 1e9, "Pa");
+      read_value(1e4, 1e9, "Pa");
       break;
     case PlayedKind::torque:
-      fault.value = read_bounded(entries, prefix + "value", -kLargestTorque, kLargestTorque, "N m");
+      read_value(-kLargestTorque, kLargestTorque, "N m");
       break;
     case PlayedKind::thrust:
-      fault.value = read_bounded(entries, prefix + "value", 0.0, kLargestThrust, "N");
+      read_value(0.0, kLargestThrust, "N");
       break;
     default:
       break;

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <ctime>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -14,6 +12,7 @@
 #include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/explain/search/stopwatch.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 
@@ -51,11 +50,10 @@ void run_simulation(const SimulateOptions& options) {
   const std::function<Record(const Record&)> run = simulation_of(options);
   const Record inputs = load_any_record(options.input, options.candump);
 
-  const auto before = std::chrono::steady_clock::now();
-  const std::clock_t processor_before = std::clock();
+  const explain::Stopwatch stopwatch;
   const Record outputs = run(inputs);
-  const double processor_took = static_cast<double>(std::clock() - processor_before) / CLOCKS_PER_SEC;
-  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  const double processor_took = stopwatch.processor_seconds();
+  const double took = stopwatch.seconds();
   write_record(outputs, options.output);
 
   const double simulated = static_cast<double>(outputs.rows) * outputs.period;

@@ -5,11 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <utility>
+
+#include "tools/explain/search/stopwatch.hpp"
 
 namespace hotfire {
 
@@ -40,9 +41,7 @@ double time_left(double seconds, double done) {
 }  // namespace
 
 std::function<double()> stopwatch() {
-  return [began = std::chrono::steady_clock::now()] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  };
+  return [watch = explain::Stopwatch()] { return watch.seconds(); };
 }
 
 Progress::Progress(std::optional<double> limit) : Progress(std::cerr, isatty(STDERR_FILENO) != 0, limit, stopwatch()) {}
