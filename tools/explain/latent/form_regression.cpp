@@ -13,7 +13,7 @@ namespace {
 
 /// Regressors that run along the flow together: their states stay in the processor's registers and first cache.
 constexpr Eigen::Index kBatch = 24;
-static_assert(static_cast<Eigen::Index>(model::kUnlistedPoints) + 1 <= kBatch, "a form fits into a batch");
+static_assert(static_cast<Eigen::Index>(model::kUnlistedPoints) + 1 <= kBatch);  // a form fits into a batch
 
 /// Rows that are multiplied together: enough for a matrix product, few enough for the first cache.
 constexpr Eigen::Index kRows = 64;
