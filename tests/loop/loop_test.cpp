@@ -64,6 +64,19 @@ void check_refused(const std::string& text, const std::string& part) {
   CHECK_TEXT(message.find(part) != std::string::npos, message.c_str());
 }
 
+/// Gives every engine of a vehicle its thrust, and the stage a rigid body and a bending mode of a frequency [Hz].
+FlightModes thrust_with_modes(MasvParameters& vehicle, double bending) {
+  for (auto& gimbal : vehicle.gimbals) {
+    gimbal.bearing.thrust = 1e6;
+  }
+  FlightModes modes;
+  modes.frequency = Eigen::Vector2d(0.0, bending);
+  modes.damping_ratio = Eigen::Vector2d(0.0, 0.02);
+  modes.side = Eigen::MatrixXd::Constant(8, 2, 1e-3);
+  modes.sensor = Eigen::MatrixXd::Constant(2, 2, 4e-5);
+  return modes;
+}
+
 }  // namespace
 
 TEST_GROUP(Loop){};
@@ -198,14 +211,7 @@ TEST(Loop, APredictedCycleIsKeptIfItsSimulationEndsNearestToIt) {
 TEST(Loop, AFlightThatStartsOnTheCycleOfALoopAtItsLimitGoesOnWithIt) {
   model::InstrumentedVehicle<model::Masv<double>> instrumented;
   MasvParameters& vehicle = instrumented.vehicle;
-  for (auto& gimbal : vehicle.gimbals) {
-    gimbal.bearing.thrust = 1e6;
-  }
-  FlightModes modes;
-  modes.frequency = Eigen::Vector2d(0.0, 3.0);
-  modes.damping_ratio = Eigen::Vector2d(0.0, 0.02);
-  modes.side = Eigen::MatrixXd::Constant(8, 2, 1e-3);
-  modes.sensor = Eigen::MatrixXd::Constant(2, 2, 4e-5);
+  FlightModes modes = thrust_with_modes(vehicle, 3.0);
   modes.sensor(0, 1) = 1e-6;
   const Stage stage(vehicle, modes, "pitch");
   Controller controller;
@@ -248,14 +254,7 @@ TEST(Loop, AFlightThatStartsOnTheCycleOfALoopAtItsLimitGoesOnWithIt) {
 
 TEST(Loop, AStageInTimeHasTheResponseOfItsModes) {
   MasvParameters vehicle;
-  for (auto& gimbal : vehicle.gimbals) {
-    gimbal.bearing.thrust = 1e6;
-  }
-  FlightModes modes;
-  modes.frequency = Eigen::Vector2d(0.0, 1.5);
-  modes.damping_ratio = Eigen::Vector2d(0.0, 0.02);
-  modes.side = Eigen::MatrixXd::Constant(8, 2, 1e-3);
-  modes.sensor = Eigen::MatrixXd::Constant(2, 2, 4e-5);
+  FlightModes modes = thrust_with_modes(vehicle, 1.5);
   const Stage stage(vehicle, modes, "pitch");
   constexpr double kStep = 5e-4;
   constexpr double kFrequency = 0.8;

@@ -22,13 +22,8 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
   for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kSampled) {
     sample.push_back(x[i]);
   }
-  const auto at = [&](double share) {
-    const auto place = sample.begin() + static_cast<std::ptrdiff_t>(quantile_place(sample.size(), share));
-    std::ranges::nth_element(sample, place);
-    return *place;
-  };
-  const double low = at(0.01);
-  const double high = at(0.99);
+  const double low = quantile_of_unsorted(sample, 0.01);
+  const double high = quantile_of_unsorted(sample, 0.99);
   if (!(high > low)) {
     return 0.0;
   }

@@ -41,6 +41,15 @@ template <model::Memory kKind>
   }
 }
 
+template <std::size_t... kKinds>
+void run_kind(const model::MemoryParameters<double>& memory, const Eigen::VectorXd& argument, double period,
+              Eigen::VectorXd& output, std::index_sequence<kKinds...> /*all*/) {
+  ((static_cast<std::size_t>(memory.kind) == kKinds
+        ? run_memory<static_cast<model::Memory>(kKinds)>(memory, argument, period, output)
+        : void()),
+   ...);
+}
+
 }  // namespace
 
 Eigen::Index Form::size() const {
@@ -96,13 +105,7 @@ Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& argument, do
     }
     return output;
   }
-  [&]<std::size_t... kKinds>(std::index_sequence<kKinds...>) {
-    ((static_cast<std::size_t>(form.memory.kind) == kKinds
-          ? run_memory<static_cast<model::Memory>(kKinds)>(form.memory, argument, period, output)
-          : void()),
-     ...);
-  }
-  (std::make_index_sequence<model::kMemoryNames.size()>());
+  run_kind(form.memory, argument, period, output, std::make_index_sequence<model::kMemoryNames.size()>());
   return output;
 }
 

@@ -48,16 +48,6 @@ std::vector<double> sorted_values(const FormRegression& regression, const Form& 
   return values;
 }
 
-/// The 99th percentile of sizes.
-double most_of(std::vector<double> sizes) {
-  if (sizes.empty()) {
-    return 0.0;
-  }
-  const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(quantile_place(sizes.size(), 0.99));
-  std::ranges::nth_element(sizes, place);
-  return *place;
-}
-
 /// The 99th percentile of the size of an argument: what its widths, quanta and pitches are measured by.
 double size_of(const FormRegression& regression, const Form& form) {
   std::vector<double> sizes;
@@ -65,7 +55,7 @@ double size_of(const FormRegression& regression, const Form& form) {
     const Eigen::VectorXd own = argument_of(form, quantities).cwiseAbs();
     sizes.insert(sizes.end(), own.begin(), own.end());
   }
-  return most_of(std::move(sizes));
+  return quantile_of_unsorted(sizes, 0.99);
 }
 
 /// The 99th percentile of how fast an argument changes [1/s].
@@ -78,7 +68,7 @@ double rate_of(const FormRegression& regression, const Form& form) {
       rates.push_back(std::abs(own(row) - own(row - 1)) / period);
     }
   }
-  return most_of(std::move(rates));
+  return rates.empty() ? 0.0 : quantile_of_unsorted(rates, 0.99);
 }
 
 std::vector<double> comb(double low, double high, int count) {

@@ -9,14 +9,16 @@
 
 namespace hotfire::explain {
 
-/// The place in ascending order of the value that a share of `count` values lies below.
-inline std::size_t quantile_place(std::size_t count, double share) {
-  return static_cast<std::size_t>(share * static_cast<double>(count - 1));
-}
-
 /// The value that a share of `sorted` values lies below.
 inline double quantile(const std::vector<double>& sorted, double share) {
-  return sorted[quantile_place(sorted.size(), share)];
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+/// The same of values in any order, which it changes: one quantile needs no sorting.
+inline double quantile_of_unsorted(std::vector<double>& values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, place);
+  return *place;
 }
 
 /// A gain of an argument, or of a product of two, at a place.

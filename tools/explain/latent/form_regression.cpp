@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/explain/fit/parallel.hpp"
+#include "tools/explain/latent/row_products.hpp"
 
 namespace hotfire::explain {
 
@@ -14,46 +15,6 @@ namespace {
 /// Regressors that run along the flow together: their states stay in the processor's registers and first cache.
 constexpr Eigen::Index kBatch = 24;
 static_assert(static_cast<Eigen::Index>(model::kUnlistedPoints) + 1 <= kBatch);  // a form fits into a batch
-
-/// Rows that are multiplied together: enough for a matrix product, few enough for the first cache.
-constexpr Eigen::Index kRows = 64;
-
-/// Sums over rows of products of regressors among themselves, and with the parameters of an experiment and what is left. A
-/// matrix product of many rows takes a fraction of the time of as many outer products.
-class Products {
- public:
-  Products(Eigen::Index columns, Eigen::Index parameters)
-      : own(Eigen::MatrixXd::Zero(columns, columns)),
-        cross(Eigen::MatrixXd::Zero(columns, parameters + 1)),
-        regressors_(columns, kRows),
-        others_(parameters + 1, kRows) {}
-
-  /// One row: the readings of the regressors, the slopes of the parameters and what is left.
-  template <class Readings, class Slopes>
-  void add(const Readings& readings, const Slopes& slopes, double left) {
-    regressors_.col(rows_) = readings.transpose();
-    others_.col(rows_) << slopes, left;
-    if (++rows_ == kRows) {
-      flush();
-    }
-  }
-
-  /// Adds the rows that wait.
-  void flush() {
-    const auto regressors = regressors_.leftCols(rows_);
-    own.noalias() += regressors * regressors.transpose();
-    cross.noalias() += regressors * others_.leftCols(rows_).transpose();
-    rows_ = 0;
-  }
-
-  Eigen::MatrixXd own;    ///< a row and a column a regressor
-  Eigen::MatrixXd cross;  ///< a row a regressor; a column a parameter, then what is left
-
- private:
-  Eigen::MatrixXd regressors_;
-  Eigen::MatrixXd others_;
-  Eigen::Index rows_ = 0;
-};
 
 /// Every form's regressors by experiment, a row each and a column a row of the record, each over its largest value: its
 /// coefficient is then what it adds there over the port's scale.
@@ -176,7 +137,7 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
     States state = States::Zero();
     const Eigen::MatrixXd& left = problem_.left[e];
     const auto of_record = static_cast<Eigen::Index>(problem_.own[e].size());
-    Products products(columns, of_record);
+    RowProducts products(columns, of_record + 1);  // the others: a parameter each, then what is left
     for (Eigen::Index row = 0; row < left.rows(); ++row) {
       for (Eigen::Index c = 0; c < left.cols(); ++c) {
         const auto channel = static_cast<std::size_t>(c);
@@ -187,7 +148,10 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
         const Row reading = place_.port
                                 ? Row(state.row(kReadState[channel]) * (problem_.scales.state(kReadState[channel]) / noise))
                                 : Row(added[e].col(row).transpose() * (problem_.scales.reading[channel] / noise));
-        products.add(reading.leftCols(columns), problem_.sensitivity[e][channel].col(row), left(row, c));
+        products.add([&](auto&& values, auto&& others) {
+          values = reading.leftCols(columns).transpose();
+          others << problem_.sensitivity[e][channel].col(row), left(row, c);
+        });
       }
       if (place_.port && row + 1 < left.rows()) {
         const RowFlow& flow = problem_.flows[e].rows[static_cast<std::size_t>(row)];

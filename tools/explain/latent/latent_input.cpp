@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "tools/explain/latent/row_products.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -23,9 +25,6 @@ constexpr double kSmallest = -16.1;  // ln 1e-7
 constexpr double kLargest = 0.7;     // ln 2
 constexpr double kCoarse = 2.8;      // a grid of seven
 constexpr int kRefinements = 2;
-
-/// Rows whose innovations are multiplied together: enough for a matrix product, few enough for the first cache.
-constexpr Eigen::Index kTogether = 64;
 
 constexpr int kSignal = kFlowStates;
 constexpr int kFilterStates = kFlowStates + 1;
@@ -104,15 +103,7 @@ class Filter {
       const Experiment& experiment = problem_.data.experiments[e];
       const double kept = memory(experiment);
       const auto parameters = static_cast<Eigen::Index>(problem_.own[e].size());
-      // Squares of the innovations over their deviation, of many rows at a time: what is left first, then its slopes.
-      Eigen::MatrixXd products = Eigen::MatrixXd::Zero(parameters + 1, parameters + 1);
-      Eigen::MatrixXd waiting(parameters + 1, kTogether);
-      Eigen::Index waiting_count = 0;
-      const auto add_waiting = [&] {
-        const auto those = waiting.leftCols(waiting_count);
-        products.noalias() += those * those.transpose();
-        waiting_count = 0;
-      };
+      RowProducts products(parameters + 1);  // innovations over their deviation: what is left first, then its slopes
       Eigen::RowVectorXd innovation(parameters + 1);
       Means means = Means::Zero(kFilterRows, parameters + 1);
       FilterMatrix covariance = start();
@@ -130,10 +121,7 @@ class Filter {
           innovation -= seen(kReadState[c]) * means.row(kReadState[c]) + seen(kSignal) * means.row(kSignal);
           means += (spread / variance).lazyProduct(innovation);
           covariance -= (spread / variance).lazyProduct(states_of(spread).transpose());
-          waiting.col(waiting_count++) = innovation.transpose() / std::sqrt(variance);
-          if (waiting_count == kTogether) {
-            add_waiting();
-          }
+          products.add([&](auto&& values, auto&&) { values = innovation.transpose() / std::sqrt(variance); });
           logarithms += std::log(variance);
           count += 1.0;
         }
@@ -143,10 +131,10 @@ class Filter {
           advance(moves, kept, covariance);
         }
       }
-      add_waiting();
-      square += products(0, 0);
-      normal(problem_.own[e], problem_.own[e]) += products.bottomRightCorner(parameters, parameters);
-      right(problem_.own[e]) += products.bottomLeftCorner(parameters, 1);
+      products.flush();
+      square += products.own(0, 0);
+      normal(problem_.own[e], problem_.own[e]) += products.own.bottomRightCorner(parameters, parameters);
+      right(problem_.own[e]) += products.own.bottomLeftCorner(parameters, 1);
     }
     const Eigen::LLT<Eigen::MatrixXd> factor(normal);
     move = factor.solve(right);
