@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "tools/explain/explain.hpp"
 #include "tools/explain/held_out_records.hpp"
+#include "tools/explain/policy/policy.hpp"
 #include "tools/explain/result/axes_result.hpp"
 #include "tools/explain/result/conclusion.hpp"
 #include "tools/explain/result/result_of.hpp"
@@ -68,14 +70,63 @@ Found search_axis(const AxisOfVehicle& axis, const ExplainOptions& options, std:
   }
 }
 
-/// Fits the explained model of each axis again, beside the others as those are explained.
-void fit_beside_explained(const VehicleParameters& declared, const ExplainOptions& options, VehicleAxes& vehicle,
-                          FoundAxes& found) {
-  const auto run = run_coupled(together(declared, found, &Found::explained), vehicle, options.threads);
-  if (!run) {
-    return;
+/// Puts every axis beside the rest as it is explained so far, unless that runs away.
+void put_beside_explained(const VehicleParameters& declared, unsigned threads, const FoundAxes& found,
+                          VehicleAxes& vehicle) {
+  if (const auto run = run_coupled(together(declared, found, &Found::explained), vehicle, threads)) {
+    put_beside(*run, vehicle);
   }
-  put_beside(*run, vehicle);
+}
+
+/// The axes that are measured, the one with the largest error under the declared model first: what is missing in it
+/// disturbs the others the most.
+std::vector<std::size_t> largest_error_first(const VehicleAxes& vehicle, const CoupledRun& declared) {
+  std::vector<std::pair<double, std::size_t>> errors;
+  for (std::size_t i = 0; i < vehicle.axes.size(); ++i) {
+    if (vehicle.axes[i].measured) {
+      errors.emplace_back(-excess_over_noise(vehicle.axes[i].data, declared.prediction[i]), i);
+    }
+  }
+  std::ranges::sort(errors);
+  std::vector<std::size_t> order;
+  for (const auto& [error, i] : errors) {
+    order.push_back(i);
+  }
+  return order;
+}
+
+/// True if an axis was given effects beside another rest of the vehicle than it is beside now, and the difference changes
+/// its error by as much as an effect has to: what was found may explain what was missing elsewhere.
+bool is_found_beside_another(const AxisOfVehicle& axis, const Found& found, unsigned threads) {
+  if (found.kept.empty()) {
+    return false;
+  }
+  const Assessed now = assess(Evaluator(axis.data, Resolution::fine), threads, found.explained.model);
+  return !now.good() || std::abs(held_out_ratio(now, found.explained) - 1.0) > policy().least_held_out_drop;
+}
+
+/// Searches the axes one after the other, each beside the rest as it is explained by then, and those that were given effects
+/// once more where the later searches change what they are beside. True if it was interrupted.
+bool search_axes(const VehicleParameters& declared, const CoupledRun& before, const ExplainOptions& options,
+                 VehicleAxes& vehicle, FoundAxes& found) {
+  const std::vector<std::size_t> order = largest_error_first(vehicle, before);
+  bool interrupted = false;
+  for (const bool again : {false, true}) {
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::size_t i = order[k];
+      if (again && (interrupted || !is_found_beside_another(vehicle.axes[i], *found[i], options.threads))) {
+        continue;
+      }
+      found[i] = search_axis(vehicle.axes[i], options, again ? 0 : order.size() - 1 - k);
+      interrupted = interrupted || found[i]->interrupted;
+      put_beside_explained(declared, options.threads, found, vehicle);
+    }
+  }
+  return interrupted;
+}
+
+/// Fits the explained model of each axis again, beside the others as those are explained.
+void fit_beside_explained(const ExplainOptions& options, const VehicleAxes& vehicle, FoundAxes& found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i]) {
       const AxisOfVehicle& axis = vehicle.axes[i];
@@ -174,16 +225,9 @@ VehicleExplanation explain(const VehicleFile& model, const std::vector<Record>& 
   }
   put_beside(*before, vehicle);
   FoundAxes found(vehicle.axes.size());
-  bool interrupted = false;
-  auto searches_to_come = static_cast<std::size_t>(std::ranges::count_if(vehicle.axes, &AxisOfVehicle::measured));
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (vehicle.axes[i].measured) {
-      found[i] = search_axis(vehicle.axes[i], options, --searches_to_come);
-      interrupted = interrupted || found[i]->interrupted;
-    }
-  }
+  const bool interrupted = search_axes(declared, *before, options, vehicle, found);
   if (!interrupted) {
-    fit_beside_explained(declared, options, vehicle, found);
+    fit_beside_explained(options, vehicle, found);
   }
   for (const Stage stage : {&Found::declared, &Found::calibrated, &Found::explained}) {
     judge_together(declared, options.threads, vehicle, found, stage);

@@ -107,7 +107,7 @@ TEST(ExplainVehicleAtLength, of_eight_axes_the_two_with_a_missing_effect_are_nam
                                          "load_scale = 6e3\n[structure.yaw4]\nstiffness = 4.4e8\n");
   explain::ExplainOptions options;
   options.threads = 2;
-  const auto found = explain::explain(declared(), {measured(truth, axis_names(4), 40.0)}, options);
+  const auto found = explain::explain(declared(), {measured(truth, axis_names(4), 131.0)}, options);
   CHECK_TRUE(names_by_axis(found.result) ==
              (std::map<std::string, std::string>{{"pitch2", "valve_deadband"}, {"yaw3", "soft_stiffness"}}));
   for (const explain::ChannelErrors& channel : found.result.channels) {
