@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/latent/latent_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include <CppUTest/TestHarness.h>
 
+#include "tests/explain/readings.hpp"
+#include "tests/support/add_effect.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace {
@@ -22,19 +25,22 @@ using explain::Port;
 constexpr double kTorque = 2e3;  // N m
 constexpr double kNoise = 1e-6;  // m, rad
 
+/// Adds a torque against the engine that is a table over time.
+void add_torque_over_time(ModelFile& model, const std::vector<double>& times, const std::vector<double>& torques) {
+  using Torque = model::UnlistedMotion<model::Site::engine_torque>;
+  test::add_effect<Torque>(std::get<SimplexParameters>(model.parameters), [&](auto& effect) {
+    effect.option = 4;
+    effect.table.points = static_cast<int>(times.size());
+    std::ranges::copy(times, effect.table.x.begin());
+    std::ranges::copy(torques, effect.table.y.begin());
+  });
+}
+
 /// A plant at rest under a torque against the engine that is a table over time: a triangle of 4 s.
 Record record_of() {
   ModelFile model;
-  auto& parameters = std::get<SimplexParameters>(model.parameters = SimplexParameters{});
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& effect) {
-    if constexpr (std::is_same_v<E, model::UnlistedMotion<model::Site::engine_torque>>) {
-      parameters.effects.active[index] = true;
-      effect.option = 4;
-      effect.table.points = 3;
-      effect.table.x = {2.0, 4.0, 6.0};
-      effect.table.y = {0.0, kTorque, 0.0};
-    }
-  });
+  model.parameters = SimplexParameters{};
+  add_torque_over_time(model, {2.0, 4.0, 6.0}, {0.0, kTorque, 0.0});
   Record record;
   record.name = record.path = "torque.csv";
   record.period = 2e-3;
@@ -42,13 +48,7 @@ Record record_of() {
   record.channels.push_back({"command", "rad", std::vector<double>(record.rows, 0.0)});
   const Record modelled = simulate(model, record);
   std::mt19937_64 random(3);
-  std::normal_distribution<double> normal;
-  for (const char* name : {"piston", "engine"}) {
-    record.channels.push_back(*modelled.find(name));
-    for (double& value : record.channels.back().values) {
-      value += kNoise * normal(random);
-    }
-  }
+  test::add_readings(record, modelled, {{"piston", kNoise}, {"engine", kNoise}}, random);
   return record;
 }
 
@@ -166,16 +166,7 @@ TEST(LatentInput, TheFlowOfARowIsThatOfTheSimulation) {
   LONGS_EQUAL(data.experiments[0].rows() - 1, flows[0].rows.size());
   // A hundred rows under a constant torque, by the flow and by the model's own torque.
   ModelFile truth = model;
-  auto& loaded = std::get<SimplexParameters>(truth.parameters);
-  model::visit_effects(loaded, [&]<class E>(std::size_t index, auto& effect) {
-    if constexpr (std::is_same_v<E, model::UnlistedMotion<model::Site::engine_torque>>) {
-      loaded.effects.active[index] = true;
-      effect.option = 4;
-      effect.table.points = 2;
-      effect.table.x = {0.0, 1e-4};
-      effect.table.y = {0.0, kTorque};
-    }
-  });
+  add_torque_over_time(truth, {0.0, 1e-4}, {0.0, kTorque});
   Record record = record_of();
   const Record modelled = simulate(truth, record);
   Eigen::Matrix<double, 8, 1> deviation = Eigen::Matrix<double, 8, 1>::Zero();

@@ -5,8 +5,9 @@
 #include <initializer_list>
 #include <numbers>
 #include <random>
-#include <utility>
 
+#include "tests/explain/readings.hpp"
+#include "tests/support/add_effect.hpp"
 #include "tools/explain/terms/candidates.hpp"
 #include "tools/simulate/simulate.hpp"
 
@@ -33,13 +34,7 @@ inline Record record_of(const ModelFile& truth, double scale = 1.0) {
   record.channels.push_back(command);
   const Record modelled = simulate(truth, record);
   std::mt19937_64 random(7);
-  std::normal_distribution<double> normal;
-  for (const auto& [name, noise] : {std::pair{"piston", kPistonNoise}, std::pair{"engine", kEngineNoise}}) {
-    record.channels.push_back(*modelled.find(name));
-    for (double& value : record.channels.back().values) {
-      value += noise * normal(random);
-    }
-  }
+  add_readings(record, modelled, {{"piston", kPistonNoise}, {"engine", kEngineNoise}}, random);
   return record;
 }
 
@@ -55,16 +50,12 @@ inline ModelFile declared() {
 template <class E>
 ModelFile with_effect(std::initializer_list<double> values, int option = 0) {
   ModelFile model = declared();
-  auto& parameters = std::get<SimplexParameters>(model.parameters);
-  model::visit_effects(parameters, [&]<class Own>(std::size_t index, auto& effect) {
-    if constexpr (std::is_same_v<Own, E>) {
-      parameters.effects.active[index] = true;
-      effect.option = option;
-      auto value = values.begin();
-      for (const auto& field : std::remove_cvref_t<decltype(effect)>::fields()) {
-        if (value != values.end() && model::is_used(field.options, option)) {
-          effect.*field.member = *value++;
-        }
+  add_effect<E>(std::get<SimplexParameters>(model.parameters), [&](auto& effect) {
+    effect.option = option;
+    auto value = values.begin();
+    for (const auto& field : std::remove_cvref_t<decltype(effect)>::fields()) {
+      if (value != values.end() && model::is_used(field.options, option)) {
+        effect.*field.member = *value++;
       }
     }
   });

@@ -9,7 +9,8 @@
 #include <random>
 #include <utility>
 
-#include "model/keys.hpp"
+#include "tests/explain/readings.hpp"
+#include "tests/support/add_effect.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace hotfire::test {
@@ -54,13 +55,7 @@ Record recorded(const ModelFile& truth, const char* name, double seconds, double
   record.channels.push_back(std::move(command));
   const Record modelled = simulate(truth, record);
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  for (const auto& [channel, noise] : {std::pair{"piston", kPistonNoise}, std::pair{"engine", kEngineNoise}}) {
-    record.channels.push_back(*modelled.find(channel));
-    for (double& value : record.channels.back().values) {
-      value += noise * normal(random);
-    }
-  }
+  add_readings(record, modelled, {{"piston", kPistonNoise}, {"engine", kEngineNoise}}, random);
   return record;
 }
 
@@ -84,13 +79,7 @@ Given recorded_of(const ModelFile& truth) {
 template <class E, class Set>
 ModelFile rig_with(Set&& set) {
   ModelFile truth = rig();
-  auto& parameters = std::get<SimplexParameters>(truth.parameters);
-  model::visit_effects(parameters, [&]<class Own>(std::size_t index, auto& values) {
-    if constexpr (std::is_same_v<Own, E>) {
-      parameters.effects.active[index] = true;
-      set(values);
-    }
-  });
+  add_effect<E>(std::get<SimplexParameters>(truth.parameters), set);
   return truth;
 }
 

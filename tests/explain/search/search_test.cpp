@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tests/explain/oscillator.hpp"
+#include "tests/support/add_effect.hpp"
 
 namespace {
 
@@ -69,16 +70,8 @@ TEST(Search, AForceThatNoListedEffectHasIsTakenDownAsATableOverWhatItDependsOn) 
 TEST(Search, ADeclaredEffectIsCalibratedWithinItsToleranceAndOneWithoutSupportIsSaid) {
   ModelFile model = declared_oscillator(100.0);
   auto& parameters = std::get<DirectParameters>(model.parameters);
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
-    if constexpr (E::name == "cubic_stiffness") {
-      parameters.effects.active[index] = true;
-      values.stiffness = 250.0;
-    }
-    if constexpr (E::name == "quadratic_stiffness") {
-      parameters.effects.active[index] = true;
-      values.stiffness = 1e-3;
-    }
-  });
+  test::add_effect<model::CubicStiffness>(parameters, [](auto& values) { values.stiffness = 250.0; });
+  test::add_effect<model::QuadraticStiffness>(parameters, [](auto& values) { values.stiffness = 1e-3; });
   model.tolerance["effects.cubic_stiffness.stiffness"] = 0.5;
   const auto data = explain::make_dataset(model, {oscillator(400.0, 1e-3)});
   const auto found = explain::search(data, model, {2, 4, {}});

@@ -23,13 +23,7 @@ int factor(Argument argument) { return 1 + static_cast<int>(argument); }
 template <class E, class F>
 ModelFile with_term(F&& set) {
   ModelFile model = declared();
-  auto& parameters = std::get<SimplexParameters>(model.parameters);
-  model::visit_effects(parameters, [&]<class Own>(std::size_t index, auto& values) {
-    if constexpr (std::is_same_v<Own, E>) {
-      parameters.effects.active[index] = true;
-      set(values);
-    }
-  });
+  add_effect<E>(std::get<SimplexParameters>(model.parameters), set);
   return model;
 }
 

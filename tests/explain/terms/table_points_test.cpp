@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tests/explain/oscillator.hpp"
+#include "tests/support/add_effect.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 
 namespace {
@@ -97,35 +98,32 @@ namespace {
 /// angle.
 bool mass_feeds_energy(double at_negative, double at_rest, double at_positive) {
   DirectParameters parameters;
-  explain::Candidate candidate;
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& effect) {
-    if constexpr (std::is_same_v<E, model::UnlistedMotion<model::Site::mass_force>>) {
-      candidate = {index, 1, std::string(E::name), "rate", std::string(model::site_name(E::site))};
-      parameters.effects.active[index] = true;
-      effect.option = 1;
-      effect.table.points = 3;
-      effect.table.x = {-0.1, 0.0, 0.1};
-      effect.table.y = {at_negative, at_rest, at_positive};
-    }
+  using Force = model::UnlistedMotion<model::Site::mass_force>;
+  const std::size_t place = test::add_effect<Force>(parameters, [&](auto& effect) {
+    effect.option = 1;
+    effect.table.points = 3;
+    effect.table.x = {-0.1, 0.0, 0.1};
+    effect.table.y = {at_negative, at_rest, at_positive};
   });
-  return explain::feeds_energy(parameters, candidate);
+  return explain::feeds_energy(parameters,
+                               {place, 1, std::string(Force::name), "rate", std::string(model::site_name(Force::site))});
 }
 
 bool term_feeds_energy(model::Argument argument, double slope) {
   SimplexParameters parameters;
-  explain::Candidate candidate;
-  model::visit_effects(parameters, [&]<class E>(std::size_t index, auto& effect) {
-    if constexpr (std::is_same_v<E, model::Term<model::Site::engine_torque>>) {
-      candidate = {
-          index, 0, std::string(E::name), "", std::string(model::site_name(E::site)), {static_cast<int>(argument), 0, 0}};
-      parameters.effects.active[index] = true;
-      effect.argument = static_cast<int>(argument);
-      effect.table.points = 3;
-      effect.table.x = {-0.1, 0.0, 0.1};
-      effect.table.y = {-0.1 * slope, 0.0, 0.1 * slope};
-    }
+  using Torque = model::Term<model::Site::engine_torque>;
+  const std::size_t place = test::add_effect<Torque>(parameters, [&](auto& effect) {
+    effect.argument = static_cast<int>(argument);
+    effect.table.points = 3;
+    effect.table.x = {-0.1, 0.0, 0.1};
+    effect.table.y = {-0.1 * slope, 0.0, 0.1 * slope};
   });
-  return explain::feeds_energy(parameters, candidate);
+  return explain::feeds_energy(parameters, {place,
+                                            0,
+                                            std::string(Torque::name),
+                                            "",
+                                            std::string(model::site_name(Torque::site)),
+                                            {static_cast<int>(argument), 0, 0}});
 }
 
 }  // namespace

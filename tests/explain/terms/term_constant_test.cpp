@@ -19,16 +19,13 @@ using Command = model::Term<model::Site::command>;
 template <class E>
 Fitted with_curve(double constant, double size, Candidate& candidate) {
   Fitted fitted = test::about_declared();
-  visit_effects(fitted.base, [&]<class Own>(std::size_t index, auto& effect) {
-    if constexpr (std::is_same_v<Own, E>) {
-      candidate = {index, 0, std::string(E::name), "", std::string(model::site_name(E::site))};
-      set_active(fitted.base, index, true);
-      effect.argument = static_cast<int>(model::Argument::position);
-      effect.table.points = 3;
-      effect.table.x = {-0.01, 0.0, 0.01};
-      effect.table.y = {constant, constant + size, constant};
-    }
+  const std::size_t place = test::add_effect<E>(std::get<SimplexParameters>(fitted.base), [&](auto& effect) {
+    effect.argument = static_cast<int>(model::Argument::position);
+    effect.table.points = 3;
+    effect.table.x = {-0.01, 0.0, 0.01};
+    effect.table.y = {constant, constant + size, constant};
   });
+  candidate = {place, 0, std::string(E::name), "", std::string(model::site_name(E::site))};
   return fitted;
 }
 

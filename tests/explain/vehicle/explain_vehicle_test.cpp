@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "tests/explain/readings.hpp"
 #include "tests/files/scratch.hpp"
 #include "tools/explain/explain.hpp"
 #include "tools/files/record/axis_names.hpp"
@@ -39,7 +40,6 @@ VehicleFile declared() {
 Record measured(const VehicleFile& model, const std::vector<std::string>& axes, double seconds) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform;
-  std::normal_distribution<double> normal;
   Record record;
   record.name = record.path = "all.csv";
   record.period = 2e-3;
@@ -61,14 +61,12 @@ Record measured(const VehicleFile& model, const std::vector<std::string>& axes, 
     record.channels.push_back({"command." + name, "rad", command});
   }
   const Record simulated = simulate(model, record);
+  std::vector<std::pair<std::string, double>> noise;
   for (const std::string& axis : axes) {
-    for (const std::string channel : {"piston.", "engine."}) {
-      record.channels.push_back(*simulated.find(channel + axis));
-      for (double& value : record.channels.back().values) {
-        value += (channel == "piston." ? kPistonNoise : kEngineNoise) * normal(random);
-      }
-    }
+    noise.emplace_back("piston." + axis, kPistonNoise);
+    noise.emplace_back("engine." + axis, kEngineNoise);
   }
+  test::add_readings(record, simulated, noise, random);
   return record;
 }
 

@@ -7,7 +7,9 @@
 #include <random>
 #include <string>
 
+#include "tests/explain/readings.hpp"
 #include "tests/files/scratch.hpp"
+#include "tests/support/attach_points.hpp"
 #include "tools/explain/explain.hpp"
 #include "tools/explain/terms/assessed.hpp"
 #include "tools/files/record/axis_names.hpp"
@@ -34,14 +36,10 @@ constexpr const char* kFriction =
 
 /// Two axes on inclined attach points, so that a torque about one of them moves the other.
 VehicleFile model_with(const std::string& inertia, const std::string& more = "") {
-  return parse_vehicle(
-      "schema = 1\ntopology = \"taos\"\n[engine]\ninertia = " + inertia +
-          "\n[sensors]\npiston_noise = 8e-6\nengine_noise = 6e-5\n[tolerance]\nengine.inertia = 0.05\n"
-          "[attach.pitch]\nengine_x = -0.35\nengine_y = 0.05\nengine_z = -0.70\nvehicle_x = 0.85\nvehicle_y = 0.0\n"
-          "vehicle_z = -0.95\n[attach.yaw]\nengine_x = -0.35\nengine_y = 0.70\nengine_z = 0.05\nvehicle_x = 0.85\n"
-          "vehicle_y = 0.95\nvehicle_z = 0.0\n" +
-          more,
-      "taos.toml");
+  return parse_vehicle("schema = 1\ntopology = \"taos\"\n[engine]\ninertia = " + inertia +
+                           "\n[sensors]\npiston_noise = 8e-6\nengine_noise = 6e-5\n[tolerance]\nengine.inertia = 0.05\n" +
+                           test::kInclinedAttachPoints + more,
+                       "taos.toml");
 }
 
 /// 12 s of both commands and of a measured torque of each of `torques`, read from a model with sensor noise.
@@ -66,13 +64,12 @@ Record record_under(const std::array<double, 2>& torques) {
   }
   const Record modelled = simulate(model_with("9490"), record);
   std::mt19937_64 random(11);
-  std::normal_distribution<double> normal;
-  for (const char* name : {"piston.pitch", "engine.pitch", "piston.yaw", "engine.yaw"}) {
-    record.channels.push_back(*modelled.find(name));
-    for (double& value : record.channels.back().values) {
-      value += (name[0] == 'p' ? kPistonNoise : kEngineNoise) * normal(random);
-    }
-  }
+  test::add_readings(record, modelled,
+                     {{"piston.pitch", kPistonNoise},
+                      {"engine.pitch", kEngineNoise},
+                      {"piston.yaw", kPistonNoise},
+                      {"engine.yaw", kEngineNoise}},
+                     random);
   return record;
 }
 
@@ -146,26 +143,26 @@ void without(Record& record, const std::string& ending) {
   std::erase_if(record.channels, [&](const Channel& channel) { return channel.name.ends_with(ending); });
 }
 
+/// With the measured torques the calibrated model leaves the noise alone; without that about yaw it leaves more.
+void check_torque_about_yaw_acts(Record record, const VehicleFile& declared) {
+  DOUBLES_EQUAL(1.0, error_left(declared, record), 0.05);
+  without(record, "torque.yaw");
+  CHECK(error_left(declared, record) > 2.0);
+}
+
 }  // namespace
 
 TEST_GROUP(VehicleAxes){};
 
 TEST(VehicleAxes, a_measured_torque_acts_on_both_axes_so_that_the_calibrated_model_leaves_the_noise_alone) {
-  Record record = record_under({2e4, 3e4});
-  const VehicleFile declared = model_with("9800");
-  DOUBLES_EQUAL(1.0, error_left(declared, record), 0.05);
-  without(record, "torque.yaw");
-  CHECK(error_left(declared, record) > 2.0);
+  check_torque_about_yaw_acts(record_under({2e4, 3e4}), model_with("9800"));
 }
 
 TEST(VehicleAxes, the_measured_torque_of_an_axis_that_is_not_explained_acts_too) {
   Record record = record_under({0.0, 3e4});
   without(record, "engine.yaw");
   without(record, "piston.yaw");
-  const VehicleFile declared = model_with("9490");
-  DOUBLES_EQUAL(1.0, error_left(declared, record), 0.05);
-  without(record, "torque.yaw");
-  CHECK(error_left(declared, record) > 2.0);
+  check_torque_about_yaw_acts(std::move(record), model_with("9490"));
 }
 
 TEST(VehicleAxes, a_torque_that_is_missing_in_a_row_that_is_not_excluded_is_refused_with_its_time) {
