@@ -3,7 +3,6 @@
 // kept/truth.json, and the explained model with the noise-free record it has never seen. Exit 0 if the names are right and
 // the model is closer to the truth than the sensor is.
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -11,18 +10,11 @@
 #include <set>
 #include <string>
 
+#include "tests/support/rms_difference.hpp"
 #include "tools/explain/explain.hpp"
 #include "tools/simulate/simulate.hpp"
 
 namespace {
-
-double rms_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += (a[i] - b[i]) * (a[i] - b[i]);
-  }
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
 
 std::string joined(const std::multiset<std::string>& names) {
   std::string text;
@@ -59,7 +51,7 @@ bool explain_case(const std::string& archive, const std::filesystem::path& folde
               std::string(hotfire::explain::name_of(result.result.verdict)).c_str());
   for (const char* channel : {"piston", "engine"}) {
     const double noise = declared.noise.at(channel);
-    const double error = rms_difference(unseen.find(channel)->values, modelled.find(channel)->values) / noise;
+    const double error = hotfire::test::rms_difference(unseen.find(channel)->values, modelled.find(channel)->values) / noise;
     std::printf("  %-7s effect %.2f, model error %.3f, both in sensor noise\n", channel,
                 truth["effect_size"][channel].get<double>(), error);
     below_noise = below_noise && error < 1.0;

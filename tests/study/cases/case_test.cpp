@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "tests/files/scratch.hpp"
+#include "tests/support/rms_difference.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
@@ -17,17 +18,10 @@
 namespace hotfire::study {
 namespace {
 
-double rms(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += (a[i] - b[i]) * (a[i] - b[i]);
-  }
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
 /// How far a record is from what a model says of it, in sensor noise.
 double off(const ModelFile& model, const Record& record, const SensorGrade& grade) {
-  return rms(simulate(model, record).find(grade.channel)->values, record.find(grade.channel)->values) / grade.noise;
+  return test::rms_difference(simulate(model, record).find(grade.channel)->values, record.find(grade.channel)->values) /
+         grade.noise;
 }
 
 /// The model with the true parameters meets the kept record to a fiftieth of the sensor noise, half a permille of what the
@@ -71,8 +65,8 @@ TEST(StudyCases, ACaseWithAnEffectIsTheModelWithThatEffect) {
   const StudyCase made = make_case({"valve_deadband-1", {"valve_deadband"}, 1});
   write_case(made, scratch.path("valve_deadband-1"));
   const ModelFile declared = load_model(scratch.path("valve_deadband-1") / "given/declared.toml");
-  CHECK_TRUE(rms(simulate(declared, made.unseen).find("piston")->values, made.unseen.find("piston")->values) >
-             kSmallestEffect * kSensorGrades[0].noise);
+  CHECK_TRUE(test::rms_difference(simulate(declared, made.unseen).find("piston")->values,
+                                  made.unseen.find("piston")->values) > kSmallestEffect * kSensorGrades[0].noise);
   check_truth(load_model(scratch.path("valve_deadband-1") / "kept/true.toml"), made);
 }
 
