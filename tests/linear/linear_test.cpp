@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/files/scratch.hpp"
+#include "tests/support/attach_points.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/library/declared_plant.hpp"
 #include "tools/linear/linear_model.hpp"
@@ -38,7 +39,7 @@ low_stiffness = 4e7
 load_scale = 8e3
 )";
 
-const std::string kTaos = R"(schema = 1
+const std::string kTaos = std::string(R"(schema = 1
 topology = "taos"
 [structure]
 stiffness = 1.04e8
@@ -46,21 +47,8 @@ stiffness = 1.04e8
 law = "compliance"
 low_stiffness = 5.2e7
 load_scale = 6e3
-[attach.pitch]
-engine_x = -0.35
-engine_y = 0.05
-engine_z = -0.70
-vehicle_x = 0.85
-vehicle_y = 0.0
-vehicle_z = -0.95
-[attach.yaw]
-engine_x = -0.35
-engine_y = 0.70
-engine_z = 0.05
-vehicle_x = 0.85
-vehicle_y = 0.95
-vehicle_z = 0.0
-[gimbal]
+)") + test::kInclinedAttachPoints +
+                          R"([gimbal]
 thrust = 1.86e6
 stiffness = [[2e9,0,0,0,0,0],[0,2e9,0,0,0,0],[0,0,2e9,0,0,0],[0,0,0,1.7e7,0,0],[0,0,0,0,1.7e7,0],[0,0,0,0,0,1.7e7]]
 [gimbal.friction]

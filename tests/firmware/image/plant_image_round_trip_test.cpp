@@ -4,10 +4,12 @@
 #include <bit>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <vector>
 
 #include "firmware/image/plant_image.hpp"
 #include "model/keys.hpp"
+#include "tests/firmware/image/delay_and_table.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/simulate/plant_image_text.hpp"
 
@@ -16,7 +18,7 @@ namespace hotfire {
 namespace {
 
 /// Units, a table, laws and channels; decimals that no binary number hits.
-const char* const kSimplex = R"(schema = 1
+const std::string kSimplex = std::string(R"(schema = 1
 name = "round trip"
 topology = "simplex"
 [servovalve]
@@ -26,13 +28,7 @@ piston_area = "24.8 in^2"
 supply_pressure = "3000 psi"
 [engine]
 inertia = 9490.1
-[effects.command_delay]
-delay = 0.0123
-[effects.soft_stiffness]
-law = "table"
-load = [0.0, 1234.5, 9876.1]
-table_stiffness = [4.1e7, 7.7e7, 1.21e8]
-[effects.gimbal_friction]
+)") + test::kDelayAndTable + R"([effects.gimbal_friction]
 law = "lugre"
 coulomb_torque = 12.3e3
 [effects.sensor_lag]
@@ -70,7 +66,7 @@ TEST_GROUP(PlantImageRoundTrip) {
   void teardown() override { std::filesystem::remove(path); }
 
   template <class Parameters>
-  void check(const char* toml) {
+  void check(const std::string& toml) {
     std::ofstream(path) << toml;
     const ModelFile model = load_model(path);
     const std::string text = plant_image_text(model);

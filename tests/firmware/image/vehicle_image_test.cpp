@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "firmware/image/plant_image.hpp"
+#include "tests/firmware/image/delay_and_table.hpp"
 #include "tests/firmware/plant/whole_vehicle.hpp"
 #include "tools/simulate/vehicle_image_text.hpp"
 
@@ -16,17 +17,12 @@ using firmware::TaosRig;
 
 namespace {
 
-const char* const kTaos = R"(schema = 1
+const std::string kTaos = std::string(R"(schema = 1
 topology = "taos"
 [actuator.yaw]
 supply_pressure = "3000 psi"
-[effects.command_delay]
-delay = 0.0123
-[effects.soft_stiffness]
-law = "table"
-load = [0.0, 1234.5, 9876.1]
-table_stiffness = [4.1e7, 7.7e7, 1.21e8]
-[gimbal]
+)") + test::kDelayAndTable +
+                          R"([gimbal]
 thrust = 1.5e6
 rated_thrust = 1.86e6
 dead_load = -3.4e4

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/files/scratch.hpp"
+#include "tests/support/attach_points.hpp"
 #include "tools/structure/mode_table.hpp"
 #include "tools/structure/reduction.hpp"
 #include "tools/structure/synthetic.hpp"
@@ -14,7 +15,7 @@ namespace hotfire::test {
 /// A vehicle of four engines with everything that a file can say of one: what differs from axis to axis, effects of all and
 /// of some, inclined attach points, thrust, a compliant and vibrating bearing with friction, modes with residual
 /// flexibility, sensors that lag and read in steps. Decimals that no binary number hits; no noise.
-inline const std::string kWholeVehicle = R"(schema = 1
+inline const std::string kWholeVehicle = std::string(R"(schema = 1
 name = "whole vehicle"
 topology = "masv"
 [servovalve]
@@ -38,21 +39,7 @@ stiffness = 3.1e4
 [effects.sensor_lag.yaw1]
 channel = "engine"
 time_constant = 0.0031
-[attach.pitch]
-engine_x = -0.35
-engine_y = 0.05
-engine_z = -0.70
-vehicle_x = 0.85
-vehicle_y = 0.0
-vehicle_z = -0.95
-[attach.yaw]
-engine_x = -0.35
-engine_y = 0.70
-engine_z = 0.05
-vehicle_x = 0.85
-vehicle_y = 0.95
-vehicle_z = 0.0
-[gimbal]
+)") + kInclinedAttachPoints + R"([gimbal]
 thrust = "418000 lbf"
 stiffness = [
   [2e9, 0, 0, 0, 0, 0],
