@@ -50,6 +50,17 @@ struct Pressured : World {
   Bus asked{plant, clock, {.layout = layout, .actuators = actuators, .channels = 3, .load_pressure = 2}};
 };
 
+/// With a command in each of so many milliseconds the plant still follows; then it does not, and says so, until a heartbeat.
+void expect_unfollowed_after(World& world, std::int64_t milliseconds, std::uint8_t heartbeat_counter) {
+  DOUBLES_EQUAL(0.01, world.commanded_for(milliseconds), 1e-12);
+  DOUBLES_EQUAL(0.0, world.commanded_for(1), 0.0);
+  DOUBLES_EQUAL(38.0, world.said_fault(), 0.0);
+  DOUBLES_EQUAL(0.0, world.commanded_for(300), 0.0);
+  world.beat(heartbeat_counter);
+  DOUBLES_EQUAL(0.01, world.commanded_for(1), 1e-12);
+  DOUBLES_EQUAL(0.0, world.said_fault(), 0.0);
+}
+
 }  // namespace
 
 TEST_GROUP(CanPlantBus) {
@@ -136,25 +147,13 @@ TEST(CanPlantBus, AnotherPlantOnItsBusMovesNothing) {
 TEST(CanPlantBus, ControllerWhoseHeartbeatHasStoppedGetsNoCurrentUntilItIsBack) {
   classic.beat(0);
   CHECK(!classic.take());
-  DOUBLES_EQUAL(0.01, classic.commanded_for(50), 1e-12);
-  DOUBLES_EQUAL(0.0, classic.commanded_for(1), 0.0);
-  DOUBLES_EQUAL(38.0, classic.said_fault(), 0.0);
-  DOUBLES_EQUAL(0.0, classic.commanded_for(300), 0.0);
-  classic.beat(77);
-  DOUBLES_EQUAL(0.01, classic.commanded_for(1), 1e-12);
-  DOUBLES_EQUAL(0.0, classic.said_fault(), 0.0);
+  expect_unfollowed_after(classic, 50, 77);
 }
 
 TEST(CanPlantBus, ControllerThatNeverSendsAHeartbeatIsFollowedForTheAgeLimitOnlyAndAgainOnceItDoes) {
   World world{Layout::classic, 2, 3, false};
   world.clock.advance_ns(1000 * kMillisecond);
-  DOUBLES_EQUAL(0.01, world.commanded_for(51), 1e-12);
-  DOUBLES_EQUAL(0.0, world.commanded_for(1), 0.0);
-  DOUBLES_EQUAL(38.0, world.said_fault(), 0.0);
-  DOUBLES_EQUAL(0.0, world.commanded_for(300), 0.0);
-  world.beat(0);
-  DOUBLES_EQUAL(0.01, world.commanded_for(1), 1e-12);
-  DOUBLES_EQUAL(0.0, world.said_fault(), 0.0);
+  expect_unfollowed_after(world, 51, 0);
 }
 
 TEST(CanPlantBus, ControllerThatNeverSendsAHeartbeatIsFollowedIfThatIsAllowed) {

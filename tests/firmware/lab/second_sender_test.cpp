@@ -141,6 +141,13 @@ void expect_found_out(Rivals& rivals, std::size_t which, std::uint8_t ahead) {
   CHECK(rivals.faults().has(Fault::second_sender));
 }
 
+/// After one cycle nothing is driven, first because of this fault.
+void expect_stopped_in_a_cycle(Rivals& rivals, Fault fault) {
+  rivals.cycle();
+  CHECK(!rivals.drives());
+  CHECK(rivals.lab.outputs().interlock.first == fault);
+}
+
 }  // namespace
 
 TEST_GROUP(SecondSender){};
@@ -249,9 +256,7 @@ TEST(SecondSender, CommandThatTheLabDidNotSendIsFoundOut) {
     hal::CanFrame frame;
     CHECK(can::encode(message, std::span(currents).first(message.signals.size()), 7, frame));
     rivals.before_lab = [&] { rivals.other_sends(frame); };
-    rivals.cycle();
-    CHECK(!rivals.drives());
-    CHECK(rivals.lab.outputs().interlock.first == Fault::second_sender);
+    expect_stopped_in_a_cycle(rivals, Fault::second_sender);
   });
 }
 
@@ -266,9 +271,7 @@ TEST(SecondSender, DamagedFrameIsABadFrameThoughAGoodOneFollowsIt) {
       }
       ++rivals.counter;
     };
-    rivals.cycle();
-    CHECK(!rivals.drives());
-    CHECK(rivals.lab.outputs().interlock.first == Fault::bad_frame);
+    expect_stopped_in_a_cycle(rivals, Fault::bad_frame);
     UNSIGNED_LONGS_EQUAL(1, rivals.rig.readings(which).refused);
   });
 }
@@ -282,9 +285,7 @@ TEST(SecondSender, LostFrameIsABadFrameThoughAnotherOneWasOvertaken) {
         rivals.other_sends(rivals.reading(i, static_cast<std::uint8_t>(rivals.counter + gap)));
       }
     };
-    rivals.cycle();
-    CHECK(!rivals.drives());
-    CHECK(rivals.lab.outputs().interlock.first == Fault::bad_frame);
+    expect_stopped_in_a_cycle(rivals, Fault::bad_frame);
     UNSIGNED_LONGS_EQUAL(1, rivals.rig.readings(which).skipped);
   });
 }
@@ -294,9 +295,7 @@ TEST(SecondSender, FrameOfTheOtherFormatIsABadFrame) {
     hal::CanFrame frame = rivals.reading(which, rivals.counter);
     frame.fd = !frame.fd;
     rivals.before_lab = [&] { rivals.other_sends(frame); };
-    rivals.cycle();
-    CHECK(!rivals.drives());
-    CHECK(rivals.lab.outputs().interlock.first == Fault::bad_frame);
+    expect_stopped_in_a_cycle(rivals, Fault::bad_frame);
   });
 }
 

@@ -52,6 +52,12 @@ TEST_GROUP(Recorder) {
     }
     return reader;
   }
+
+  static void expect_not_safe(const RecorderAccount& account, std::uint64_t dropped) {
+    STRCMP_EQUAL("not safe", account.failure.c_str());
+    CHECK(account.is_error);
+    UNSIGNED_LONGS_EQUAL(dropped, account.dropped());
+  }
 };
 
 TEST(Recorder, EveryCycleIsStoredWhenTheSinkKeepsUp) {
@@ -128,10 +134,7 @@ TEST(Recorder, SinkThatCannotMakeItsContentSafeEndsTheRecordingWithAnError) {
     offer(recorder, cycle++, 1);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const RecorderAccount account = recorder.close();
-  STRCMP_EQUAL("not safe", account.failure.c_str());
-  CHECK(account.is_error);
-  UNSIGNED_LONGS_EQUAL(1, account.dropped());
+  expect_not_safe(recorder.close(), 1);
 }
 
 TEST(Recorder, ContentThatCannotBeMadeSafeAtTheEndIsAnErrorToo) {
@@ -139,10 +142,7 @@ TEST(Recorder, ContentThatCannotBeMadeSafeAtTheEndIsAnErrorToo) {
   CHECK(!recorder.start());
   offer(recorder, 0, 100);
   sink.syncs_refused = true;
-  const RecorderAccount account = recorder.close();
-  STRCMP_EQUAL("not safe", account.failure.c_str());
-  CHECK(account.is_error);
-  UNSIGNED_LONGS_EQUAL(0, account.dropped());
+  expect_not_safe(recorder.close(), 0);
 }
 
 TEST(Recorder, RecordingAllocatesNothingWhetherTheRingIsFullOrNot) {

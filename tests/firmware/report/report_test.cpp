@@ -27,6 +27,12 @@ TEST_GROUP(Report) {
     using Simplex = model::Simplex<double>;
     return {options, *result, Simplex::topology, Simplex::channels, Simplex::channel_units, 2};
   }
+
+  void expect_bad(const char* reason) {
+    const Verdict verdict = judge(session());
+    CHECK(!verdict.good);
+    STRCMP_EQUAL(reason, verdict.reason.c_str());
+  }
 };
 
 TEST(Report, VerdictWithoutLimitsIsGoodAndSaysSo) {
@@ -39,9 +45,7 @@ TEST(Report, LimitOnOverrunsIsMetAtTheLimitAndBrokenBelowIt) {
   options.max_overruns = 1;
   CHECK(judge(session()).good);
   options.max_overruns = 0;
-  const Verdict verdict = judge(session());
-  CHECK(!verdict.good);
-  STRCMP_EQUAL("1 overruns, allowed 0", verdict.reason.c_str());
+  expect_bad("1 overruns, allowed 0");
 }
 
 TEST(Report, LimitOnLatencyLooksAtTheLatestWakeUp) {
@@ -55,9 +59,7 @@ TEST(Report, LimitOnTheStepLooksAtTheLongestOne) {
   options.max_step_us = 1500.0;
   CHECK(judge(session()).good);
   options.max_step_us = 1499.9;
-  const Verdict verdict = judge(session());
-  CHECK(!verdict.good);
-  STRCMP_EQUAL("longest step 1500.0 us, allowed 1499.9 us", verdict.reason.c_str());
+  expect_bad("longest step 1500.0 us, allowed 1499.9 us");
 }
 
 TEST(Report, LimitsAreJudgedWithoutTheWarmUp) {
