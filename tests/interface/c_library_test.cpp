@@ -54,6 +54,16 @@ class Drive {
     hotfire_set(model_, HOTFIRE_INPUT, places_.data(), values_.data(), values_.size());
   }
 
+  /// Starts under the first inputs and steps so many periods, each under its own.
+  void run(std::size_t periods) {
+    set(0);
+    hotfire_start(model_, 0.0);
+    for (std::size_t period = 0; period < periods; ++period) {
+      set(period);
+      hotfire_step(model_);
+    }
+  }
+
  private:
   const Case& case_;
   hotfire_model* model_;
@@ -208,12 +218,7 @@ TEST(CLibrary, DerivativesEqualDifferencesForEveryTopology) {
     }
     const Model model = open(own);
     Drive drive(own, model.get());
-    drive.set(0);
-    hotfire_start(model.get(), 0.0);
-    for (std::size_t period = 0; period < 120; ++period) {
-      drive.set(period);
-      hotfire_step(model.get());
-    }
+    drive.run(120);
     double largest = 0.0;
     const auto compare = [&](hotfire_kind kind, std::size_t index, double width) {
       const std::vector<double> expected = differences(model.get(), kind, index, width);
@@ -297,12 +302,7 @@ TEST(CLibrary, InstancesInThreadsDoNotDisturbEachOther) {
     hotfire_open_text(own.text.c_str(), "own.toml", &options, &plain, nullptr, 0);
     const Model model(plain);
     Drive drive(own, model.get());
-    drive.set(0);
-    hotfire_start(model.get(), 0.0);
-    for (std::size_t period = 0; period < 149; ++period) {
-      drive.set(period);
-      hotfire_step(model.get());
-    }
+    drive.run(149);
     ends[i].resize(hotfire_count(model.get(), HOTFIRE_OUTPUT));
     for (std::size_t k = 0; k < ends[i].size(); ++k) {
       hotfire_get(model.get(), HOTFIRE_OUTPUT, &k, &ends[i][k], 1);

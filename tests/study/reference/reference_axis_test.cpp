@@ -38,6 +38,12 @@ double largest_difference(const ReferenceRows& a, const ReferenceRows& b, std::s
   return largest;
 }
 
+/// Of the piston [m/s], under a command so large that the valve is wide open.
+double speed_of_open_valve(const ReferenceAxis& axis) {
+  const ReferenceRows rows = rows_of(axis, held(6.0 * kDegree, 0.3));
+  return (rows[149][0] - rows[100][0]) / (49 * kSample);
+}
+
 }  // namespace
 
 TEST_GROUP(ReferenceAxisLaws){};
@@ -146,29 +152,21 @@ TEST(ReferenceAxisLaws, ALaggingSensorReadsASlowMotionLate) {
 // Valve wide open: v = Q_r (1 + c) / A, as long as the load pressure is small against the supply.
 TEST(ReferenceAxisLaws, ACurvedFlowGainSetsTheSpeedOfTheOpenValve) {
   ReferenceAxis axis;
-  const auto speed = [&] {
-    const ReferenceRows rows = rows_of(axis, held(6.0 * kDegree, 0.3));
-    return (rows[149][0] - rows[100][0]) / (49 * kSample);
-  };
-  const double plain = speed();
+  const double plain = speed_of_open_valve(axis);
   DOUBLES_EQUAL(axis.rated_flow / axis.area, plain, 0.05 * plain);
   axis.unlisted.flow_curvature = -0.3;
-  DOUBLES_EQUAL(0.7, speed() / plain, 0.03);
+  DOUBLES_EQUAL(0.7, speed_of_open_valve(axis) / plain, 0.03);
 }
 
 // The supply falls by droop Q, and the flow with its root: s = 1 - d s^(1/2) with d = droop Q_r / P_s.
 TEST(ReferenceAxisLaws, ASaggingSupplySlowsTheOpenValve) {
   ReferenceAxis axis;
-  const auto speed = [&] {
-    const ReferenceRows rows = rows_of(axis, held(6.0 * kDegree, 0.3));
-    return (rows[149][0] - rows[100][0]) / (49 * kSample);
-  };
-  const double plain = speed();
+  const double plain = speed_of_open_valve(axis);
   const double drop = 0.5;
   axis.unlisted.supply_droop = drop * axis.supply / axis.rated_flow;
   axis.unlisted.supply_recovery = 5e-3;
   const double root = 0.5 * (-drop + std::sqrt(drop * drop + 4.0));
-  DOUBLES_EQUAL(root, speed() / plain, 0.03);
+  DOUBLES_EQUAL(root, speed_of_open_valve(axis) / plain, 0.03);
 }
 
 // Within presliding a Dahl bristle is a spring, and two springs in series are one.
