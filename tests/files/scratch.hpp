@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "tools/files/text/error.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace hotfire::test {
 
@@ -31,16 +31,5 @@ class Scratch {
  private:
   std::filesystem::path folder_;
 };
-
-/// The message of the FileError that `action` throws; empty if it throws none.
-template <class Action>
-std::string refusal(Action&& action) {
-  try {
-    action();
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 }  // namespace hotfire::test

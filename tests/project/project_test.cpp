@@ -22,6 +22,7 @@
 
 #include "tests/files/expect.hpp"
 #include "tests/files/scratch.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace hotfire {
 
@@ -68,13 +69,7 @@ TEST_GROUP(Project) {
   test::Scratch scratch;
 
   void refuses(const std::filesystem::path& folder, const std::string& kind, std::initializer_list<const char*> parts) {
-    try {
-      make_project(folder, kind);
-    } catch (const UsageError& error) {
-      expect_message(error.what(), parts);
-      return;
-    }
-    FAIL("not refused");
+    expect_message(test::refusal<UsageError>([&] { make_project(folder, kind); }), parts);
   }
 };
 

@@ -9,6 +9,7 @@
 
 #include "tests/files/expect.hpp"
 #include "tests/files/scratch.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace hotfire {
 
@@ -18,12 +19,7 @@ constexpr ApartLimits kLimits{1024, 1, 60, 1 << 20};
 
 /// Why the work gave no result.
 std::string failure(const std::function<std::string()>& work, const ApartLimits& limits = kLimits) {
-  try {
-    run_apart(work, limits);
-  } catch (const ApartError& error) {
-    return error.what();
-  }
-  return {};
+  return test::refusal<ApartError>([&] { run_apart(work, limits); });
 }
 
 }  // namespace

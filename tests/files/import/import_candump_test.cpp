@@ -158,12 +158,8 @@ TEST(ImportCandump, log_of_our_own_frames_gives_what_convert_reads_of_it) {
 
 TEST(ImportCandump, log_without_a_dbc_file_is_refused_with_the_remedy) {
   const auto source = scratch.write("rig.log", log());
-  try {
-    import_source(source, "");
-    FAIL("a candump log passed for a table");
-  } catch (const UsageError& error) {
-    expect_message(error.what(), {"rig.log: is a candump log", "--dbc rig.dbc", "hotfire convert"});
-  }
+  expect_message(test::refusal<UsageError>([&] { import_source(source, ""); }),
+                 {"rig.log: is a candump log", "--dbc rig.dbc", "hotfire convert"});
   CHECK(ImportSource::table == import_source(scratch.write("table.log", "(a) b,c#d\n1,2\n"), ""));
 }
 

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "tests/files/expect.hpp"
+#include "tests/support/refusal.hpp"
 #include "tools/files/text/units.hpp"
 
 namespace hotfire {
@@ -9,12 +10,7 @@ namespace hotfire {
 namespace {
 
 std::string refused_unit(double value, const std::string& unit, const std::string& wanted) {
-  try {
-    convert_unit(value, unit, wanted);
-  } catch (const UnitError& error) {
-    return error.what();
-  }
-  return {};
+  return test::refusal<UnitError>([&] { convert_unit(value, unit, wanted); });
 }
 
 }  // namespace
