@@ -143,4 +143,23 @@ class CanNode {
   CanCounters counters_;
 };
 
+/// The part of `CanBus` that a backend answers from its node. What the program may read is public, the node is the
+/// backend's.
+class OnCanNode {
+ public:
+  const CanMailbox& mailbox(std::size_t i) const noexcept { return node_.mailbox(i); }
+  std::span<const CanArrival> arrivals() const noexcept { return node_.arrivals(); }
+  bool in_time(std::size_t i, std::int64_t now_ns) const noexcept { return node_.in_time(i, now_ns); }
+  CanState state() const noexcept { return node_.state(); }
+  bool anything_pending() const noexcept { return node_.anything_pending(); }
+  const CanCounters& counters() const noexcept { return node_.counters(); }
+
+ protected:
+  OnCanNode(std::span<const CanSubscription> subscriptions, std::span<const CanId> senders) noexcept
+      : node_(subscriptions, senders) {}
+  ~OnCanNode() = default;
+
+  CanNode node_;
+};
+
 }  // namespace hotfire::hal

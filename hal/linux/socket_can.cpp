@@ -47,7 +47,9 @@ struct SocketCan::Batch {
 };
 
 SocketCan::SocketCan(Settings settings)
-    : settings_(std::move(settings)), node_(settings_.subscriptions, settings_.senders), batch_(std::make_unique<Batch>()) {
+    : OnCanNode(settings.subscriptions, settings.senders),
+      settings_(std::move(settings)),
+      batch_(std::make_unique<Batch>()) {
   for (std::size_t i = 0; i < kMostWaiting; ++i) {
     batch_->parts[i] = {&batch_->frames[i], sizeof(canfd_frame)};
     batch_->headers[i].msg_hdr.msg_iov = &batch_->parts[i];

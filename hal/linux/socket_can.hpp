@@ -24,7 +24,7 @@ namespace hotfire::hal {
 /// program, wherever that is: no set-point is ever sent behind an older one. A bus without a partner that acknowledges keeps
 /// one frame of an id pending; `stop` takes the interface down if that is so, which alone empties the controller's own
 /// buffers, and needs CAP_NET_ADMIN.
-class SocketCan {
+class SocketCan : public OnCanNode {
  public:
   struct Settings {
     std::string interface;                       ///< "can0"
@@ -43,12 +43,6 @@ class SocketCan {
 
   void receive(std::int64_t now_ns) noexcept;
   CanSend try_send(const CanFrame& frame) noexcept;
-  const CanMailbox& mailbox(std::size_t i) const noexcept { return node_.mailbox(i); }
-  std::span<const CanArrival> arrivals() const noexcept { return node_.arrivals(); }
-  bool in_time(std::size_t i, std::int64_t now_ns) const noexcept { return node_.in_time(i, now_ns); }
-  CanState state() const noexcept { return node_.state(); }
-  bool anything_pending() const noexcept { return node_.anything_pending(); }
-  const CanCounters& counters() const noexcept { return node_.counters(); }
   bool stop() noexcept;
   bool rearm() noexcept;
 
@@ -73,7 +67,6 @@ class SocketCan {
   bool take_interface_down() noexcept;
 
   Settings settings_;
-  CanNode node_;
   std::unique_ptr<Batch> batch_;  ///< what recvmmsg fills
   int socket_ = -1;
   std::uint32_t dropped_before_ = 0;

@@ -19,10 +19,10 @@ class CanWire {
   static constexpr std::size_t kMaxNodes = 4;
 
   /// One node (`CanBus`).
-  class Node {
+  class Node : public OnCanNode {
    public:
     Node(CanWire& wire, std::span<const CanSubscription> subscriptions, std::span<const CanId> senders) noexcept
-        : wire_(wire), node_(subscriptions, senders), number_(wire.nodes_++) {
+        : OnCanNode(subscriptions, senders), wire_(wire), number_(wire.nodes_++) {
       assert(number_ < kMaxNodes);
     }
 
@@ -67,13 +67,6 @@ class CanWire {
       return CanSend::taken;
     }
 
-    const CanMailbox& mailbox(std::size_t i) const noexcept { return node_.mailbox(i); }
-    std::span<const CanArrival> arrivals() const noexcept { return node_.arrivals(); }
-    bool in_time(std::size_t i, std::int64_t now_ns) const noexcept { return node_.in_time(i, now_ns); }
-    CanState state() const noexcept { return node_.state(); }
-    bool anything_pending() const noexcept { return node_.anything_pending(); }
-    const CanCounters& counters() const noexcept { return node_.counters(); }
-
     bool stop() noexcept {
       node_.stop();
       wire_.held_.count = wire_.refuses_stop_ ? wire_.held_.count : 0;
@@ -91,7 +84,6 @@ class CanWire {
 
    private:
     CanWire& wire_;
-    CanNode node_;
     std::size_t number_;
   };
 
