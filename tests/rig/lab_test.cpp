@@ -77,6 +77,15 @@ TEST_GROUP(Lab) {
     UNSIGNED_LONGS_EQUAL(0, node->commands_when_not_driving);
   }
 
+  /// Waits for a fault, which leaves the rig safe, and ends the lab, which then reports it.
+  void ends_safe(const char* fault) {
+    wait_until("the fault line", [] { return carries(test::kFaultLine); });
+    is_safe();
+    lab->signal(SIGTERM);
+    LONGS_EQUAL(5, lab->wait());
+    STRCMP_CONTAINS(fault, lab->output().c_str());
+  }
+
   /// Waits for a fault, and for all that was sent before it to be counted; returns how many commands that were.
   std::uint64_t commands_at_fault() {
     wait_until("the fault line", [] { return carries(test::kFaultLine); });
@@ -318,11 +327,7 @@ TEST(LabEnds, StopPulseThatIsShorterThanAPeriodIsAStop) {
   pull(test::kStopLine, false);
   pull(test::kStopLine, true);
   lab->signal(SIGCONT);
-  wait_until("the fault line", [] { return carries(test::kFaultLine); });
-  is_safe();
-  lab->signal(SIGTERM);
-  LONGS_EQUAL(5, lab->wait());
-  STRCMP_CONTAINS("interlock: fault 9, emergency stop", lab->output().c_str());
+  ends_safe("interlock: fault 9, emergency stop");
 }
 
 TEST(LabEnds, LoadPressureBeyondItsLimitOrSilentLeavesItSafeUntilArmedAgain) {
@@ -361,11 +366,7 @@ TEST(LabEnds, ButtonThatBouncesArmsAndStartsNothing) {
 TEST(LabEnds, SupplyThatDoesNotFollowItsLineIsAFault) {
   start("line.supply_read_back contactor\n");
   press();
-  wait_until("the fault line", [] { return carries(test::kFaultLine); });
-  is_safe();
-  lab->signal(SIGTERM);
-  LONGS_EQUAL(5, lab->wait());
-  STRCMP_CONTAINS("interlock: fault 17, supply read-back", lab->output().c_str());
+  ends_safe("interlock: fault 17, supply read-back");
 }
 
 TEST(Lab, RecorderFull) {

@@ -94,12 +94,15 @@ json wait_for_state(const Watcher& watcher, const char* state) {
 
 }  // namespace
 
-TEST_GROUP(LiveSource) {
+/// A live view of a test's own.
+TEST_BASE(LiveViewTest) {
   std::string path = "/dev/shm/hotfire-watch-test-" + std::to_string(getpid());
 
   void setup() override { unlink(path.c_str()); }
   void teardown() override { unlink(path.c_str()); }
 };
+
+TEST_GROUP_BASE(LiveSource, LiveViewTest){};
 
 TEST(LiveSource, ProgramMayStartLaterEndAndStartAgain) {
   LiveSource source(path);
@@ -242,12 +245,7 @@ TEST(History, TimesAreThoseOfTheCycles) {
   DOUBLES_EQUAL(200e3, history.step().quantile_ns(0.5), 1.0);
 }
 
-TEST_GROUP(Watcher) {
-  std::string path = "/dev/shm/hotfire-watcher-test-" + std::to_string(getpid());
-
-  void setup() override { unlink(path.c_str()); }
-  void teardown() override { unlink(path.c_str()); }
-};
+TEST_GROUP_BASE(Watcher, LiveViewTest){};
 
 TEST(Watcher, AnswersWithTheProgramThenOnlyWithWhatIsNew) {
   Program program(path);

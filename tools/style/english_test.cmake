@@ -20,10 +20,7 @@ function(expect_fault file text fault)
   if(EXISTS ${SCRATCH}/${file})
     file(READ ${SCRATCH}/${file} old)
   endif()
-  file(APPEND ${SCRATCH}/${file} "${text}\n")
-  look(english status output)
-  file(WRITE ${SCRATCH}/${file} "${old}")
-  expect_words("${status}" "${output}" "${fault}" "${file} with '${text}'")
+  expect_refused(english ${file} "${old}${text}\n" "${fault}" "${file} with '${text}'")
 endfunction()
 
 # expect_none(FILE TEXT): a new FILE with TEXT is allowed.

@@ -19,6 +19,19 @@ function(expect_words status output words broken)
   endif()
 endfunction()
 
+# expect_refused(CHECK FILE TEXT WORDS BROKEN): with TEXT in FILE, which is BROKEN then, the check fails and says WORDS. FILE then
+# has its old text again; a new one is empty.
+function(expect_refused check file text words broken)
+  set(old "")
+  if(EXISTS ${SCRATCH}/${file})
+    file(READ ${SCRATCH}/${file} old)
+  endif()
+  file(WRITE ${SCRATCH}/${file} "${text}")
+  look(${check} status output)
+  file(WRITE ${SCRATCH}/${file} "${old}")
+  expect_words("${status}" "${output}" "${words}" "${broken}")
+endfunction()
+
 # look_at_tree(CHECK): ends the test unless the check passes over the scratch copy as it is.
 function(look_at_tree check)
   look(${check} status output)
