@@ -63,10 +63,11 @@ Outcome locked_pendulum(const Bench& bench) {
                                  0.01, "Hz"));
   outcome.picture = trials::time_chart("F3: swing of the engine after a blow, actuators locked", soft, kPitch);
   outcome.note =
-      "A blow of 168 N m s, as of a sledge at the nozzle; the frequency of the first second. The blow is not published: it "
-      "is tuned to 6.75 Hz. A weaker blow does not break the bearing's friction under the engine's weight, and its bristles "
-      "stiffen the swing; that also lifts the linear figure, which the paper has from finite elements without friction. "
-      "The last row shows that 6.75 Hz does not fix the softness as well.";
+      "The blow is 168 N m s, about that of a sledgehammer at the nozzle, and the frequency is that of the first"
+      " second. The blow is not published: it is tuned to 6.75 Hz. A weaker blow does not break the friction of "
+      "the bearing under the weight of the engine. The bristles then stiffen the swing. They also raise the "
+      "linear figure, which the paper has from finite elements without friction. The last row shows that 6.75 Hz"
+      " does not determine the softness as well.";
   return outcome;
 }
 
@@ -100,10 +101,9 @@ Outcome quiescent_peaks(const Bench& bench) {
   outcome.figures.push_back({"over the widest peak at half power", moved / widest, 1.0, 20.0, ""});
   outcome.picture = trials::spectrum_chart("F4: quiescent piston", labels, spectra, 3.0, 12.0);
   outcome.note =
-      "Random torque on both axes of four strengths: the excitation of the measured records is not published. The bearing "
-      "sticks under the weakest and slides under the strongest, which spans the published 5.9 to 8.2 Hz. Nothing is tuned "
-      "to "
-      "it.";
+      "Random torque of four strengths acts on both axes. The excitation of the measured records is not "
+      "published. The bearing sticks under the weakest torque and slides under the strongest. The peaks span the"
+      " published 5.9 to 8.2 Hz. Nothing is tuned to them.";
   return outcome;
 }
 
@@ -123,9 +123,10 @@ Outcome ambient_sweep(const Bench& bench) {
       {"notch at 0.4 deg over that at 0.1 deg", notch_of(drawn[2]) / notch_of(drawn[0]), 1.005, 1.05, ""});
   outcome.picture = trials::bode_chart("F5: stepped sines, ambient", drawn);
   outcome.note =
-      "One amplitude at a time, 90 frequencies 0.8 % apart, seen in the piston. The amplitude of the measured sweep is not "
-      "published. Springs that only stiffen under load cannot ring lower under a vectoring sweep (6.5 Hz) than under a "
-      "hammer (6.75 Hz). Friction can: the sweep breaks the bearing loose, and the hammer hardly does.";
+      "The piston is read at one amplitude at a time, at 90 frequencies 0.8 % apart. The amplitude of the "
+      "measured sweep is not published. With springs that only stiffen under load, a sweep with large angles "
+      "cannot show a lower frequency (6.5 Hz) than a hammer test (6.75 Hz). Friction explains it: the sweep "
+      "breaks the bearing loose, and the hammer hardly does.";
   return outcome;
 }
 

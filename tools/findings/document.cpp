@@ -15,13 +15,19 @@ namespace {
 constexpr std::string_view kHead = R"(# Results of the two papers, reproduced
 
 With this page you can check which published results the model reproduces, and repeat each one with
-`hotfire findings --only F1`. `hotfire findings --pages docs` writes this page and those of the figures. The test
-`findings_tests` compares the pages with that output, and every figure with its tolerance. The parameter sets are files in [tools/findings/sets](../tools/findings/sets): `lab`, one actuator in its
-laboratory, and `core-stage`, one engine with two axes, at hot fire and, with `--thrust 0`, at ambient. *Representative, tuned
-to the published frequencies*; NASA's own values are not public. Each number there says where it comes from.
+`hotfire findings --only F1`. `hotfire findings --pages docs` writes this page and the pages of the figures. The test
+`findings_tests` compares the pages with that output, and every figure with its tolerance.
 
-Every finding can fail: `hotfire findings --mutants` runs it without the physics that it is about, and some figure must then
-be outside (`ctest -R findings_mutants`). Each finding names that physics.
+The parameter sets are files in [tools/findings/sets](../tools/findings/sets):
+
+- `lab` is one actuator in its laboratory.
+- `core-stage` is one engine with two axes. It is at hot fire, and with `--thrust 0` at ambient.
+
+The sets are *representative, tuned to the published frequencies*. NASA's own values are not public. A comment at each number
+names its origin.
+
+Every finding can fail. `hotfire findings --mutants` removes the physics that a finding is about. At least one figure must then
+be outside its range (`ctest -R findings_mutants`). Each finding names that physics.
 
 Four numbers are tuned. Each is tuned to one published figure, and no figure is used twice:
 
@@ -32,21 +38,23 @@ Four numbers are tuned. Each is tuned to one published figure, and no figure is 
 | impulse of the blow in F3 | the pendulum of 6.75 Hz [SD 2.2]; the real blow is not published |
 | `servovalve.pressure_feedback_gain` | an ambient step that is underdamped [SD fig. 9] |
 
-All other numbers are chosen. F6 to F8 guided the choice of friction and damping. The tolerances of F6 to F8, F16 and F21 are our own: the papers
-give pictures there, no numbers. These are not tuned, and reached with the rest: the quiescent peaks of F4, the amplitude
-dependence of F2, the turn from lag to lead of F16. The amplitude dependence of F7 and the shape of the steps of F8 follow
-from the friction, which was chosen with them in view.
+All other numbers are chosen:
+
+- F6 to F8 guided the choice of friction and damping. The amplitude dependence of F7 and the shape of the steps of F8 follow
+  from this friction.
+- The tolerances of F6 to F8, F16 and F21 are our own, because the papers show only pictures there.
+- Nothing is tuned to the quiescent peaks of F4, the amplitude dependence of F2, and the turn from lag to lead of F16.
 
 Limits of the comparison:
 
 - **The predicted pendulum of 7.5 to 8 Hz is not an independent figure.** The paper has it from finite elements without
-  friction. Here it is the frequency after the impact of F3, with a linear actuator. The sticking bearing raises it. Without
-  friction it is 6.5 Hz, as in the sweep.
-- **Friction of the empty stage is not negligible here.** [SD 2.3] says that it is. The bearing carries the weight of the
+  friction. Here it is the frequency after the impact of F3, with a linear actuator. The sticking bearing raises this
+  frequency. Without friction it is 6.5 Hz, as in the sweep.
+- **Friction of the empty stage is not negligible here.** [SD 2.3] calls it negligible. The bearing carries the weight of the
   engine, 34 kN, and sticks below 0.35 kN m. F3 to F5 need that.
 - **The empty vehicle and the unloaded gimbal are not separated.** The papers name both as soft at ambient. Here the
-  attach points carry all of it; a bearing that is soft along the thrust would couple pitch and yaw into two notches each.
-- **F9 does not hold for the shipped friction.** The notch survives on a rigid gimbal with mu 0.08. It takes 0.18 to lose it.
+  attach points carry all of it. A bearing that is soft along the thrust would couple pitch and yaw into two notches each.
+- **F9 does not hold for the shipped friction.** The notch survives on a rigid gimbal with mu 0.08. The notch disappears at 0.18.
 - **F15 holds at seven locations of eight once the structure is more than a spring.** With a third of the load flexibility in
   modes, the deepest notch of the eighth is that of a mode. In F12 the stiffness from the notch then scatters over the
   locations by a quarter.
@@ -54,8 +62,8 @@ Limits of the comparison:
   it. The engine in pitch alone loses 0.8 dB there and lags by 9 deg.
 - **F17 follows the friction.** More friction makes the difference larger. No publication has this figure.
 - **6.75 Hz fixes one of two numbers.** 10 % of `low_stiffness` moves the pendulum by 1 %, and so does 5 % of the blow. A softer
-  actuator under a smaller blow swings as fast (F3). The blow is tuned. `low_stiffness` is chosen, because [SD fig. 4] is a
-  picture.
+  actuator under a smaller blow has the same frequency (F3). The blow is tuned. `low_stiffness` is chosen, because [SD fig. 4]
+  is a picture.
 
 )";
 
@@ -94,11 +102,28 @@ void append_published(std::string& text, const std::vector<Row>& rows) {
   text += '\n';
 }
 
-/// Runs the test of a finding by itself, where that is another command than the findings'.
-std::string own_command(const Finding& finding) {
-  return finding.command.starts_with("hotfire findings")
-             ? std::string()
-             : fmt::format(" This command runs the test by itself: `{}`", finding.command);
+/// The commands that show a finding: that of the findings, and that of its test where there is one.
+std::string commands_of(const Finding& finding) {
+  std::string text = fmt::format("hotfire findings --only {}    # these figures\n", finding.id);
+  if (!finding.command.starts_with("hotfire findings")) {
+    text += fmt::format("{}\n", finding.command);
+  }
+  return text;
+}
+
+/// A text with a line for each sentence. A full stop before a number is that of "fig. 11".
+std::string sentence_lines(std::string text) {
+  for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 2)) {
+    const char next = text[at + 2];
+    if (next < '0' || next > '9') {
+      text[at + 1] = '\n';
+    }
+  }
+  return text;
+}
+
+std::string source_of(const Finding& finding) {
+  return finding.source.empty() ? std::string() : fmt::format("[{}]", finding.source);
 }
 
 /// "findings/f1-f10.md".
@@ -109,16 +134,16 @@ std::string page_name(std::span<const Row> rows) {
 /// The figures of some findings, each with its tolerance, and the physics without which it fails.
 std::string figures_page(std::span<const Row> rows) {
   std::string text = fmt::format(
-      "# Figures of the findings {} to {}\n\nWith this page you can read what each figure came to, what is allowed, and "
-      "without "
-      "which physics the finding\nfails. [findings.md](../findings.md) has the table of all findings.\n",
+      "# Figures of the findings {} to {}\n\nWith this page you can compare each figure with its allowed range, and see "
+      "without which physics the finding fails.\n[findings.md](../findings.md) has the table of all findings.\n",
       rows.front().finding->id, rows.back().finding->id);
   const auto add = std::back_inserter(text);
   for (const Row& row : rows) {
     fmt::format_to(add,
-                   "\n## {}\n\n{}: {}.\n\n`hotfire findings --only {}` prints these figures.{}\n\n"
+                   "\n## {}\n\nFinding: {}{}{}.\n\nShown: {}.\n\n```\n{}```\n\n"
                    "| figure | reached | allowed | |\n|---|---|---|---|\n",
-                   row.finding->id, row.finding->title, row.finding->shown, row.finding->id, own_command(*row.finding));
+                   row.finding->id, row.finding->title, row.finding->source.empty() ? "" : " ", source_of(*row.finding),
+                   row.finding->shown, commands_of(*row.finding));
     for (const Figure& figure : row.outcome.figures) {
       fmt::format_to(add, "| {} | {} | {:.4g} to {} | {}{} |\n", figure.what, figure_text(figure.value, figure.unit),
                      figure.lowest, figure_text(figure.highest, figure.unit), figure.inside() ? "inside" : "**outside**",
@@ -130,7 +155,7 @@ std::string figures_page(std::span<const Row> rows) {
     }
     fmt::format_to(add, ".\n");
     if (!row.outcome.note.empty()) {
-      fmt::format_to(add, "\n{}\n", row.outcome.note);
+      fmt::format_to(add, "\n{}\n", sentence_lines(row.outcome.note));
     }
     fmt::format_to(add, "\n![{}](../pictures/findings/{})\n", row.finding->id, picture_name(*row.finding));
   }
@@ -160,7 +185,7 @@ std::map<std::string, std::string> pages(const std::vector<Row>& rows) {
   std::map<std::string, std::string> all;
   std::string overview(kHead);
   append_published(overview, rows);
-  overview += "| | finding | shown when | verdict |\n|---|---|---|---|\n";
+  overview += "| | finding | source | verdict |\n|---|---|---|---|\n";
   const auto add = std::back_inserter(overview);
   constexpr std::size_t kOnPage = 10;
   constexpr std::size_t kFewest = 5;  // fewer than this have no page of their own
@@ -171,7 +196,7 @@ std::map<std::string, std::string> pages(const std::vector<Row>& rows) {
     const std::string name = page_name(some);
     for (const Row& row : some) {
       fmt::format_to(add, "| [{}]({}#f{}) | {} | {} | {} |\n", row.finding->id, name, row.finding->id.substr(1),
-                     row.finding->title, row.finding->shown, row.outcome.inside() ? "found" : "**not found**");
+                     row.finding->title, source_of(*row.finding), row.outcome.inside() ? "found" : "**not found**");
     }
     all[name] = figures_page(some);
   }

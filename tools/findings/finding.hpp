@@ -60,6 +60,7 @@ class Mutants {
 struct Finding {
   std::string_view id;       ///< "F1"
   std::string_view title;    ///< what the papers found
+  std::string_view source;   ///< paper and place, "SD eq. 1-2"; empty if the finding is none of the papers'
   std::string_view shown;    ///< when it counts as found
   std::string_view command;  ///< that shows it, beside `hotfire findings`
   Outcome (*find)(const Bench& bench);

@@ -88,8 +88,8 @@ Outcome hot_fire_sweep(const Bench& bench) {
       {"engine's gain at 2 Hz, 0.1 deg against 0.4 deg", engine(0.1) - engine(0.4), -20.0, -1.0, "dB"});
   outcome.picture = trials::bode_chart("F7: Green Run profile on both axes, hot fire, pitch", drawn);
   outcome.note =
-      "Pitch at 7 to 14 Hz and 0.8 deg beside yaw at 0.4 to 6.25 Hz and 0.4 deg, then the other way round. The paper shows "
-      "the losses as a picture: their bounds are ours.";
+      "Pitch moves at 7 to 14 Hz and 0.8 deg beside yaw at 0.4 to 6.25 Hz and 0.4 deg, then the axes are "
+      "exchanged. The paper shows the losses as a picture. The bounds are our own.";
   return outcome;
 }
 
@@ -158,12 +158,10 @@ Outcome notch_and_gimbal(const Bench& bench) {
   outcome.picture = trials::bode_chart("F9: piston at hot fire, Green Run profile on both axes",
                                        {compliant, rigid, rough_compliant, rough_rigid});
   outcome.note =
-      "\"Rigid\" has no torsion of the bearing, and bristles five times as stiff as the shipped ones. The shipped friction, "
-      "mu "
-      "0.08, is too small to take the notch away on a rigid gimbal. What the paper shows needs about twice as much. More "
-      "friction in the shipped set would fill the notch on the compliant gimbal too, below what "
-      "is "
-      "a notch of 9.5 Hz.";
+      "The rigid gimbal has no torsion of the bearing, and bristles five times as stiff as the shipped ones. The"
+      " shipped friction, mu 0.08, is too small to remove the notch on a rigid gimbal. The paper's result needs "
+      "about twice as much. The second pair of rows has mu 0.18. More friction in the "
+      "shipped set would make the notch of the compliant gimbal too shallow.";
   return outcome;
 }
 
@@ -183,14 +181,28 @@ Outcome lag_and_lead(const Bench& bench) {
   auto smooth_piston = fine.piston;
   smooth_piston.channel += ", no friction";
   outcome.picture = trials::bode_chart("F16: phase of the piston at hot fire", {rough.piston, smooth_piston});
-  outcome.note = "Two amplitudes of one axis for where the lead begins, the Green Run profile for the rest.";
+  outcome.note = "The start of the lead is that of one axis at two amplitudes. The rest is that of the Green Run profile.";
   return outcome;
 }
 
-Outcome one_axis_alone(const Bench& bench) {
+namespace {
+
+/// Pitch at hot fire, with yaw driven beside it and without.
+struct BothAndAlone {
+  GreenRun both;
+  GreenRun alone;
+};
+
+BothAndAlone pitch_with_and_without_yaw(const Bench& bench) {
   const VehicleFile hot = bench.hot_fire();
-  const GreenRun both = green_run(hot, simulate(hot, trials::green_run_record()), kPitch);
-  const GreenRun alone = green_run(hot, simulate(hot, pitch_alone()), kPitch);
+  return {green_run(hot, simulate(hot, trials::green_run_record()), kPitch),
+          green_run(hot, simulate(hot, pitch_alone()), kPitch)};
+}
+
+}  // namespace
+
+Outcome one_axis_alone(const Bench& bench) {
+  const auto [both, alone] = pitch_with_and_without_yaw(bench);
   Outcome outcome;
   for (const double frequency : {2.5, 3.6, 5.2}) {
     outcome.figures.push_back({fmt::format("engine's gain at {:g} Hz, both axes over one alone", frequency),
@@ -215,9 +227,7 @@ Outcome one_axis_alone(const Bench& bench) {
 }
 
 Outcome low_frequency(const Bench& bench) {
-  const VehicleFile hot = bench.hot_fire();
-  const GreenRun both = green_run(hot, simulate(hot, trials::green_run_record()), kPitch);
-  const GreenRun alone = green_run(hot, simulate(hot, pitch_alone()), kPitch);
+  const auto [both, alone] = pitch_with_and_without_yaw(bench);
   const std::vector<double> low = trials::green_run_sines().back().frequencies;
   const GreenRun linear = linear_model(bench, {low[0], low[2], low[14]});
   Outcome outcome;
@@ -245,10 +255,10 @@ Outcome low_frequency(const Bench& bench) {
   outcome.picture =
       trials::bode_chart("F21: engine in pitch at hot fire and the linear model", {both.engine, single, small});
   outcome.note =
-      "The paper gives no figure; the bounds are ours, a tenth of the loss at 5.2 Hz and a third of the lag of one axis "
-      "alone. The statement holds because yaw moves fast beside the slow pitch: the friction vector follows the fast axis. "
-      "A "
-      "test of one axis alone does not follow the linear model at any frequency of the band.";
+      "The paper gives no figure. The bounds are our own: a tenth of the loss at 5.2 Hz, and a third of the lag "
+      "of one axis alone. The statement holds because yaw moves fast beside the slow pitch: the friction vector "
+      "follows the fast axis. A test of one axis alone does not follow the linear model at any frequency of the "
+      "band.";
   return outcome;
 }
 

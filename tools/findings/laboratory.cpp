@@ -49,7 +49,7 @@ Outcome laboratory_notch(const Bench& bench) {
   outcome.figures.push_back(
       near("notch at the largest, against the linear asymptote", before, trials::asymptote(spring), 0.02, "Hz"));
   outcome.picture = trials::stiffness_chart("F2: load resonance and actuator stiffness over amplitude", stiffnesses, spring);
-  outcome.note = "The peak force of eq. 5 is worked out with the commanded amplitude, as in the paper.";
+  outcome.note = "The peak force of eq. 5 is computed from the commanded amplitude, as in the paper.";
   return outcome;
 }
 

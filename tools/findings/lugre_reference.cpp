@@ -106,7 +106,7 @@ Outcome lugre_reference(const Bench& bench) {
   outcome.figures.push_back(near("presliding at 1.425 N", 1e6 * at_the_top, 44.9, 0.01, "um"));
   outcome.figures.push_back(near("left at zero force", 1e6 * state.y(0), 35.3, 0.01, "um"));
   outcome.picture = {"F14: stick-slip of the 1995 set", "time [s]", false, {{"position [m]", {position, pull}}}};
-  outcome.note = "Against RK4 at 1e-6 s; here the step is 0.1 ms.";
+  outcome.note = "The reference is RK4 with a step of 1e-6 s. The step here is 0.1 ms.";
   return outcome;
 }
 

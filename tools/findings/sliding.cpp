@@ -89,10 +89,10 @@ Outcome thrust_and_friction(const Bench& bench) {
   outcome.figures.push_back({"trim that full thrust adds", trim(full) - trim(0.0), 38.0, 53.0, "mdeg"});
   outcome.picture = trials::time_chart("F18: thrust from zero by halves to full", record, "pitch");
   outcome.note =
-      "One run of one file, its thrust a channel of the input. Friction is read from the load pressure. It is half of the "
-      "difference between the two directions of motion. Viscous damping cancels in the difference between two thrusts. The "
-      "trim is what a misaligned "
-      "thrust and the bearing's give leave at zero command.";
+      "One model file is run once, with the thrust as a channel of the input. Friction is half of the difference"
+      " of the load pressure between the two directions of motion. Viscous damping cancels in the difference "
+      "between two thrusts. The trim is the angle at zero command. It comes from a misaligned thrust and the "
+      "compliance of the bearing.";
   return outcome;
 }
 
@@ -123,7 +123,7 @@ Outcome friction_vector(const Bench& bench) {
                      "rate of yaw over rate of pitch",
                      false,
                      {{"friction in pitch over that of pitch alone", {model_curve, law}}}};
-  outcome.note = "Triangles of both commands at hot fire; friction from the load pressure, less what it is without.";
+  outcome.note = "Both commands are triangles at hot fire. Friction is the load pressure minus that without friction.";
   return outcome;
 }
 
@@ -142,7 +142,7 @@ Outcome one_file(const Bench& bench) {
   outcome.figures.push_back(near("notch of the piston under full thrust", hot, 9.5, 0.03, "Hz"));
   outcome.figures.push_back(near("shift by the thrust alone", hot / ambient, 9.5 / 6.5, 0.03, ""));
   outcome.picture = trials::bode_chart("F19: one file, 0.8 deg, its thrust switched", drawn);
-  outcome.note = "Nothing differs between the two but the thrust; the structure of empty tanks comes with it.";
+  outcome.note = "Only the thrust differs between the two runs. The structure of empty tanks follows it.";
   return outcome;
 }
 

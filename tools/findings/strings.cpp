@@ -134,12 +134,11 @@ Outcome string_potentiometers(const Bench& bench) {
                      false,
                      {{"error [mdeg rms]", {moved, carried}}}};
   outcome.note =
-      "The affine fit uses nine settled poses of up to 2 deg about both axes. It uses the reached angles; row 2 uses the "
-      "commanded ones, as [SD 2.3] does. The test is a motion of 1 deg, 0.5 to 4 Hz, about both axes. Both run in the "
-      "plant. Lag 2 ms, noise "
-      "20 um, quantisation 10 um. An anchor that is misplaced "
-      "from the start is taken up by the fit; one that moves after it is not, and nor is a floor that the vehicle's modes "
-      "move.";
+      "The affine fit uses nine settled poses of up to 2 deg about both axes. It uses the reached angles; row 2 "
+      "uses the commanded ones, as [SD 2.3] does. The test is a motion of 1 deg, 0.5 to 4 Hz, about both axes. "
+      "Poses and test run in the plant. The strings have 2 ms of lag, 20 um of noise and 10 um of quantisation. "
+      "The fit corrects an anchor that is misplaced from the start. It cannot correct an anchor that moves "
+      "later, nor a floor that moves with the vehicle's modes.";
   return outcome;
 }
 

@@ -175,16 +175,16 @@ Outcome stiffness_by_location(const Bench& bench) {
   outcome.picture = {
       "F12: load stiffness by location", "location", false, {{"load stiffness [MN/m]", {by_notch, by_modes}}}};
   outcome.note = fmt::format(
-      "Synthetic vehicle of 120 modes, reduced to {}. The rest of the load flexibility is local to the attach points. The "
-      "responses are those of the steady state, to which a mode of half a percent damping settles in 22 s: all sines of 7.4 "
-      "to 14 Hz, 0.025 Hz apart, at once, after 80 s. Without friction and soft stiffness the stage is as good as linear "
-      "under them. One actuator is commanded at a time. The deepest notch is the one that is read, and it need not be "
-      "the load's: modes that cross the band have notches of their own. A stiffness from a notch multiplies the notch's "
-      "displacement by 2 K_L / K_T, about four here (the total goes with the square, and the actuator's share is taken "
-      "off). "
-      "So the 13 % of F15 at one location are 80 % of stiffness, and the scatter is larger than that of [SD fig. 11], whose "
-      "vehicle must have fewer modes that the actuators feel. [SD 2.4] fits the curve of a one-axis model to the whole "
-      "response, which a single deep notch of a mode disturbs less; that fit is not repeated here.",
+      "The synthetic vehicle has 120 modes, reduced to {}. The rest of the load flexibility is local to the "
+      "attach points. All sines of 7.4 to 14 Hz, 0.025 Hz apart, act at once, and the response is read after 80 "
+      "s. A mode of 0.5 % damping settles in 22 s. Without friction and soft stiffness the stage is nearly "
+      "linear under them. One actuator is commanded at a time. The deepest notch is read. It need not be that of"
+      " the load: modes that cross the band have their own notches. A stiffness from a notch multiplies the "
+      "shift of the notch by 2 K_L / K_T, which is about four here. The total stiffness goes with the square, "
+      "and the stiffness of the actuator is subtracted. So the 13 % of F15 at one location are 80 % of "
+      "stiffness. The scatter is larger than that of [SD fig. 11], whose vehicle must have fewer modes that the "
+      "actuators excite. [SD 2.4] fits the curve of a one-axis model to the whole response. One deep notch of a "
+      "mode disturbs that fit less. It is not repeated here.",
       stage.reduced.modes());
   return outcome;
 }
@@ -229,11 +229,9 @@ Outcome static_or_dynamic(const Bench& bench) {
   outcome.figures.push_back({"largest difference", 100.0 * furthest, 6.0, 25.0, "%"});
   outcome.picture = trials::bode_chart("F15: piston of engine 3 pitch on a dynamic and on a static vehicle", drawn);
   outcome.note =
-      "The same vehicle and steady state as in F12, in place of its modes their static flexibility. \"Nearly the same "
-      "frequency\" [SD] holds "
-      "to 6 % at seven of the eight locations. It does not hold for the pitch of engine 3, which is drawn: there the "
-      "deepest "
-      "notch is that of a mode.";
+      "Vehicle and steady state are those of F12. The static structure has the static flexibility of the modes "
+      "in their place. \"Nearly the same frequency\" [SD] holds to 6 % at seven of the eight locations. It does "
+      "not hold for the pitch of engine 3, which is drawn: there the deepest notch is that of a mode.";
   return outcome;
 }
 
@@ -254,7 +252,7 @@ Outcome engine_phase(const Bench& bench) {
   dynamic.channel = "dynamic";
   still.channel = "static";
   outcome.picture = trials::bode_chart("F20: engine 1 in pitch on a dynamic and on a static vehicle", {dynamic, still});
-  outcome.note = "The vehicle and the steady state of F12.";
+  outcome.note = "Vehicle and steady state are those of F12.";
   return outcome;
 }
 

@@ -141,11 +141,11 @@ Outcome friction_under_vibration(const Bench& bench) {
                      false,
                      {{"mean friction over its level", {sine, closed_sine}}}};
   outcome.note =
-      "\"Higher frequency content is more important\" [GF] holds for equal amplitude of the slip. At equal slip velocity, "
-      "the "
-      "higher frequency has the smaller amplitude. The torsion of the bearing takes a larger part of it, so friction falls "
-      "less. At equal torque, the velocity falls as 1/f, and so does the reduction of friction. An amplitude of 0.5 mrad, "
-      "which is less than the torsion takes under friction (1.1 mrad), still lowers it by a quarter.";
+      "\"Higher frequency content is more important\" [GF] holds for equal amplitude of the slip. At equal slip "
+      "velocity, the higher frequency has the smaller amplitude. The torsion of the bearing takes a larger part "
+      "of it, so friction falls less. At equal torque, the velocity falls as 1/f, and so does the reduction of "
+      "friction. The torsion under friction is 1.1 mrad. A smaller amplitude of 0.5 mrad still lowers friction "
+      "by a quarter.";
   return outcome;
 }
 

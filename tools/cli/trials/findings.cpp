@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/cli/shared/progress.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
@@ -62,6 +63,7 @@ nlohmann::ordered_json to_json(const std::vector<findings::Row>& rows) {
     }
     all.push_back({{"id", row.finding->id},
                    {"title", row.finding->title},
+                   {"source", row.finding->source},
                    {"found", row.outcome.inside()},
                    {"command", row.finding->command},
                    {"figures", figures},
@@ -118,7 +120,7 @@ bool run_mutants(const FindingsOptions& options, const findings::Bench& bench) {
     }
   }
   if (options.json) {
-    std::cout << all.dump(2) << '\n';
+    print_json(all);
   }
   return all_fail;
 }
@@ -158,7 +160,7 @@ void run_findings(const FindingsOptions& options) {
     write_pages(findings::pages(rows), options.pages);
   }
   if (options.json) {
-    std::cout << to_json(rows).dump(2) << '\n';
+    print_json(to_json(rows));
   } else {
     print(rows);
   }
