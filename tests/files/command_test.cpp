@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -181,6 +182,8 @@ TEST(Command, header_writes_the_parameters_of_one_axis_as_exact_constants) {
   const std::string taos = scratch.write("taos.toml", "schema = 1\ntopology = \"taos\"\n").string();
   LONGS_EQUAL(2, status_of("header --model " + taos + " --output " + header.string()));
   expect_message(err, {"a header holds one axis"});
+  LONGS_EQUAL(0, status_of("header --json --model " + model() + " --output " + header.string()));
+  STRCMP_EQUAL(header.c_str(), nlohmann::json::parse(out).at("output").get<std::string>().c_str());
   LONGS_EQUAL(2, status_of("header --name 2nd --model " + model() + " --output " + header.string()));
   expect_message(err, {"--name 2nd", "a C++ name"});
 }
@@ -326,6 +329,13 @@ TEST(Command, candump_log_is_written_read_back_and_simulated) {
   LONGS_EQUAL(6, status_of("simulate --model " + model() + " --input " + log + " --output " + output));
   expect_message(err, {"no column command", "--command-per-current"});
   LONGS_EQUAL(2, status_of("convert " + csv + " r.xls"));
+  LONGS_EQUAL(0, status_of("convert --json " + csv + " " + scratch.path("r.mf4").string()));
+  const auto json = nlohmann::json::parse(out);
+  STRCMP_CONTAINS("r.mf4", json.at("output").get<std::string>().c_str());
+  LONGS_EQUAL(3, json.at("rows").get<int>());
+  DOUBLES_EQUAL(0.002, json.at("period").get<double>(), 1e-12);
+  CHECK(json.at("channels") ==
+        nlohmann::json::parse(R"([{"name": "command", "unit": "rad"}, {"name": "piston", "unit": "m"}])"));
 }
 
 TEST(Command, import_reads_a_candump_log_with_its_dbc_file_and_says_without_one_what_is_needed) {
@@ -339,6 +349,12 @@ TEST(Command, import_reads_a_candump_log_with_its_dbc_file_and_says_without_one_
   expect_message(out, {"rig.csv: 3 rows, period 0.002 s, piston"});
   LONGS_EQUAL(0, status_of("check " + output));
   expect_message(out, {"rig.csv: record, 3 rows, period 0.002 s (500 Hz)", "piston[m]"});
+  LONGS_EQUAL(0, status_of("import --json " + log + " --dbc " + dbc + " --map " + map + " --output " + output));
+  const auto json = nlohmann::json::parse(out);
+  LONGS_EQUAL(3, json.at("rows").get<int>());
+  CHECK(json.at("channels") == nlohmann::json::parse(R"([{"name": "piston", "unit": "m"}])"));
+  LONGS_EQUAL(2, status_of("import --json --guess " + log));
+  expect_message(err, {"--json", "--guess"});
   LONGS_EQUAL(2, status_of("import " + log + " --map " + map + " --output " + output));
   expect_message(err, {"rig.log: is a candump log", "--dbc rig.dbc"});
   LONGS_EQUAL(6, status_of("import " + log + " --dbc none.dbc --map " + map + " --output " + output));

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numbers>
 #include <utility>
+#include <variant>
 
 namespace hotfire::trials {
 
@@ -27,6 +28,12 @@ double half_dwell_for(double rate) {
 
 double half_dwell_for(const model::Engine<double>& engine) {
   return half_dwell_for(0.5 * engine.viscous_damping / engine.inertia);
+}
+
+double half_dwell_for(const SimplexParameters& axis) { return half_dwell_for(axis.engine); }
+
+double half_dwell_for(const DirectParameters& direct) {
+  return half_dwell_for(0.5 * direct.mass.damping / direct.mass.inertia);
 }
 
 /// What a fit of a sine of `frequency` over the second half of a dwell takes from a mode that began with it.
@@ -60,10 +67,7 @@ LeastDwell dwell_of(double half, std::vector<Mode> modes) {
 }  // namespace
 
 LeastDwell settled_dwell(const ModelFile& model) {
-  if (const auto* direct = std::get_if<DirectParameters>(&model.parameters)) {
-    return dwell_of(half_dwell_for(0.5 * direct->mass.damping / direct->mass.inertia), {});
-  }
-  return dwell_of(half_dwell_for(std::get<SimplexParameters>(model.parameters).engine), {});
+  return dwell_of(std::visit([](const auto& parameters) { return half_dwell_for(parameters); }, model.parameters), {});
 }
 
 LeastDwell settled_dwell(const VehicleFile& model, double lowest, double highest) {

@@ -13,6 +13,7 @@
 #include "model/keys.hpp"
 #include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/can/can_schedule.hpp"
 #include "tools/files/can/candump.hpp"
 #include "tools/files/model/model_file.hpp"
@@ -185,7 +186,7 @@ void check(const std::vector<std::string>& files, bool as_json) {
     results.push_back(std::move(result));
   }
   if (as_json) {
-    std::cout << results.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    print_json(results);
   }
   if (!all_good) {
     throw CLI::RuntimeError(static_cast<int>(ExitStatus::bad_data));

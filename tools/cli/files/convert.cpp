@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <iostream>
 #include <memory>
 #include <string>
 
 #include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/written_record.hpp"
 #include "tools/files/record/record.hpp"
 #include "tools/files/text/error.hpp"
 
@@ -20,6 +20,7 @@ struct ConvertOptions {
   std::string input;
   std::string output;
   CandumpOptions candump;
+  bool json = false;
 };
 
 void convert(const ConvertOptions& options) {
@@ -36,7 +37,7 @@ void convert(const ConvertOptions& options) {
   } else {
     write_record(record, output);
   }
-  std::cout << fmt::format("{}: {} rows, period {:.6g} s\n", options.output, record.rows, record.period);
+  print_written(options.output, record, {}, options.json);
 }
 
 }  // namespace
@@ -49,11 +50,10 @@ void add_convert(CLI::App& program) {
       ->required();
   command->add_option("OUTPUT", options->output, "file to write")->required();
   add_candump_options(*command, options->candump);
+  command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
       "Example: hotfire convert run.hfr run.mf4\nExample: hotfire convert --command-per-current 5 run.log run.csv\nA log "
-      "carries currents and positions in codes of 1 "
-      "uA "
-      "and 0.1 um; canplayer replays it.");
+      "has currents and positions in codes of 1 uA and 0.1 um; canplayer replays it.");
   command->callback([options] { convert(*options); });
 }
 

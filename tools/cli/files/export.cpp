@@ -3,10 +3,10 @@
 
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "tools/cli/shared/commands.hpp"
 #include "tools/cli/shared/plant_image.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/export/export_fmu.hpp"
 #include "tools/files/rig/profile_file.hpp"
 #include "tools/files/text/error.hpp"
@@ -25,15 +25,13 @@ void run_export(FmuOptions options, bool json) {
   options.materials = materials_of_this_program();
   const ExportedFmu written = export_fmu(options);
   if (json) {
-    std::cout << nlohmann::ordered_json{{"fmu", options.fmu.string()},
-                                        {"fmi", options.version == 3 ? "3.0" : "2.0"},
-                                        {"model_identifier", written.identifier},
-                                        {"step", options.period},
-                                        {"inputs", written.inputs},
-                                        {"outputs", written.outputs},
-                                        {"parameters", written.parameters}}
-                     .dump(2)
-              << '\n';
+    print_json({{"fmu", options.fmu.string()},
+                {"fmi", options.version == 3 ? "3.0" : "2.0"},
+                {"model_identifier", written.identifier},
+                {"step", options.period},
+                {"inputs", written.inputs},
+                {"outputs", written.outputs},
+                {"parameters", written.parameters}});
     return;
   }
   std::cout << fmt::format("{}: FMI {} co-simulation, internal step {} s, {} inputs, {} outputs, {} parameters\n",
@@ -46,7 +44,7 @@ void run_export_image(const std::string& path, const std::string& image, bool js
   const std::string kind = is_profile(path) ? "profile" : "model";
   write_whole_file(image, kind == "profile" ? load_profile(path).image : image_of_model(path));
   if (json) {
-    std::cout << nlohmann::ordered_json{{"image", image}, {"kind", kind}}.dump(2) << '\n';
+    print_json({{"image", image}, {"kind", kind}});
     return;
   }
   std::cout << fmt::format("{}: image of a {}; to run it: hotfire-rt {} --image {}\n", image, kind,

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/whole_file.hpp"
 #include "tools/simulate/plant_image_text.hpp"
@@ -21,6 +22,7 @@ struct HeaderOptions {
   std::string model;
   std::string output;
   std::string name = "kPlantImage";
+  bool json = false;
 };
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -65,6 +67,10 @@ void run_header(const HeaderOptions& options) {
                      ": a header holds one axis; allowed are \"simplex\" and \"direct\" models");
   }
   write_whole_file(options.output, header_of(options, load_model(options.model)));
+  if (options.json) {
+    print_json({{"output", options.output}, {"name", options.name}});
+    return;
+  }
   std::cout << options.output << '\n';
 }
 
@@ -76,6 +82,7 @@ void add_header(CLI::App& program) {
   command->add_option("--model", options->model, "model file (.toml) of one axis")->required();
   command->add_option("--output", options->output, "header to write (.hpp)")->required();
   command->add_option("--name", options->name, "name of the array in the header")->capture_default_str();
+  command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
       "Example: hotfire header --model axis.toml --output axis_image.hpp --name kAxisImage\n"
       "The header is for hotfire::model::parameters_of: docs/interfaces/small-targets.md.");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/written_record.hpp"
 #include "tools/files/import/guess.hpp"
 #include "tools/files/text/error.hpp"
 
@@ -22,6 +23,7 @@ void add_import(CLI::App& program) {
     std::string output;
     std::vector<std::string> excluded;
     bool guess = false;
+    bool json = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
@@ -33,11 +35,12 @@ void add_import(CLI::App& program) {
   command->add_option("--map", options->map, "map: the column of each channel (.toml)");
   command->add_option("--dbc", options->dbc, "description of the frames of a candump log (.dbc)");
   command->add_option("--output", options->output, "record to write (.csv)");
-  command->add_flag("--guess", options->guess, "print a first map of the file; no file is written");
+  CLI::Option* guess = command->add_flag("--guess", options->guess, "print a first map of the file; no file is written");
   command
       ->add_option("--exclude", options->excluded,
                    "FROM-TO [s]: a drop-out, where values and rows may be missing; give it to explain too")
       ->allow_extra_args(false);
+  command->add_flag("--json", options->json, "print the result as JSON")->excludes(guess);
   command->footer(
       "Example: hotfire import daq.txt --guess > map.toml\nExample: hotfire import run17.mat --map map.toml --output "
       "run17.csv\nmap.toml: schema = 1, [time] column = \"t\", "
@@ -67,14 +70,7 @@ void add_import(CLI::App& program) {
     }
     std::vector<std::string> notes;
     const Record record = import_record(options->source, map, options->output, options->dbc, drop_outs, &notes);
-    std::cout << fmt::format("{}: {} rows, period {:.6g} s,", options->output, record.rows, record.period);
-    for (const Channel& channel : record.channels) {
-      std::cout << ' ' << channel.name;
-    }
-    std::cout << '\n';
-    for (const std::string& note : notes) {
-      std::cout << note << '\n';
-    }
+    print_written(options->output, record, notes, options->json);
   });
 }
 

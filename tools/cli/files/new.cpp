@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/project/project.hpp"
 
 namespace hotfire {
@@ -25,7 +26,7 @@ void run_new(const NewOptions& options) {
   if (options.json) {
     const nlohmann::ordered_json result{
         {"folder", project.folder.string()}, {"files", project.files}, {"commands", project.commands}};
-    std::cout << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    print_json(result);
     return;
   }
   std::cout << fmt::format("{}: {}\n\nRun next:\n  cd {}\n  {}\n", options.name, fmt::join(project.files, ", "),

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/cli/shared/progress.hpp"
 #include "tools/disperse/dispersion_report.hpp"
 #include "tools/disperse/worker.hpp"
@@ -125,7 +126,7 @@ void run_disperse(const DisperseOptions& options, const disperse::CommandRunner&
   const disperse::DispersionReport report(dispersion, options.goal);
   write_report(report, options.out);
   if (options.json) {
-    std::cout << report.json().dump(2) << '\n';
+    print_json(report.json());
   } else {
     std::cout << fmt::format("{}: {} draws of {} tolerances, {} failed\n{}", options.out, plan.draws,
                              dispersion.tolerances().variables.size(), report.failed(), report.text());
@@ -169,8 +170,7 @@ void add_disperse(CLI::App& program, const disperse::CommandRunner& run) {
   command
       ->add_flag(
           "--worker", options->worker,
-          "run the draws whose numbers come on standard input, a line each, and print each result; hotfire-disperse-mpi "
-          "starts its workers so")
+          "for hotfire-disperse-mpi: run the draws whose numbers come on standard input, a line each, and print each result")
       ->excludes("--print-draws");
   command->add_flag("--json", options->json, "print the statistics as JSON");
   command

@@ -280,7 +280,7 @@ void add_explain(CLI::App& program, const std::string& typed) {
   command->add_flag("--json", arguments->json, "print report.json instead of the summary");
   command->footer(
       "Example: hotfire explain --model declared.toml --out found sweep.csv steps.csv --hold-out ramps.csv\n"
-      "A taos model takes records with channels of its axes: command.pitch, piston.pitch, engine.yaw ...\n"
+      "A model of several axes takes records with channels of its axes: command.pitch, piston.pitch, engine.yaw ...\n"
       "Ctrl-C ends the search and reports what is known so far (exit status 130).");
   command->callback([arguments, typed] { run_explain(*arguments, typed); });
 }

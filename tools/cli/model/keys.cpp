@@ -12,6 +12,7 @@
 
 #include "tools/cli/shared/commands.hpp"
 #include "tools/cli/shared/model_keys.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/suggestion.hpp"
 
@@ -142,7 +143,7 @@ void run_keys(const KeysOptions& options) {
     for (const Selected& one : chosen) {
       result.push_back(json_of(*one.table, one.key));
     }
-    std::cout << result.dump(2) << '\n';
+    print_json(result);
     return;
   }
   if (chosen.empty()) {

@@ -11,6 +11,8 @@
 #include <numbers>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/frequencies.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/library/declared_plant.hpp"
 #include "tools/linear/linear_model.hpp"
@@ -38,9 +40,7 @@ struct LineariseOptions {
   std::vector<double> amplitudes;  ///< [deg]
   double frequency = 1.0;          ///< of the quasi-linear model [Hz]
   double period = 1e-3;            ///< [s]
-  double from = 0.4;               ///< [Hz]
-  double to = 14.0;
-  int count = 60;
+  Frequencies frequencies{0.4, 14.0, 60};
   bool json = false;
 };
 
@@ -160,14 +160,11 @@ void linearise(const LineariseOptions& options) {
   if (!options.output.empty() && options.amplitudes.size() > 1) {
     throw UsageError("--output holds one model; give one of --amplitudes, or none for small deviations");
   }
-  if (!(options.from < options.to)) {
-    throw UsageError(fmt::format("--from {:g} is not below --to {:g}", options.from, options.to));
-  }
+  const std::vector<double> frequencies = options.frequencies.spaced();
   const Linearised opened = open(options);
   const linear::Plant& plant = *opened.plant;
   const std::string command = plant.inputs()[static_cast<std::size_t>(opened.axis)].name;
   Responses responses(plant, opened.axis, command.substr(std::string("command").size()));
-  const std::vector<double> frequencies = trials::spaced(options.from, options.to, options.count);
   std::vector<double> without;
   linear::LinearModel model;
   if (options.amplitudes.empty()) {
@@ -206,7 +203,7 @@ void linearise(const LineariseOptions& options) {
     result["poles"] = to_json(linear::poles(model));
     result["responses"] = trials::to_json(responses.all());
     result["without_balance_hertz"] = without;
-    std::cout << result.dump(2) << '\n';
+    print_json(result);
   } else {
     print(model, without);
   }
@@ -217,7 +214,8 @@ void linearise(const LineariseOptions& options) {
 void add_linearise(CLI::App& program) {
   const auto options = std::make_shared<LineariseOptions>();
   CLI::App* command = program.add_subcommand(
-      "linearise", "Linear model A, B, C, D about a load, an angle and an amplitude, with poles and frequency response");
+      "linearise",
+      "Compute the linear model A, B, C, D about a load, an angle and an amplitude, with poles and frequency response");
   command->add_option("MODEL", options->model, "model file (.toml): simplex, taos or masv")->required();
   command->add_option("--axis", options->axis,
                       "axis of several that is commanded and loaded: pitch, yaw2 ...; default: the first");
@@ -238,15 +236,7 @@ void add_linearise(CLI::App& program) {
   command->add_option("--period", options->period, "period of the sampled system, over which a command is held [s]")
       ->check(CLI::Range(1e-4, 0.1))
       ->capture_default_str();
-  command->add_option("--from", options->from, "lowest frequency of the responses [Hz]")
-      ->check(CLI::Range(0.01, 200.0))
-      ->capture_default_str();
-  command->add_option("--to", options->to, "highest frequency of the responses [Hz]")
-      ->check(CLI::Range(0.01, 200.0))
-      ->capture_default_str();
-  command->add_option("--count", options->count, "number of frequencies")
-      ->check(CLI::Range(2, 10000))
-      ->capture_default_str();
+  add_frequencies(*command, options->frequencies, "the responses", {0.01, 200.0, 10'000});
   command->add_option("--output", options->output, "write the model (.mat, .json or .csv)");
   command->add_option("--picture", options->picture, "draw the responses (.svg)");
   command->add_flag("--json", options->json, "print names, poles and responses as JSON");

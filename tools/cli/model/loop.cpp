@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/frequencies.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/library/declared_plant.hpp"
 #include "tools/loop/flight.hpp"
@@ -27,9 +29,7 @@ struct LoopOptions {
   std::vector<double> amplitudes;  ///< [deg]
   std::vector<double> attitudes;   ///< [deg]
   double seconds = 120.0;
-  double from = 0.05;  ///< [Hz]
-  double to = 10.0;
-  int count = 40;
+  Frequencies frequencies{0.05, 10.0, 40};
   bool no_check = false;
   bool json = false;
 };
@@ -73,8 +73,9 @@ Parts open(const LoopOptions& options) {
 }
 
 loop::LoopResult result_of(const LoopOptions& options, const Parts& parts) {
-  const std::vector<double> frequencies =
-      trials::spaced(options.from, std::min(options.to, 0.499 / parts.controller.period), options.count);
+  Frequencies below_nyquist = options.frequencies;
+  below_nyquist.to = std::min(below_nyquist.to, 0.499 / parts.controller.period);
+  const std::vector<double> frequencies = below_nyquist.spaced();
   loop::VehicleLoop loop(*parts.plant, *parts.stage, parts.controller);
   loop::LoopResult result;
   result.controller = parts.controller.name;
@@ -119,16 +120,13 @@ loop::LoopResult result_of(const LoopOptions& options, const Parts& parts) {
 }
 
 void run_loop(const LoopOptions& options) {
-  if (!(options.from < options.to)) {
-    throw UsageError(fmt::format("--from {:g} is not below --to {:g}", options.from, options.to));
-  }
   const Parts parts = open(options);
   const loop::LoopResult result = result_of(options, parts);
   if (!options.picture.empty()) {
     trials::write_picture(loop::bode_chart(result), options.picture);
   }
   if (options.json) {
-    std::cout << loop::to_json(result).dump(2) << '\n';
+    print_json(loop::to_json(result));
   } else {
     std::cout << loop::text_of(result);
   }
@@ -139,7 +137,7 @@ void run_loop(const LoopOptions& options) {
 void add_loop(CLI::App& program) {
   const auto options = std::make_shared<LoopOptions>();
   CLI::App* command = program.add_subcommand(
-      "loop", "A flight-control loop around a stage of four engines: margins by amplitude, limit cycles");
+      "loop", "Analyse a flight-control loop around a stage of four engines: margins by amplitude, limit cycles");
   command->add_option("MODEL", options->model, "model file (.toml): masv with a mode table that has rigid-body modes")
       ->required();
   command->add_option("--controller", options->controller, "file of the controller (.toml)")->required();
@@ -160,21 +158,14 @@ void add_loop(CLI::App& program) {
   command->add_option("--seconds", options->seconds, "length of a simulation [s]")
       ->check(CLI::Range(1.0, 1e5))
       ->capture_default_str();
-  command->add_option("--from", options->from, "lowest frequency [Hz]")
-      ->check(CLI::Range(1e-3, 200.0))
-      ->capture_default_str();
-  command->add_option("--to", options->to, "highest frequency [Hz]; at most half of the sampling rate")
-      ->check(CLI::Range(1e-3, 200.0))
-      ->capture_default_str();
-  command->add_option("--count", options->count, "number of frequencies")
-      ->check(CLI::Range(2, 10000))
-      ->capture_default_str();
+  add_frequencies(*command, options->frequencies, "the responses", {1e-3, 200.0, 10'000});
   command->add_option("--picture", options->picture, "draw the open loop (.svg)");
   command->add_flag("--json", options->json, "print margins, limit cycles and responses as JSON");
   command->footer(
       "Example: hotfire loop stage.toml --controller pitch.toml --amplitudes 0.05,0.1,0.2,0.4,0.8 --attitudes 0.1,2\n"
-      "The loop is cut at the command. Gain margins above 0 dB are of a gain that may rise, below 0 dB of one that may "
-      "fall.");
+      "The loop is cut at the command. Frequencies end at half of the sampling rate. A gain margin above 0 dB is the "
+      "allowed "
+      "rise of the gain, one below 0 dB the allowed fall.");
   command->callback([options] { run_loop(*options); });
 }
 

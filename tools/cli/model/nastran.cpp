@@ -7,6 +7,7 @@
 
 #include "tools/analysis/chart.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/whole_file.hpp"
 #include "tools/nastran/projection.hpp"
 #include "tools/structure/port_response.hpp"
@@ -55,7 +56,7 @@ void run_nastran(const NastranOptions& options) {
                                         {"left_out", projection.left_out},
                                         {"hertz", std::vector<double>(modes.frequency.begin(), modes.frequency.end())},
                                         {"lines", projection.lines}};
-    std::cout << result.dump(2) << '\n';
+    print_json(result);
     return;
   }
   std::cout << fmt::format("{}: {} modes from {:.4g} to {:.4g} Hz, {} at or below the least frequency left out\n",

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/whole_file.hpp"
 #include "tools/structure/reduction.hpp"
@@ -36,7 +37,7 @@ void print(const ReduceOptions& options, const ModeSet& full, const Reduction& r
                                         {"error", errors},
                                         {"static_error", reduction.static_error},
                                         {"reached", reduction.reaches(options.goal)}};
-    std::cout << result.dump(2) << '\n';
+    print_json(result);
     return;
   }
   std::cout << fmt::format("{}: {} of {} modes kept for {:g} to {:g} Hz; static flexibility differs by {:.1e}\n",
@@ -81,7 +82,7 @@ void add_reduce(CLI::App& program) {
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
       "Example: hotfire reduce --modes vehicle.csv --output reduced.csv --lowest 1 --highest 20\nExit status: 1 if the "
-      "error is above --error with that many modes; the table is written all the same.");
+      "error is above --error with that many modes; the table is written in any case.");
   command->callback([options] { run_reduction(*options); });
 }
 

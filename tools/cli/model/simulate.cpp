@@ -12,6 +12,7 @@
 #include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -64,7 +65,7 @@ void run_simulation(const SimulateOptions& options) {
                                         {"seconds", took},
                                         {"processor_seconds", processor_took},
                                         {"times_real_time", simulated / took}};
-    std::cout << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    print_json(result);
   } else {
     std::cout << fmt::format("{}: {} rows, {:.6g} s simulated in {:.3g} s, {:.0f} times faster than real time\n",
                              options.output, outputs.rows, simulated, took, simulated / took);

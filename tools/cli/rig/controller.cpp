@@ -5,7 +5,7 @@
 namespace hotfire {
 
 void add_controller(CLI::App& program) {
-  add_realtime_command(program, "controller", "Command a plant on a CAN bus, to try a rig that has nothing else",
+  add_realtime_command(program, "controller", "Command a plant on a CAN bus, to test a rig without another controller",
                        TakesModel::never);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
@@ -52,7 +53,7 @@ void examine(doctor::Patient patient, bool as_json) {
                       {"remedy", finding.remedy}});
     }
     const Json result{{"verdict", good ? "good" : "bad"}, {"findings", list}};
-    std::cout << result.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+    print_json(result);
   } else {
     for (const Finding& finding : findings) {
       std::cout << fmt::format("{:<6}  {:<16} {}\n", name_of(finding.level), finding.check, finding.what);

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/rig/realtime_program.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire {
@@ -91,17 +92,15 @@ bool all_in_real_time(const Trials& trials) {
 }
 
 /// `shortest`: the shortest period that held, 0 for none.
-void print_json(const PeriodSearch& search, const Trials& trials, int shortest) {
+void print_as_json(const PeriodSearch& search, const Trials& trials, int shortest) {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& [period, trial] : trials) {
     all.push_back(json_of(period, trial));
   }
-  fmt::print("{}\n",
-             nlohmann::json{{"shortest_period_us", shortest > 0 ? nlohmann::json(shortest) : nlohmann::json(nullptr)},
-                            {"seconds_each", search.seconds},
-                            {"real_time", all_in_real_time(trials)},
-                            {"trials", all}}
-                 .dump(2));
+  print_json({{"shortest_period_us", shortest > 0 ? nlohmann::json(shortest) : nlohmann::json(nullptr)},
+              {"seconds_each", search.seconds},
+              {"real_time", all_in_real_time(trials)},
+              {"trials", all}});
 }
 
 /// The shortest period that held and the longest that did not [us]; 0 for none.
@@ -158,7 +157,7 @@ int find_shortest_period(const PeriodSearch& search) {
       (holds(middle) ? good : bad) = middle;
     }
   }
-  search.json ? print_json(search, trials, good) : print_words(search, trials, {good, bad});
+  search.json ? print_as_json(search, trials, good) : print_words(search, trials, {good, bad});
   return good > 0 ? 0 : kTiming;
 }
 

@@ -42,7 +42,7 @@ PeriodSearch search_of(const std::vector<std::string>& arguments, double seconds
 void add_timing(CLI::App& program) {
   const auto options = std::make_shared<FindOptions>();
   CLI::App* command = add_realtime_command(
-      program, "timing", "Check this machine's deterministic timing, with a verdict", TakesModel::optionally,
+      program, "timing", "Check the timing of this machine, with a verdict", TakesModel::optionally,
       [options](const std::vector<std::string>& arguments) {
         if (!options->find || asks_for_text_only(arguments)) {
           become_realtime_program(arguments);

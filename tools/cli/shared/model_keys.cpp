@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 #include <string_view>
+#include <variant>
 
 #include "tools/files/model/key_groups.hpp"
 #include "tools/files/model/plant_of.hpp"
@@ -118,22 +119,40 @@ std::vector<KeyTable> tables_of_vehicle() {
   return tables;
 }
 
+struct Topology {
+  std::string_view name;
+  std::vector<KeyTable> (*tables)();
+};
+
+template <class Plant>
+Topology of_vehicle() {
+  return {Plant::topology, tables_of_vehicle<Plant>};
+}
+
+/// Those of model files, which are the alternatives of their parameters, and of vehicle files.
+template <class... Parameters>
+std::vector<Topology> all_topologies(const std::variant<Parameters...>*) {
+  return {Topology{PlantOf<Parameters, double>::topology, tables_of<Parameters>}..., of_vehicle<model::Taos<double>>(),
+          of_vehicle<model::Masv<double>>()};
+}
+
+std::vector<Topology> all_topologies() { return all_topologies(static_cast<decltype(ModelFile::parameters)*>(nullptr)); }
+
 }  // namespace
 
-std::vector<std::string> topologies() { return {"simplex", "direct", "taos", "masv"}; }
+std::vector<std::string> topologies() {
+  std::vector<std::string> names;
+  for (const Topology& topology : all_topologies()) {
+    names.emplace_back(topology.name);
+  }
+  return names;
+}
 
 std::vector<KeyTable> key_tables(const std::string& topology) {
-  if (topology == "simplex") {
-    return tables_of<SimplexParameters>();
-  }
-  if (topology == "direct") {
-    return tables_of<DirectParameters>();
-  }
-  if (topology == "taos") {
-    return tables_of_vehicle<model::Taos<double>>();
-  }
-  if (topology == "masv") {
-    return tables_of_vehicle<model::Masv<double>>();
+  for (const Topology& known : all_topologies()) {
+    if (known.name == topology) {
+      return known.tables();
+    }
   }
   const std::vector<std::string> known = topologies();
   throw UsageError(fmt::format("--topology {}: {}", topology, suggestion(topology, {known.begin(), known.end()})));

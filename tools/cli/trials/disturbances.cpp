@@ -9,6 +9,7 @@
 #include "tools/analysis/free_decay.hpp"
 #include "tools/analysis/welch.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/cli/trials/trial_options.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/trials/disturbed.hpp"
@@ -51,7 +52,7 @@ void run_hammer(const HammerOptions& options) {
   if (options.trial.json) {
     const nlohmann::ordered_json json{
         {"hertz", decay->frequency}, {"damping_ratio", decay->damping_ratio}, {"cycles", decay->cycles}};
-    std::cout << json.dump(2) << '\n';
+    print_json(json);
   } else {
     std::cout << fmt::format("{}: {:.3f} Hz, damping ratio {:.4f}, over {} cycles\n", channel.name, decay->frequency,
                              decay->damping_ratio, decay->cycles);
@@ -82,7 +83,7 @@ void run_quiescent(const QuiescentOptions& options) {
   });
   if (options.trial.json) {
     const nlohmann::ordered_json json{{"peak_hertz", peak ? nlohmann::json(peak->frequency) : nlohmann::json(nullptr)}};
-    std::cout << json.dump(2) << '\n';
+    print_json(json);
   } else if (peak) {
     std::cout << fmt::format("{}: largest peak at {:.2f} Hz\n", piston.name, peak->frequency);
   } else {

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/frequencies.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/files/text/whole_file.hpp"
 #include "tools/response/response_report.hpp"
@@ -22,17 +24,13 @@ struct ResponseOptions {
   std::string out;
   response::Loading loading;
   double amplitude = 0.4;  ///< [deg]
-  double from = 0.5;       ///< [Hz]
-  double to = 40.0;        ///< [Hz]
-  int count = 800;
+  Frequencies frequencies{0.5, 40.0, 800};
   bool json = false;
 };
 
 response::Comparison comparison_of(const ResponseOptions& options) {
-  if (options.from >= options.to) {
-    throw UsageError(fmt::format("--from {:g} --to {:g}: no band; allowed: --from below --to", options.from, options.to));
-  }
   response::Comparison comparison;
+  comparison.frequencies = options.frequencies.spaced();
   std::set<std::string> names;
   response::Loading loading = options.loading;
   loading.amplitude = trials::radians(options.amplitude);
@@ -47,7 +45,6 @@ response::Comparison comparison_of(const ResponseOptions& options) {
     comparison.measured = response::load_measured(options.measured);
     response::require_known(comparison);
   }
-  comparison.frequencies = trials::spaced(options.from, options.to, options.count);
   return comparison;
 }
 
@@ -67,7 +64,7 @@ void run_response(const ResponseOptions& options) {
     }
   }
   if (options.json) {
-    std::cout << response::to_json(comparison, false).dump(2) << '\n';
+    print_json(response::to_json(comparison, false));
   } else {
     std::cout << response::text_of(comparison);
   }
@@ -96,15 +93,7 @@ void add_response(CLI::App& program) {
                    "amplitude of the engine at which the equivalent stiffness of each actuator is taken [deg]")
       ->check(CLI::Range(0.0, 20.0))
       ->capture_default_str();
-  command->add_option("--from", options->from, "lowest frequency [Hz]")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->capture_default_str();
-  command->add_option("--to", options->to, "highest frequency [Hz]")
-      ->check(CLI::Range(0.001, 1000.0))
-      ->capture_default_str();
-  command->add_option("--count", options->count, "number of frequencies, at equal ratios")
-      ->check(CLI::Range(2, 100'000))
-      ->capture_default_str();
+  add_frequencies(*command, options->frequencies, "the responses", {1e-3, 1000.0, 100'000});
   command->add_flag("--json", options->json, "print the figures as JSON");
   command->footer(
       "Example: hotfire response ambient.toml hot-fire.toml --measured measured.csv --out compared\n"

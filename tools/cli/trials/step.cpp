@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/cli/trials/trial_options.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/trials/pictures.hpp"
@@ -64,7 +65,7 @@ void run_steps(const StepOptions& options) {
   }
   draw_if_wanted(options.trial, [&] { return trials::time_chart("Steps", record, options.trial.axis); });
   if (options.trial.json) {
-    std::cout << json.dump(2) << '\n';
+    print_json(json);
   }
 }
 

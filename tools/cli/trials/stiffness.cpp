@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/cli/trials/trial_options.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/trials/pictures.hpp"
@@ -106,7 +107,7 @@ void run_stiffness(const StiffnessOptions& options) {
   if (options.trial.json) {
     nlohmann::ordered_json json = trials::to_json(stiffnesses, spring);
     json["bias"] = options.bias;
-    std::cout << json.dump(2) << '\n';
+    print_json(json);
   } else {
     print(stiffnesses, spring);
   }

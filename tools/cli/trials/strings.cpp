@@ -9,6 +9,7 @@
 
 #include "tools/cli/shared/any_record.hpp"
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/trials/pictures.hpp"
 #include "tools/trials/profiles.hpp"
@@ -63,7 +64,7 @@ void run_strings(const StringOptions& options) {
                                         {"residual_rad", calibration.residual()},
                                         {"pitch_error_rad", known(angles.pitch)},
                                         {"yaw_error_rad", known(angles.yaw)}};
-    std::cout << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    print_json(result);
     return;
   }
   std::cout << fmt::format("{}: calibrated on {} settled poses, which the fit leaves {:.3g} mdeg rms", options.output, poses,

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cli/shared/commands.hpp"
+#include "tools/cli/shared/frequencies.hpp"
+#include "tools/cli/shared/print_json.hpp"
 #include "tools/cli/trials/trial_options.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -25,9 +27,7 @@ struct SweepOptions {
   TrialOptions trial;
   std::string profile = "green-run";
   std::vector<double> amplitudes{0.4};  ///< [deg]
-  double from = 0.4;                    ///< [Hz]
-  double to = 14.0;                     ///< [Hz]
-  int count = 40;
+  Frequencies frequencies{0.4, 14.0, 40};
   bool coarse = false;
   double moment_arm = 0.0;
   trials::SweepGoal goal;
@@ -37,7 +37,7 @@ std::vector<trials::SineBand> bands_of(const SweepOptions& options) {
   std::vector<trials::SineBand> bands;
   bands.reserve(options.amplitudes.size());
   for (const double amplitude : options.amplitudes) {
-    bands.push_back({trials::radians(amplitude), trials::spaced(options.from, options.to, options.count)});
+    bands.push_back({trials::radians(amplitude), options.frequencies.spaced()});
   }
   return bands;
 }
@@ -47,8 +47,9 @@ std::vector<double> command_of(const SweepOptions& options) {
     return trials::stepped_sines(trials::green_run_sines(options.trial.axis.starts_with("yaw")));
   }
   if (options.profile == "multisine") {
-    return trials::multisine(trials::radians(options.amplitudes.front()), options.from, options.to, options.goal.segment, 8,
-                             1);
+    options.frequencies.require_band();
+    return trials::multisine(trials::radians(options.amplitudes.front()), options.frequencies.from, options.frequencies.to,
+                             options.goal.segment, 8, 1);
   }
   return trials::stepped_sines(bands_of(options));
 }
@@ -58,8 +59,9 @@ Record simulate_finely(const SweepOptions& options) {
   trials::SweepGoal goal = options.goal;
   goal.moment_arm = moment_arm_of_trial(options.trial);
   const std::optional<VehicleFile> vehicle = vehicle_of_trial(options.trial);
-  const trials::LeastDwell dwell = vehicle ? trials::settled_dwell(*vehicle, options.from, options.to)
-                                           : trials::settled_dwell(load_model(options.trial.model));
+  const trials::LeastDwell dwell = vehicle
+                                       ? trials::settled_dwell(*vehicle, options.frequencies.from, options.frequencies.to)
+                                       : trials::settled_dwell(load_model(options.trial.model));
   const std::vector<trials::SineBand> bands = bands_of(options);
   const Record coarse = simulate_command(options.trial, trials::stepped_sines(bands, dwell));
   return simulate_command(options.trial, trials::fine_sines(bands, trials::analyse_sweep(coarse, goal), dwell));
@@ -106,7 +108,7 @@ void run_sweep(SweepOptions& options) {
   draw_if_wanted(options.trial,
                  [&] { return trials::bode_chart(fmt::format("Sweep of {}", name_of_trial(options.trial)), sweeps); });
   if (options.trial.json) {
-    std::cout << trials::to_json(sweeps).dump(2) << '\n';
+    print_json(trials::to_json(sweeps));
   } else {
     print(sweeps);
   }
@@ -127,15 +129,7 @@ void add_sweep(CLI::App& program) {
   command->add_option("--amplitudes", options->amplitudes, "amplitude of each stepped sine, or peak of the multisine [deg]")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--from", options->from, "lowest frequency of sines and multisine [Hz]")
-      ->check(CLI::Range(0.01, 200.0))
-      ->capture_default_str();
-  command->add_option("--to", options->to, "highest frequency of sines and multisine [Hz]")
-      ->check(CLI::Range(0.01, 200.0))
-      ->capture_default_str();
-  command->add_option("--count", options->count, "number of frequencies of the stepped sine")
-      ->check(CLI::Range(2, 1000))
-      ->capture_default_str();
+  add_frequencies(*command, options->frequencies, "sines and multisine", {0.01, 200.0, 1000});
   command->add_flag(
       "--coarse", options->coarse,
       "sines: these frequencies alone, each held for 2 s; without it they are held until the modes settle, with "
