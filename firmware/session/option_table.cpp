@@ -127,7 +127,7 @@ constexpr OptionLine kLines[] = {
         "the age of the first command counts; default 50"),
     line<[](const std::string&, PlantOptions& o) { return o.heartbeat_optional = true, std::string(); }>(
         "--heartbeat-optional", "",
-        "follow a controller that never sends HEARTBEAT; a HEARTBEAT that came and stopped is lost all the same"),
+        "accept a controller that never sends HEARTBEAT; a HEARTBEAT that stops later is still a fault"),
     line<[](const std::string& value, CanOptions& o) { return o.key = value, std::string(value.empty() ? "a file" : ""); }>(
         "--key", "FILE",
         "file with the key that authenticates commands and readings, 32 hexadecimal digits; FD layouts only"),

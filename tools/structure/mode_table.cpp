@@ -122,9 +122,10 @@ Columns read_columns(CsvLines& lines) {
   }
   for (const std::string& shape : columns.shapes) {
     columns.shape_at.push_back(column(
-        shape, fmt::format("the table has {} engine{}, and a mode a shape at every attach point and gimbal of each, and at "
-                           "all of their strings or none; side forces and sensor likewise",
-                           columns.engines, columns.engines == 1 ? "" : "s")));
+        shape, fmt::format(
+                   "the table has {} engine{}. A mode has a shape at every attach point and gimbal of each engine. Strings, "
+                   "side forces and sensor: all of them or none",
+                   columns.engines, columns.engines == 1 ? "" : "s")));
   }
   return columns;
 }

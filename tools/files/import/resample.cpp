@@ -198,12 +198,12 @@ Resampled resampled(const Series& times, const std::vector<Series>& columns, con
                                 : reconstructed(even, interval, period, rows));
   }
   result.note = fmt::format(
-      "resampled: {} rows every {:.6g} s (intervals vary by {:.3g} s rms, the widest is {:.6g} s) became {} rows every "
-      "{:.6g} "
-      "s; {}measured channels hold nothing above {:.4g} Hz{}",
-      times.size(), interval, jitter, widest, rows, period, is_even ? "" : "samples were joined by a cubic spline, ",
+      "resampled: {} rows every {:.6g} s became {} rows every {:.6g} s. The intervals varied by {:.3g} s rms, the widest "
+      "was "
+      "{:.6g} s. {}Measured channels hold nothing above {:.4g} Hz{}",
+      times.size(), interval, rows, period, jitter, widest, is_even ? "" : "Samples were joined by a cubic spline. ",
       kCutOff / std::max(interval, period),
-      std::ranges::find(held, true) != held.end() ? ", a command is its mean over each period" : "");
+      std::ranges::find(held, true) != held.end() ? ". A command is its mean over each period" : "");
   return result;
 }
 
