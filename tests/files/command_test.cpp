@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -51,8 +50,7 @@ TEST_GROUP(Command) {
   std::string model() const {
     return scratch
         .write("good.toml",
-               "schema = 1\nname = \"bench\"\ntopology = "
-               "\"simplex\"\n[effects.backlash]\nhalf_width = \"0.1 mm\"\n")
+               "schema = 1\nname = \"bench\"\ntopology = \"simplex\"\n[effects.backlash]\nhalf_width = \"0.1 mm\"\n")
         .string();
   }
 };
@@ -183,7 +181,7 @@ TEST(Command, header_writes_the_parameters_of_one_axis_as_exact_constants) {
   LONGS_EQUAL(2, status_of("header --model " + taos + " --output " + header.string()));
   expect_message(err, {"a header holds one axis"});
   LONGS_EQUAL(0, status_of("header --json --model " + model() + " --output " + header.string()));
-  STRCMP_EQUAL(header.c_str(), nlohmann::json::parse(out).at("output").get<std::string>().c_str());
+  expect_message(out, {"\"output\"", "\"name\": \"kPlantImage\""});
   LONGS_EQUAL(2, status_of("header --name 2nd --model " + model() + " --output " + header.string()));
   expect_message(err, {"--name 2nd", "a C++ name"});
 }
@@ -252,11 +250,8 @@ TEST(Command, a_model_of_two_axes_is_checked_and_run_on_the_axis_that_is_named) 
   expect_message(err, {"--axis"});
   LONGS_EQUAL(0, status_of("step --model " + taos + " --axis yaw --amplitudes 0.2 --hold 0.5"));
   expect_message(out, {"engine at 0.500 s, +0.00 to +0.20 deg"});
-  const std::string both = scratch
-                               .write("both.csv",
-                                      "time[s],command.pitch[deg],command.yaw[deg]\n0,0,"
-                                      "0\n0.002,1,1\n0.004,1,1\n")
-                               .string();
+  const std::string both =
+      scratch.write("both.csv", "time[s],command.pitch[deg],command.yaw[deg]\n0,0,0\n0.002,1,1\n0.004,1,1\n").string();
   LONGS_EQUAL(0, status_of("simulate --model " + taos + " --input " + both + " --output " + scratch.path("o.csv").string()));
   expect_message(out, {"o.csv: 3 rows"});
   LONGS_EQUAL(
@@ -306,18 +301,14 @@ TEST(Command, check_says_how_much_of_a_bus_a_schedule_takes_and_refuses_one_that
       scratch.write("good.toml", "schema = 1\n[bus]\nbit_rate = 1e6\n[frames]\nSYNC = 0.001\n").string();
   const std::string bad = scratch.write("bad.toml", "schema = 1\n[bus]\nbit_rate = 1e5\n[frames]\nSYNC = 0.001\n").string();
   LONGS_EQUAL(0, status_of("check " + good));
-  expect_message(out, {"CAN schedule, 1 frames, worst-case bus load 7.5 % of 1 "
-                       "Mbit/s, allowed 70 %"});
+  expect_message(out, {"CAN schedule, 1 frames, worst-case bus load 7.5 % of 1 Mbit/s, allowed 70 %"});
   LONGS_EQUAL(6, status_of("check " + bad));
   expect_message(err, {"bad.toml: worst-case bus load 75.0 %"});
 }
 
 TEST(Command, candump_log_is_written_read_back_and_simulated) {
-  const std::string csv = scratch
-                              .write("r.csv",
-                                     "time[s],command[rad],piston[m]\n0,0,0\n0.002,0.01,"
-                                     "0\n0.004,0.01,0\n")
-                              .string();
+  const std::string csv =
+      scratch.write("r.csv", "time[s],command[rad],piston[m]\n0,0,0\n0.002,0.01,0\n0.004,0.01,0\n").string();
   const std::string log = scratch.path("r.log").string();
   LONGS_EQUAL(0, status_of("convert --command-per-current 5 " + csv + " " + log));
   LONGS_EQUAL(0, status_of("check " + log));
@@ -330,12 +321,7 @@ TEST(Command, candump_log_is_written_read_back_and_simulated) {
   expect_message(err, {"no column command", "--command-per-current"});
   LONGS_EQUAL(2, status_of("convert " + csv + " r.xls"));
   LONGS_EQUAL(0, status_of("convert --json " + csv + " " + scratch.path("r.mf4").string()));
-  const auto json = nlohmann::json::parse(out);
-  STRCMP_CONTAINS("r.mf4", json.at("output").get<std::string>().c_str());
-  LONGS_EQUAL(3, json.at("rows").get<int>());
-  DOUBLES_EQUAL(0.002, json.at("period").get<double>(), 1e-12);
-  CHECK(json.at("channels") ==
-        nlohmann::json::parse(R"([{"name": "command", "unit": "rad"}, {"name": "piston", "unit": "m"}])"));
+  expect_message(out, {"r.mf4\"", "\"rows\": 3", "\"period\": 0.002", "\"name\": \"command\"", "\"unit\": \"rad\""});
 }
 
 TEST(Command, import_reads_a_candump_log_with_its_dbc_file_and_says_without_one_what_is_needed) {
@@ -350,9 +336,7 @@ TEST(Command, import_reads_a_candump_log_with_its_dbc_file_and_says_without_one_
   LONGS_EQUAL(0, status_of("check " + output));
   expect_message(out, {"rig.csv: record, 3 rows, period 0.002 s (500 Hz)", "piston[m]"});
   LONGS_EQUAL(0, status_of("import --json " + log + " --dbc " + dbc + " --map " + map + " --output " + output));
-  const auto json = nlohmann::json::parse(out);
-  LONGS_EQUAL(3, json.at("rows").get<int>());
-  CHECK(json.at("channels") == nlohmann::json::parse(R"([{"name": "piston", "unit": "m"}])"));
+  expect_message(out, {"rig.csv\"", "\"rows\": 3", "\"name\": \"piston\"", "\"unit\": \"m\"", "\"notes\": []"});
   LONGS_EQUAL(2, status_of("import --json --guess " + log));
   expect_message(err, {"--json", "--guess"});
   LONGS_EQUAL(2, status_of("import " + log + " --map " + map + " --output " + output));
