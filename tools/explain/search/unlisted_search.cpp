@@ -7,12 +7,14 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tools/explain/data/measured_load.hpp"
+#include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/stopwatch.hpp"
@@ -33,6 +35,10 @@ void compare_and_say(Trial& trial, const Assessed& with, const Assessed& beside)
 
 /// Terms of the grammar that are fitted jointly, of those that were proposed: one of every site, or two of one.
 constexpr std::size_t kTermFinalists = 2;
+/// Forms of every site that are fitted shortly.
+constexpr std::size_t kFittedOfSite = 3;
+/// Finalists in the place of those that something speaks against.
+constexpr std::size_t kReplaced = 4;
 /// True if a term on a signal makes it fall where it is asked to rise. No amplifier and no valve does: such a table imitates
 /// something that it does not depend on, and an axis that meets it beyond these records sticks where it falls.
 bool falls_as_it_rises(const Fitted& model, const Candidate& candidate) {
@@ -45,6 +51,19 @@ bool falls_as_it_rises(const Fitted& model, const Candidate& candidate) {
   const auto [low, high] = std::ranges::minmax(signal);
   const double flat = policy().scatter * (high - low);
   return std::ranges::adjacent_find(signal, [&](double here, double next) { return next < here - flat; }) != signal.end();
+}
+
+/// Puts what leaves least first, the best of every site before all others: which site it is the fits decide.
+void order_by_site(std::vector<Screened>& proposals) {
+  std::ranges::stable_sort(proposals, {}, [](const auto& proposal) { return proposal.criterion; });
+  std::vector<std::string> sites;
+  std::stable_partition(proposals.begin(), proposals.end(), [&](const auto& proposal) {
+    const bool is_first = std::ranges::find(sites, proposal.candidate.site) == sites.end();
+    if (is_first) {
+      sites.push_back(proposal.candidate.site);
+    }
+    return is_first;
+  });
 }
 
 /// Proposed terms in the order of what they leave as they were proposed, simulated: the order of a linear regression is
@@ -63,17 +82,30 @@ std::vector<Screened> by_simulation(const Evaluator& evaluator, const Fitted& ar
     proposal.criterion = left_by(proposal.fitted);
   }
   std::erase_if(proposals, [&](const auto& proposal) { return !(proposal.criterion < without); });
-  std::ranges::stable_sort(proposals, {}, [](const auto& proposal) { return proposal.criterion; });
-  // The best of every site first: which of them it is the fit decides.
-  std::vector<std::string> sites;
-  std::stable_partition(proposals.begin(), proposals.end(), [&](const auto& proposal) {
-    const bool is_first = std::ranges::find(sites, proposal.candidate.site) == sites.end();
-    if (is_first) {
-      sites.push_back(proposal.candidate.site);
-    }
-    return is_first;
-  });
+  order_by_site(proposals);
   return proposals;
+}
+
+/// A short fit of the best forms of every site: where the effect is large, what a form leaves before any fit says little of
+/// what it can explain.
+void fit_shortly(const Refiner& refiner, std::span<const double> frozen, std::vector<Screened>& proposals,
+                 const Watch& watch) {
+  std::map<std::string, std::size_t> of_site;
+  for (Screened& proposal : proposals) {
+    if (of_site[proposal.candidate.site]++ >= kFittedOfSite || watch.interrupted()) {
+      continue;
+    }
+    watch.progress(
+        {Work::unlisted, fmt::format("unlisted: a short fit of {}", label(proposal.candidate)), SharesOfWork::kProposed});
+    const Stopwatch stopwatch;
+    Assessed near = refiner.of_screened(proposal.fitted, frozen, kGlance);
+    proposal.seconds += stopwatch.seconds();
+    if (near.good()) {
+      proposal.criterion = std::min(proposal.criterion, Goodness::combined(near.goodness.fitted));
+      proposal.fitted = std::move(near.model);
+    }
+  }
+  order_by_site(proposals);
 }
 
 /// How many of them are fitted: one of every site, and two at least.
@@ -85,19 +117,32 @@ std::size_t terms_to_fit(const std::vector<Screened>& proposals) {
   return std::max(kTermFinalists, sites.size());
 }
 
-/// Fits the first `most` of what was screened with everything else, and files all of them. Those behind one that leaves no
-/// more than noise are not fitted: they promised less.
-void fit_finalists(const Dataset& data, const Refiner& refiner, const Assessed& beside, std::span<const double> frozen,
-                   const std::vector<Screened>& screened, std::size_t most, const Effort& effort, int round,
-                   const Watch& watch, UnlistedSearch& result) {
-  std::size_t fitted = 0;
+/// What speaks against a term although it explains much; empty if nothing.
+std::string objection(const Dataset& data, const Prediction& calibrated, const Assessed& with, const Candidate& candidate) {
+  if (falls_as_it_rises(with.model, candidate)) {
+    return std::string(words::text(words::Reason::falls_as_it_rises));
+  }
+  if (feeds_energy(with.model.parameters(), candidate)) {
+    return std::string(words::text(words::Reason::feeds_energy));
+  }
+  const std::string harm = harm_of(data, with.prediction, calibrated);
+  return harm.empty() ? std::string() : "; " + words::refused(harm);
+}
+
+/// Fits the first of what was screened with everything else, until there are `most` that nothing speaks against, and files
+/// all of them. Those behind one that leaves no more than noise are not fitted: they promised less.
+void fit_finalists(const Dataset& data, const Refiner& refiner, const Assessed& beside, const Prediction& calibrated,
+                   std::span<const double> frozen, const std::vector<Screened>& screened, std::size_t most,
+                   const Effort& effort, int round, const Watch& watch, UnlistedSearch& result) {
+  std::size_t to_fit = most;
+  std::size_t may_replace = kReplaced;
   for (const Screened& s : screened) {
     Trial trial{round, s.candidate, false,     s.criterion,
                 1.0,   s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
     double left = std::numeric_limits<double>::infinity();
     const bool is_decided = result.reaches_noise(data) && s.candidate.site == result.trials[*result.best].candidate.site;
-    if (fitted < most && !is_decided && !watch.interrupted()) {
-      ++fitted;
+    if (to_fit > 0 && !is_decided && !watch.interrupted()) {
+      --to_fit;
       watch.progress({Work::unlisted, fmt::format("unlisted: fitting {} with everything else", label(s.candidate)),
                       SharesOfWork::kProposed});
       const Stopwatch stopwatch;
@@ -106,10 +151,10 @@ void fit_finalists(const Dataset& data, const Refiner& refiner, const Assessed& 
       if (finalist.good()) {
         compare_and_say(trial, finalist, beside);
         left = excess_over_noise(data, finalist.prediction);
-        if (falls_as_it_rises(finalist.model, s.candidate)) {
-          trial.reason += words::text(words::Reason::falls_as_it_rises);
-        } else if (feeds_energy(finalist.model.parameters(), s.candidate)) {
-          trial.reason += words::text(words::Reason::feeds_energy);
+        if (const std::string against = objection(data, calibrated, finalist, s.candidate); !against.empty()) {
+          trial.reason += against;
+          to_fit += may_replace > 0 ? 1 : 0;
+          may_replace -= may_replace > 0 ? 1 : 0;
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
           result.model = std::move(finalist);
@@ -139,23 +184,29 @@ bool UnlistedSearch::leaves_less_than(double share) const {
   return best && trials[*best].delta_criterion < -policy().strong_evidence && trials[*best].held_out_ratio < share;
 }
 
+bool UnlistedSearch::leaves_visible(const Dataset& data) const {
+  return !best || excess_over_noise(data, model.prediction) > policy().visible;
+}
+
 bool UnlistedSearch::reaches_noise(const Dataset& data) const {
   return best && excess_over_noise(data, model.prediction) < policy().nothing_left;
 }
 
-UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, const Assessed& beside, const Located& located,
-                               const Scales& scales, unsigned threads, const Watch& watch, int round) {
+UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, const Assessed& beside,
+                               const Prediction& calibrated, const Located& located, const Scales& scales, bool tables,
+                               unsigned threads, const Watch& watch, int round) {
   const Fitted around = is_within_tolerances(beside.model) ? beside.model : with_declared_values(beside.model);
   const Evaluator evaluator = refiner.for_screening(around);
   UnlistedSearch result;
   if (is_hydraulic_axis(around.base)) {
     auto proposals = propose_terms(evaluator.data(), around, located, scales, threads, watch);
     proposals = by_simulation(evaluator, around, std::move(proposals), threads);
+    fit_shortly(refiner, around.u, proposals, watch);
     const std::size_t wanted = terms_to_fit(proposals);
-    fit_finalists(data, refiner, beside, around.u, proposals, wanted, kCheck, round, watch, result);
+    fit_finalists(data, refiner, beside, calibrated, around.u, proposals, wanted, kCheck, round, watch, result);
   }
-  // A law that somebody has named is one more hypothesis as long as the grammar leaves more than noise.
-  if (!result.reaches_noise(data)) {
+  // A law that somebody has named is one more hypothesis as long as something is visible of what the grammar leaves.
+  if (tables && result.leaves_visible(data)) {
     const Screening screening(evaluator, around, scales, threads);
     std::vector<Candidate> candidates = unlisted_candidates(around.base, data);
     std::erase_if(candidates, [&](const Candidate& candidate) {
@@ -169,7 +220,7 @@ UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, cons
     };
     auto screened = screening.run(candidates, "unlisted", of_unlisted);
     const std::size_t wanted = unlisted_finalists(screened);
-    fit_finalists(data, refiner, beside, around.u, screened, wanted, kRanking, round, watch, result);
+    fit_finalists(data, refiner, beside, calibrated, around.u, screened, wanted, kRanking, round, watch, result);
   }
   if (result.best) {
     mark_tied_sites(result);

@@ -92,7 +92,17 @@ const Located& UnlistedStage::located() {
   return *located_;
 }
 
-Located UnlistedStage::locate_explained() { return result_.kept.empty() ? located() : locate_about(result_.explained); }
+const Located& UnlistedStage::locate_explained() {
+  if (result_.kept.empty()) {
+    return located();
+  }
+  // Two models with the same values of all that is free are the same.
+  if (beside_values_ != result_.explained.model.u) {
+    beside_explained_ = locate_about(result_.explained);
+    beside_values_ = result_.explained.model.u;
+  }
+  return beside_explained_;
+}
 
 void UnlistedStage::take_out_names(const std::string& why) {
   const int round = result_.next_round();
@@ -118,8 +128,8 @@ void UnlistedStage::refuse_misplaced_names() {
 /// Searches for a term of unknown law instead of the listed effects: once, since it is beside the calibrated model.
 void UnlistedStage::look_instead() {
   if (!instead_) {
-    instead_ = search_unlisted(data_, refiner_, result_.calibrated, located(), scales_, options_.threads, options_.watch,
-                               result_.next_round());
+    instead_ = search_unlisted(data_, refiner_, result_.calibrated, result_.calibrated.prediction, located(), scales_, true,
+                               options_.threads, options_.watch, result_.next_round());
     instead_trials_ = result_.trials.size();
     result_.trials.insert(result_.trials.end(), instead_->trials.begin(), instead_->trials.end());
   }
@@ -160,13 +170,19 @@ void UnlistedStage::keep(const UnlistedSearch& found, std::size_t first_trial) {
   result_.explained = found.model;
 }
 
+bool UnlistedStage::is_unlisted(const Kept& kept) const {
+  return explain::is_unlisted(result_.explained.model.base, kept.trial.candidate);
+}
+
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
 void UnlistedStage::add_beside() {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
-    const UnlistedSearch beside = search_unlisted(data_, refiner_, result_.explained, locate_explained(), scales_,
-                                                  options_.threads, options_.watch, result_.next_round());
+    const bool tables = std::ranges::none_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
+    const UnlistedSearch beside =
+        search_unlisted(data_, refiner_, result_.explained, result_.calibrated.prediction, locate_explained(), scales_,
+                        tables, options_.threads, options_.watch, result_.next_round());
     const std::size_t first = result_.trials.size();
     result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
     if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||
@@ -180,7 +196,7 @@ void UnlistedStage::add_beside() {
 
 /// A name beside a term of unknown law that hardly leaves more without it is the term's.
 void UnlistedStage::drop_light_names() {
-  const auto unlisted = [&](const Kept& kept) { return is_unlisted(result_.explained.model.base, kept.trial.candidate); };
+  const auto unlisted = [&](const Kept& kept) { return is_unlisted(kept); };
   if (std::ranges::none_of(result_.kept, unlisted)) {
     return;
   }
@@ -212,9 +228,8 @@ void UnlistedStage::drop_light_names() {
 
 /// Names that leave most of the error, and far more than noise, are not what is missing: saying less is no error.
 void UnlistedStage::drop_names_that_explain_little() {
-  const bool names_alone = !result_.kept.empty() && std::ranges::none_of(result_.kept, [&](const Kept& kept) {
-    return is_unlisted(result_.explained.model.base, kept.trial.candidate);
-  });
+  const bool names_alone =
+      !result_.kept.empty() && std::ranges::none_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
   if (names_alone && left_by_listed() > policy().little_explained &&
       excess_over_noise(data_, result_.explained.prediction) > policy().near_noise) {
     take_out_names(words::leaves_far_above_noise(left_by_listed()));

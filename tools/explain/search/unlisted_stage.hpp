@@ -26,7 +26,7 @@ class UnlistedStage {
   void finish();
 
   /// Where the term acts that the explained model is missing; nowhere for a mass, which has one place only.
-  Located locate_explained();
+  const Located& locate_explained();
 
   /// The calibrated model is another now.
   void forget() {
@@ -39,6 +39,7 @@ class UnlistedStage {
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
   double advantage() const;
   bool leaves_clearly_less(const Assessed& model, double share) const;
+  bool is_unlisted(const Kept& kept) const;
   Located locate_about(const Assessed& model) const;
   const Located& located();
   void take_out_names(const std::string& why);
@@ -57,6 +58,8 @@ class UnlistedStage {
   const SearchOptions& options_;
   SearchResult& result_;
   std::optional<Located> located_;         ///< about the calibrated model, once it was asked for
+  Located beside_explained_;               ///< about the explained model
+  std::vector<double> beside_values_;      ///< of that model's free parameters; none: not asked for yet
   std::optional<UnlistedSearch> instead_;  ///< beside the calibrated model, once it was searched for
   std::size_t instead_trials_ = 0;         ///< where its trials are among all
 };

@@ -27,6 +27,7 @@ struct Effort {
   double tolerance = 0.0;
   Slopes slopes = Slopes::exact;
 };
+inline constexpr Effort kGlance{5, 1, 1e-3};                      ///< which proposal is worth a fit
 inline constexpr Effort kCheck{12, 1, 1e-4};                      ///< is an effect still needed
 inline constexpr Effort kRanking{16, 3, 1e-4};                    ///< which finalist is best
 inline constexpr Effort kOverRipples{16, 2, 1e-4, Slopes::wide};  ///< out of a minimum that is a ripple

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/explain/search/unlisted_search.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <algorithm>
+
+#include "tests/explain/oscillator.hpp"
+#include "tools/explain/data/start_state.hpp"
+#include "tools/explain/fit/scales.hpp"
+#include "tools/explain/search/finalists.hpp"
+
+namespace {
+
+using namespace hotfire;
+
+/// A mass with detents that no listed effect has, calibrated.
+struct Detents {
+  ModelFile model = declared_oscillator();
+  explain::Dataset data = explain::make_dataset(model, {test::oscillator(0.0, 1e-3, 2.0)});
+  explain::Evaluator evaluator{data, explain::Resolution::fine};
+  explain::Scales scales = explain::scales_of(model.parameters, data);
+  explain::Watch watch;
+  explain::Refiner refiner{data, evaluator, evaluator, evaluator, scales, 2, watch};
+  explain::Assessed calibrated = refiner.settled(start());
+
+  static ModelFile declared_oscillator() { return test::declared_oscillator(97.0); }
+  explain::Fitted start() const {
+    explain::Fitted declared;
+    declared.base = model.parameters;
+    declared.free = explain::declared_parameters(declared.base, model.tolerance);
+    declared.u.assign(declared.free.size(), 0.0);
+    for (const explain::FreeParameter& state : explain::initial_states(data, scales, declared.u)) {
+      declared.free.push_back(state);
+    }
+    declared.temper.assign(data.channels.size(), 1.0);
+    return declared;
+  }
+};
+
+}  // namespace
+
+TEST_GROUP(UnlistedSearch){};
+
+TEST(UnlistedSearch, TermsThatLeaveMoreOfARecordThanTheCalibratedModelAreRefusedAndOthersAreFittedInTheirPlace) {
+  const Detents mass;
+  // A calibrated model that leaves nothing: every term that leaves more than noise is worse than that.
+  explain::Prediction perfect = mass.calibrated.prediction;
+  perfect[0][0] = mass.data.experiments[0].measured[0];
+  const auto found =
+      explain::search_unlisted(mass.data, mass.refiner, mass.calibrated, perfect, {}, mass.scales, true, 2, mass.watch, 1);
+  CHECK_FALSE(found.best.has_value());
+  CHECK_FALSE(found.leaves_less_than(1.0));
+  const std::string& first = found.trials.front().reason;
+  CHECK_TRUE(found.trials.front().held_out_ratio < 0.5);
+  STRCMP_CONTAINS("refused", first.c_str());
+  const auto fitted = std::ranges::count_if(found.trials, &explain::Trial::refined);
+  CHECK_COMPARE(fitted, >, static_cast<std::ptrdiff_t>(explain::kUnlistedFinalists));
+  CHECK_COMPARE(fitted, <, static_cast<std::ptrdiff_t>(found.trials.size()));
+}
