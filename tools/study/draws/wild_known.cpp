@@ -62,6 +62,11 @@ std::string_view contained_effect(const WildLaw& law) {
   if (law.site == WildSite::engine_torque && dry) {
     return "gimbal_friction";
   }
+  // Only the torque motor lies between the two.
+  if (law.site == WildSite::valve_command && law.argument == Argument::valve_command && law.memory.kind == Kind::none &&
+      law.curve.shape == Shape::dead_zone) {
+    return "valve_deadband";
+  }
   // The table of that effect's law is any odd curve of the load.
   if (law.site == WildSite::load_spring && law.argument == Argument::deflection && law.memory.kind == Kind::none && odd) {
     return "soft_stiffness";
