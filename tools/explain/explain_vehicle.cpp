@@ -119,7 +119,9 @@ bool search_axes(const VehicleParameters& declared, const CoupledRun& before, co
       }
       found[i] = search_axis(vehicle.axes[i], options, again ? 0 : order.size() - 1 - k);
       interrupted = interrupted || found[i]->interrupted;
-      put_beside_explained(declared, options.threads, found, vehicle);
+      if (!interrupted) {
+        put_beside_explained(declared, options.threads, found, vehicle);
+      }
     }
   }
   return interrupted;

@@ -174,15 +174,18 @@ bool UnlistedStage::is_unlisted(const Kept& kept) const {
   return explain::is_unlisted(result_.explained.model.base, kept.trial.candidate);
 }
 
+bool UnlistedStage::has_unlisted() const {
+  return std::ranges::any_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
+}
+
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
 void UnlistedStage::add_beside() {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
-    const bool tables = std::ranges::none_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
     const UnlistedSearch beside =
         search_unlisted(data_, refiner_, result_.explained, result_.calibrated.prediction, locate_explained(), scales_,
-                        tables, options_.threads, options_.watch, result_.next_round());
+                        !has_unlisted(), options_.threads, options_.watch, result_.next_round());
     const std::size_t first = result_.trials.size();
     result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
     if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||
@@ -196,12 +199,11 @@ void UnlistedStage::add_beside() {
 
 /// A name beside a term of unknown law that hardly leaves more without it is the term's.
 void UnlistedStage::drop_light_names() {
-  const auto unlisted = [&](const Kept& kept) { return is_unlisted(kept); };
-  if (std::ranges::none_of(result_.kept, unlisted)) {
+  if (!has_unlisted()) {
     return;
   }
   for (std::size_t i = result_.kept.size(); i-- > 0;) {
-    if (unlisted(result_.kept[i]) || options_.watch.interrupted()) {
+    if (is_unlisted(result_.kept[i]) || options_.watch.interrupted()) {
       continue;
     }
     Trial trial{result_.next_round(),
@@ -228,8 +230,7 @@ void UnlistedStage::drop_light_names() {
 
 /// Names that leave most of the error, and far more than noise, are not what is missing: saying less is no error.
 void UnlistedStage::drop_names_that_explain_little() {
-  const bool names_alone =
-      !result_.kept.empty() && std::ranges::none_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
+  const bool names_alone = !result_.kept.empty() && !has_unlisted();
   if (names_alone && left_by_listed() > policy().little_explained &&
       excess_over_noise(data_, result_.explained.prediction) > policy().near_noise) {
     take_out_names(words::leaves_far_above_noise(left_by_listed()));

@@ -40,6 +40,7 @@ class UnlistedStage {
   double advantage() const;
   bool leaves_clearly_less(const Assessed& model, double share) const;
   bool is_unlisted(const Kept& kept) const;
+  bool has_unlisted() const;
   Located locate_about(const Assessed& model) const;
   const Located& located();
   void take_out_names(const std::string& why);
