@@ -293,7 +293,7 @@ class Vehicle {
     const Gimbal& gimbal = gimbals_[at(e)];
     Pose<S>& pose = step.poses[at(e)];
     pose = gimbal.geometry.at(pitch, yaw);
-    GimbalState& own = state.gimbals[at(e)];
+    const GimbalState& own = state.gimbals[at(e)];
     const Vector3<S> moved_bearing =
         gimbal.spring.mean_translation(own.bearing, step.bearings[at(e)], bearing_force(state, step, e), own.torque);
     for (int k = 0; k < 2; ++k) {

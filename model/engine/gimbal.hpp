@@ -268,7 +268,7 @@ std::string_view broken_relation(const GimbalParameters<S>& gimbal) {
     return "a block has a mass and an inertia; give block_mass and block_inertia, or neither";
   }
   if (has_mass && !gimbal.compliant) {
-    return "a block cannot move on a rigid bearing; give the stiffness matrix, or leave block_mass and block_inertia out";
+    return "a block cannot move on a rigid bearing; give gimbal.stiffness, or leave block_mass and block_inertia out";
   }
   constexpr double kLeastBlock = 1e-6;  // kg, kg m^2: a milligram rings beyond 1 MHz on any bearing that carries an engine
   if (has_mass &&

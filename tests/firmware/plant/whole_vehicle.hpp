@@ -54,6 +54,9 @@ vehicle_y = 0.95
 vehicle_z = 0.0
 [gimbal]
 thrust = "418000 lbf"
+block_mass = 51.3
+block_inertia = 0.9
+vehicle_side_flexibility = 0.43
 stiffness = [
   [2e9, 0, 0, 0, 0, 0],
   [0, 2e9, 0, 0, 0, 9e6],

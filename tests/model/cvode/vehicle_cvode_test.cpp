@@ -294,11 +294,11 @@ TEST(VehicleAgreesWithCvode, WithABlockBetweenTheHalvesOfTheBearing) {
   CHECK_TRUE(check_block("block of 100 kg m^2", parameters, 100.0) > kBlockLimit);
 }
 
-// Neither has thrust to hold it down. What the joint gives way by is on the engine's side of the block.
+// What the joint gives way by without load is on the engine's side of the block, which is heavy enough to be seen.
 TEST(VehicleAgreesWithCvode, WithABlockInABearingThatIsSofterWithoutLoad) {
   Taos::Parameters parameters = unseated();
   parameters.modes = {};
-  CHECK_TRUE(check_block("block, softer without load", parameters, 300.0, unseating_profile()) > 2.0 * kBlockLimit);
+  CHECK_TRUE(check_block("block, softer without load", parameters, 800.0, unseating_profile()) > kBlockLimit);
 }
 
 // The reference has what the model leaves out: a mount that turns carries the block along, which pushes it.

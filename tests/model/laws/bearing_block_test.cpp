@@ -316,7 +316,7 @@ TEST(BearingBlock, IsRefusedWithHalfOfItsInertiaAndOnARigidBearing) {
   CHECK_TRUE(says(with_block(50.0, 1e-9), "must be above 1e-6"));
   Gimbal rigid = with_block(50.0, 1.0);
   rigid.compliant = false;
-  CHECK_TRUE(says(rigid, "rigid bearing; give the stiffness matrix"));
+  CHECK_TRUE(says(rigid, "rigid bearing; give gimbal.stiffness"));
 }
 
 TEST_GROUP(OverdampedMode){};
