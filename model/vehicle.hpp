@@ -347,8 +347,7 @@ class Vehicle {
   }
 
   /// Friction of one bearing under the slip that the axes' predictions lead to: advances torque and bristle.
-  [[gnu::always_inline]] void slide(State& state, const Step& step, const typename Structure::HalfVector& rate,
-                                    int e) const noexcept {
+  void slide(State& state, const Step& step, const typename Structure::HalfVector& rate, int e) const noexcept {
     const int pitch = 2 * e;
     const int yaw = pitch + 1;
     const Gimbal& gimbal = gimbals_[at(e)];
