@@ -8,7 +8,7 @@
 
 #include "model/actuator/axis.hpp"
 #include "model/effects.hpp"
-#include "model/engine/gimbal.hpp"
+#include "model/engine/bearing_block.hpp"
 #include "model/structure/structure.hpp"
 
 namespace hotfire::model {
@@ -21,7 +21,7 @@ namespace hotfire::model {
 ///   stroke    s_i(pitch, yaw) of the attach points in 3-D, and its derivatives as arms (`EngineGeometry`)
 ///   structure w_i = modes and residual under all forces F and the torques on the gimbals (`ModalStructure`)
 ///   bearing   translation u under thrust and forces, n_i . u added to w_i; torsion in series with the friction
-///             (`GimbalSpring`)
+///             (`CompliantBearing`, with a block between its halves or without)
 ///   friction  one torque over both angles' slip, beta' - rotation of the vehicle's side - torsion', its level from the
 ///   force
 ///             through the bearing (`BearingFriction`)
@@ -64,7 +64,7 @@ class Vehicle {
   };
 
   struct GimbalState {
-    typename GimbalSpring<S>::Six displacement = GimbalSpring<S>::Six::Zero();
+    typename CompliantBearing<S>::State bearing{};
     Pair<S> bristle{};
     Pair<S> torque{};  ///< of the friction, mean of the last step
   };
@@ -107,6 +107,7 @@ class Vehicle {
   const AxisModel& axis(int i) const noexcept { return axes_[at(i)]; }
   const Structure& structure() const noexcept { return structure_; }
   const EngineGeometry<S>& geometry(int engine) const noexcept { return gimbals_[at(engine)].geometry; }
+  bool has_block(int engine) const noexcept { return gimbals_[at(engine)].spring.has_block(); }
 
   /// The steady state under constant commands [rad]: set-up only. Every axis settles under the motion and torque that the
   /// others' forces give it, until these no longer change; friction starts unloaded. `thrust` is beyond the declared one
@@ -119,10 +120,11 @@ class Vehicle {
     for (int i = 0; i < kAxes; ++i) {
       axes_[at(i)].begin(state.axes[at(i)], inputs.commands[at(i)], step.axes[at(i)]);
     }
-    step.structure = structure_.begin(state.structure);
+    structure_.begin(state.structure, step.structure);
     for (int e = 0; e < Engines; ++e) {
       const Gimbal& gimbal = gimbals_[at(e)];
       step.thrust[at(e)] = gimbal.bearing.thrust + inputs.thrust[at(e)];
+      gimbal.spring.begin(state.gimbals[at(e)].bearing, step.bearings[at(e)]);
       step.vibrating[at(e)] = gimbal.bearing.vibration_under(step.thrust[at(e)]);
       step.vibration[at(e)] = {inputs.vibration[at(2 * e)], inputs.vibration[at(2 * e + 1)]};
       if (gimbal.vibrates) {
@@ -143,8 +145,8 @@ class Vehicle {
     }
     structure_.finish(state.structure, step.structure);
     for (int e = 0; e < Engines; ++e) {
-      GimbalState& gimbal = state.gimbals[at(e)];
-      gimbal.displacement = gimbals_[at(e)].spring.end(gimbal.displacement, bearing_force(state, step, e), gimbal.torque);
+      GimbalState& own = state.gimbals[at(e)];
+      gimbals_[at(e)].spring.finish(own.bearing, step.bearings[at(e)], bearing_force(state, step, e), own.torque);
     }
     ++state.tick;
     gather(state);
@@ -163,7 +165,7 @@ class Vehicle {
  private:
   struct Gimbal {
     EngineGeometry<S> geometry;
-    GimbalSpring<S> spring;
+    CompliantBearing<S> spring;
     BearingFriction<S> friction;
     BearingVibration<S> vibration;
     GimbalBearing<S> bearing;
@@ -184,6 +186,7 @@ class Vehicle {
     typename Structure::Advance structure;
     std::array<Coupling<S>, kAxes> around{};
     std::array<Spring<S>, kAxes> springs{};
+    std::array<typename CompliantBearing<S>::Advance, Engines> bearings;
     std::array<Pose<S>, Engines> poses;
     std::array<Pair<S>, Engines> vibration{};
     std::array<S, Engines> vibrating{};  ///< size of the vibration over the declared one
@@ -224,7 +227,7 @@ class Vehicle {
     const auto gimbal = [&](std::size_t e) {
       const GimbalParameters<S>& own = parameters.gimbals[e];
       return Gimbal{geometry_of(parameters, e),
-                    GimbalSpring<S>(own, h),
+                    CompliantBearing<S>(own, h),
                     own.friction,
                     own.vibration,
                     own.bearing,
@@ -279,8 +282,9 @@ class Vehicle {
   }
 
   /// Where one engine goes, and what that leaves of the deflection of its two springs.
-  void move_engine(State& state, Step& step, const typename Structure::HalfVector& moved, int e,
-                   Eigen::Matrix<S, kAxes, 1>& motion, Eigen::Matrix<S, kAxes, 1>& surplus) const noexcept {
+  [[gnu::always_inline]] void move_engine(State& state, Step& step, const typename Structure::HalfVector& moved, int e,
+                                          Eigen::Matrix<S, kAxes, 1>& motion,
+                                          Eigen::Matrix<S, kAxes, 1>& surplus) const noexcept {
     for (int i = 2 * e; i < 2 * e + 2; ++i) {
       axes_[at(i)].predict(state.axes[at(i)], step.axes[at(i)]);
     }
@@ -291,7 +295,7 @@ class Vehicle {
     pose = gimbal.geometry.at(pitch, yaw);
     const GimbalState& own = state.gimbals[at(e)];
     const Vector3<S> moved_bearing =
-        gimbal.spring.mean_translation(own.displacement, bearing_force(state, step, e), own.torque);
+        gimbal.spring.mean_translation(own.bearing, step.bearings[at(e)], bearing_force(state, step, e), own.torque);
     for (int k = 0; k < 2; ++k) {
       const int i = 2 * e + k;
       const auto& axis = axes_[at(i)];
@@ -351,7 +355,7 @@ class Vehicle {
     const Pair<S> engine{step.axes[at(pitch)].rate(AxisModel::kAngle, h_), step.axes[at(yaw)].rate(AxisModel::kAngle, h_)};
     const Pair<S> vehicle{rate(pitch), rate(yaw)};
     const Vector3<S> force = bearing_force(state, step, e);
-    const Pair<S> torsion = gimbal.spring.rotation_rate(own.displacement, force, own.torque);
+    const Pair<S> torsion = gimbal.spring.rotation_rate(own.bearing, step.bearings[at(e)], force, own.torque);
     const auto& flexibility = structure_.rate_flexibility();
     const SymmetricPair<S> bearing = gimbal.spring.rate_flexibility();
     Slip<S> slip;

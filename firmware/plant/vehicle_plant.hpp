@@ -101,8 +101,15 @@ class VehiclePlant {
       const auto& mode = state_->structure.modes[k];
       hash.add(std::array{mode.displacement, mode.velocity});
     }
-    for (const auto& gimbal : state_->gimbals) {
-      hash.add(std::span(gimbal.displacement.data(), static_cast<std::size_t>(gimbal.displacement.size())));
+    for (int e = 0; e < Vehicle::kEngines; ++e) {
+      const auto& gimbal = state_->gimbals[static_cast<std::size_t>(e)];
+      const auto& displacement = gimbal.bearing.displacement;
+      hash.add(std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
+      if (vehicle_.has_block(e)) {
+        for (const auto& mode : gimbal.bearing.block.modes) {
+          hash.add(std::array{mode.displacement, mode.velocity});
+        }
+      }
       hash.add(std::array{gimbal.bristle.pitch, gimbal.bristle.yaw});
     }
     hash.add(measured());

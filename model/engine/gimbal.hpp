@@ -185,6 +185,9 @@ struct GimbalBearing {
   S unloaded_structure{1.0};
   S pitch_misalignment{0.0};
   S yaw_misalignment{0.0};
+  S block_mass{0.0};
+  S block_inertia{0.0};
+  S vehicle_side_flexibility{0.5};
   static constexpr auto fields() {
     using P = GimbalBearing;
     return std::array{
@@ -202,7 +205,13 @@ struct GimbalBearing {
                  &P::unloaded_structure},
         Field<P>{"pitch_misalignment", "m", -1.0, 1.0, 3e-3, "arm of the thrust against positive pitch",
                  &P::pitch_misalignment},
-        Field<P>{"yaw_misalignment", "m", -1.0, 1.0, 3e-3, "arm of the thrust against positive yaw", &P::yaw_misalignment}};
+        Field<P>{"yaw_misalignment", "m", -1.0, 1.0, 3e-3, "arm of the thrust against positive yaw", &P::yaw_misalignment},
+        Field<P>{"block_mass", "kg", 0.0, 1e5, 50.0, "mass of the block between the halves of the bearing; 0: no block",
+                 &P::block_mass},
+        Field<P>{"block_inertia", "kg.m^2", 0.0, 1e5, 1.0, "inertia of the block about pitch and about yaw; 0: no block",
+                 &P::block_inertia},
+        Field<P>{"vehicle_side_flexibility", "1", 0.01, 0.99, 0.5,
+                 "flexibility between vehicle and block over that of the whole bearing", &P::vehicle_side_flexibility}};
   }
 
   /// Size of the vibration under a thrust, over the declared one.
@@ -219,7 +228,8 @@ struct GimbalBearing {
   }
 };
 
-/// Everything of one gimbal. `stiffness` is the 6x6 matrix of the bearing: forces along x, y, z and moments about them [N,
+/// Everything of one gimbal. A block with mass and inertia moves between the bearing's halves: `bearing_block.hpp`.
+/// `stiffness` is the 6x6 matrix of the bearing: forces along x, y, z and moments about them [N,
 /// N m] per translation and rotation [m, rad] of its engine's half against the vehicle's; symmetric, positive definite.
 template <class S>
 struct GimbalParameters {
@@ -228,6 +238,9 @@ struct GimbalParameters {
   BearingVibration<S> vibration;
   bool compliant = false;  ///< without it the bearing is rigid and `stiffness` is not read
   Eigen::Matrix<S, 6, 6> stiffness = Eigen::Matrix<S, 6, 6>::Identity();
+
+  /// True if a block with inertia moves between the halves of the bearing.
+  bool has_block() const noexcept { return compliant && value_of(bearing.block_mass) > 0.0; }
 
   template <class Self, class F>
   static void for_each_part(Self& self, F&& f) {
@@ -249,113 +262,25 @@ std::string_view broken_relation(const GimbalParameters<S>& gimbal) {
   if (value_of(gimbal.bearing.unloaded_structure) < 1.0 && !(value_of(gimbal.bearing.rated_thrust) > 0.0)) {
     return "unloaded_structure has no meaning without rated_thrust; give it";
   }
+  const bool has_mass = value_of(gimbal.bearing.block_mass) > 0.0;
+  const bool has_inertia = value_of(gimbal.bearing.block_inertia) > 0.0;
+  if (has_mass != has_inertia) {
+    return "a block has a mass and an inertia; give block_mass and block_inertia, or neither";
+  }
+  if (has_mass && !gimbal.compliant) {
+    return "a block cannot move on a rigid bearing; give gimbal.stiffness, or leave block_mass and block_inertia out";
+  }
+  constexpr double kLeastBlock = 1e-6;  // kg, kg m^2: a milligram rings beyond 1 MHz on any bearing that carries an engine
+  if (has_mass &&
+      (value_of(gimbal.bearing.block_mass) < kLeastBlock || value_of(gimbal.bearing.block_inertia) < kLeastBlock)) {
+    return "block_mass and block_inertia must be above 1e-6; leave both out for a bearing without a block";
+  }
   const bool vibrates = value_of(gimbal.vibration.pitch_velocity) > 0.0 || value_of(gimbal.vibration.yaw_velocity) > 0.0;
   if (vibrates && gimbal.friction.law() == BearingFriction<S>::Law::vibrated_lugre) {
     return "the law \"vibrated_lugre\" and a simulated vibration are two ways to the same physics; give one of them";
   }
   return {};
 }
-
-/// The bearing as a spring with loss: stiffness (q + loss_time q') = wrench, q being translation and rotation of the
-/// engine's half. Advanced exactly under the wrench's mean over the step, held: q+ = fade q + (1 - fade) compliance wrench,
-/// fade = e^{-h / loss_time}. The wrench is the force through the bearing and the friction's torque; the engine's own
-/// inertia is carried by the engine's axes. `softness` is what the translational compliance is times that under full load
-/// (`GimbalBearing`).
-template <class S>
-class GimbalSpring {
- public:
-  using Six = Eigen::Matrix<S, 6, 1>;
-
-  GimbalSpring(const GimbalParameters<S>& gimbal, double h)
-      : h_(h),
-        fade_(exp(S(-h) / gimbal.bearing.loss_time)),
-        load_scale_(gimbal.bearing.load_scale),
-        further_(1.0 / gimbal.bearing.unloaded_stiffness - 1.0) {
-    compliance_ = gimbal.compliant ? inverse_of_positive_definite<S, 6>(gimbal.stiffness) : Eigen::Matrix<S, 6, 6>::Zero();
-    seats_ = gimbal.compliant && value_of(further_) > 0.0;
-  }
-
-  /// Translational compliance under a force, over that under full load.
-  S softness(const Vector3<S>& force) const noexcept {
-    if (!seats_) {
-      return S{1.0};
-    }
-    Vector3<S> moved;
-    for (int i = 0; i < 3; ++i) {
-      moved(i) = compliance_(i, 0) * force(0) + compliance_(i, 1) * force(1) + compliance_(i, 2) * force(2);
-    }
-    return 1.0 + further_ * fading_exponential<S>(dot<S>(force, moved) / (compliance_(0, 0) * load_scale_ * load_scale_));
-  }
-
-  /// Displacement at the end of a step under a force and a torque about pitch (y) and yaw (z).
-  Six end(const Six& start, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
-    const S soft = softness(force);
-    Six after;
-    for (int i = 0; i < 6; ++i) {
-      const S at_rest = i < 3 ? translation(i, soft, force, torque) : rest(i, force, torque);
-      after(i) = at_rest + fade_ * (start(i) - at_rest);
-    }
-    return after;
-  }
-
-  /// Mean translation over the step.
-  Vector3<S> mean_translation(const Six& start, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
-    const S start_share = S(0.5) * (1.0 + fade_);
-    const S rest_share = S(0.5) * (1.0 - fade_);
-    const S soft = softness(force);
-    return {start_share * start(0) + rest_share * translation(0, soft, force, torque),
-            start_share * start(1) + rest_share * translation(1, soft, force, torque),
-            start_share * start(2) + rest_share * translation(2, soft, force, torque)};
-  }
-
-  /// Mean rate of rotation over the step.
-  Pair<S> rotation_rate(const Six& start, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
-    const S share = (1.0 - fade_) / h_;
-    return {share * (rest(4, force, torque) - start(4)), share * (rest(5, force, torque) - start(5))};
-  }
-
-  /// Where a force and a torque would bring the bearing to rest. Set-up only.
-  Six settled(const Vector3<S>& force, const Pair<S>& torque) const {
-    const S soft = softness(force);
-    Six all;
-    for (int i = 0; i < 6; ++i) {
-      all(i) = i < 3 ? translation(i, soft, force, torque) : rest(i, force, torque);
-    }
-    return all;
-  }
-
-  /// Mean displacement along one direction per mean force along another, under a load.
-  S mean_flexibility(const Vector3<S>& along, const Vector3<S>& force, const Vector3<S>& load) const noexcept {
-    const S share = S(0.5) * (1.0 - fade_) * softness(load);
-    Vector3<S> moved;
-    for (int i = 0; i < 3; ++i) {
-      moved(i) = share * (compliance_(i, 0) * force(0) + compliance_(i, 1) * force(1) + compliance_(i, 2) * force(2));
-    }
-    return dot<S>(along, moved);
-  }
-
-  /// Mean rate of rotation per mean torque.
-  SymmetricPair<S> rate_flexibility() const noexcept {
-    const S share = (1.0 - fade_) / h_;
-    return {share * compliance_(4, 4), share * compliance_(5, 5), share * compliance_(4, 5)};
-  }
-
- private:
-  S rest(int i, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
-    return translation(i, S(1.0), force, torque);
-  }
-  S translation(int i, const S& soft, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
-    return soft * (compliance_(i, 0) * force(0) + compliance_(i, 1) * force(1) + compliance_(i, 2) * force(2)) +
-           compliance_(i, 4) * torque.pitch + compliance_(i, 5) * torque.yaw;
-  }
-
-  double h_;
-  S fade_;
-  S load_scale_;
-  S further_;
-  bool seats_ = false;
-  Eigen::Matrix<S, 6, 6> compliance_;
-};
 
 /// Mean slip velocity that the simulated vibration adds over step number `tick`.
 template <class S>

@@ -76,6 +76,53 @@ Eigen::Matrix<S, N, 1> solve_factorised(const Eigen::Matrix<S, N, N>& factor, co
   return x;
 }
 
+/// Eigenvalues of a symmetric matrix, and its orthonormal eigenvectors as columns.
+template <class S, int N>
+struct Eigensystem {
+  Eigen::Matrix<S, N, 1> values;
+  Eigen::Matrix<S, N, N> vectors;
+};
+
+/// The eigensystem of a symmetric positive definite matrix by cyclic Jacobi rotations [Golub and Van Loan 2013, Matrix
+/// Computations, section 8.5]. Small eigenvalues have the relative accuracy of large ones [Demmel and Veselic 1992, SIAM J.
+/// Matrix Anal. Appl. 13]. Set-up only. Written out for the reason of `factorise`.
+template <class S, int N>
+Eigensystem<S, N> eigensystem_of_symmetric(Eigen::Matrix<S, N, N> matrix) {
+  constexpr int kSweeps = 15;         // from the fourth or so on each squares what is left beside the diagonal
+  constexpr double kNothing = 1e-17;  // beside the diagonal, over its entries: below the rounding of either
+  Eigensystem<S, N> system;
+  system.vectors.setIdentity();
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (int p = 0; p < N; ++p) {
+      for (int q = p + 1; q < N; ++q) {
+        const double scale = std::sqrt(value_of(matrix(p, p)) * value_of(matrix(q, q)));
+        if (!(std::abs(value_of(matrix(p, q))) > kNothing * scale)) {
+          continue;
+        }
+        const S half_gap = 0.5 * (matrix(q, q) - matrix(p, p));
+        const S length = sqrt(half_gap * half_gap + matrix(p, q) * matrix(p, q));
+        const S tangent = matrix(p, q) / (value_of(half_gap) < 0.0 ? S(half_gap - length) : S(half_gap + length));
+        const S cosine = 1.0 / sqrt(1.0 + tangent * tangent);
+        const S sine = tangent * cosine;
+        const auto rotate = [&](S& first, S& second) {
+          const S before = first;
+          first = cosine * before - sine * second;
+          second = sine * before + cosine * second;
+        };
+        for (int k = 0; k < N; ++k) {
+          rotate(matrix(k, p), matrix(k, q));
+        }
+        for (int k = 0; k < N; ++k) {
+          rotate(matrix(p, k), matrix(q, k));
+          rotate(system.vectors(k, p), system.vectors(k, q));
+        }
+      }
+    }
+  }
+  system.values = matrix.diagonal();
+  return system;
+}
+
 /// Inverse of a symmetric positive definite matrix. Set-up only; zero if the matrix is not what it must be.
 template <class S, int N>
 Eigen::Matrix<S, N, N> inverse_of_positive_definite(const Eigen::Matrix<S, N, N>& matrix) {

@@ -59,9 +59,10 @@ class ModalStructure {
 
   /// One step under way: what does not depend on the forces that it will find.
   struct Advance {
-    PortVector free;  ///< Phi eta at its end without force
-    PortVector mean;  ///< mean displacement without force
-    HalfVector rate;  ///< mean rate of the rotations without force
+    std::array<S, Capacity> modes;  ///< eta at its end without force
+    PortVector free;                ///< Phi eta at its end without force
+    PortVector mean;                ///< mean displacement without force
+    HalfVector rate;                ///< mean rate of the rotations without force
   };
 
   ModalStructure(const Table& table, double h) : table_(table), h_(h) {
@@ -74,6 +75,11 @@ class ModalStructure {
                       from_velocity,
                       {(1.0 - from_displacement.displacement) / (w * w), -from_displacement.velocity / (w * w)}};
       held_ += table_.shape.col(k) * table_.shape.col(k).transpose() * steps_[mode].from_force.displacement;
+    }
+    for (int i = 0; i < Ports; ++i) {
+      for (int j = 0; j < Ports; ++j) {
+        has_residual_ = has_residual_ || value_of(table_.residual(i, j)) != 0.0;
+      }
     }
     mean_flexibility_ = S(0.5) * held_ + table_.residual;
     rate_flexibility_ = (held_ + table_.residual).template bottomRows<kHalf>() / S(h);
@@ -114,13 +120,23 @@ class ModalStructure {
   }
 
   Advance begin(const State& state) const noexcept {
+    Advance advance;
+    begin(state, advance);
+    return advance;
+  }
+  void begin(const State& state, Advance& advance) const noexcept {
     PortVector free = PortVector::Zero();
     // Two modes at a time: the sum is loaded and stored half as often. Rows beyond the last are zero.
     for (int k = 0; k < table_.modes; k += 2) {
-      free += table_.shape.col(k) * free_end(state, k) + table_.shape.col(k + 1) * free_end(state, k + 1);
+      const auto mode = static_cast<std::size_t>(k);
+      advance.modes[mode] = free_end(state, mode);
+      advance.modes[mode + 1] = free_end(state, mode + 1);
+      free += table_.shape.col(k) * advance.modes[mode] + table_.shape.col(k + 1) * advance.modes[mode + 1];
     }
     const HalfVector turned = (free - state.displacement).template tail<kHalf>();
-    return {free, S(0.5) * (state.displacement + free), (turned - state.residual) / S(h_)};
+    advance.free = free;
+    advance.mean = S(0.5) * (state.displacement + free);
+    advance.rate = (turned - state.residual) / S(h_);
   }
 
   /// Mean displacement of the attach points under the forces in `state`.
@@ -146,13 +162,16 @@ class ModalStructure {
   void finish(State& state, const Advance& advance) const noexcept {
     for (int k = 0; k < table_.modes; k += 2) {
       const Eigen::Matrix<S, 2, 1> force = modal_forces(state.forces, k);
-      advance_under(state, k, force(0));
-      advance_under(state, k + 1, force(1));
+      const auto mode = static_cast<std::size_t>(k);
+      advance_under(state, mode, advance.modes[mode], force(0));
+      advance_under(state, mode + 1, advance.modes[mode + 1], force(1));
     }
     state.displacement = advance.free;
     add_product<Ports, 0>(state.displacement, held_, state.forces);
-    state.residual = HalfVector::Zero();
-    add_product<kHalf, kHalf>(state.residual, table_.residual, state.forces);
+    if (has_residual_) {
+      state.residual = HalfVector::Zero();
+      add_product<kHalf, kHalf>(state.residual, table_.residual, state.forces);
+    }
   }
 
  private:
@@ -162,20 +181,17 @@ class ModalStructure {
     ModeMotion<S> from_force;
   };
 
-  S free_end(const State& state, int k) const noexcept {
-    const auto mode = static_cast<std::size_t>(k);
+  S free_end(const State& state, std::size_t mode) const noexcept {
     return steps_[mode].from_displacement.displacement * state.modes[mode].displacement +
            steps_[mode].from_velocity.displacement * state.modes[mode].velocity;
   }
 
-  void advance_under(State& state, int k, const S& force) const noexcept {
-    const auto mode = static_cast<std::size_t>(k);
+  void advance_under(State& state, std::size_t mode, const S& free, const S& force) const noexcept {
     const ModeStep& step = steps_[mode];
     const ModeMotion<S> from = state.modes[mode];
-    state.modes[mode] = {step.from_displacement.displacement * from.displacement +
-                             step.from_velocity.displacement * from.velocity + step.from_force.displacement * force,
-                         step.from_displacement.velocity * from.displacement + step.from_velocity.velocity * from.velocity +
-                             step.from_force.velocity * force};
+    state.modes[mode] = {free + step.from_force.displacement * force, step.from_displacement.velocity * from.displacement +
+                                                                          step.from_velocity.velocity * from.velocity +
+                                                                          step.from_force.velocity * force};
   }
 
   /// Generalised forces on modes k and k + 1. Sums run in pairs of ports, so that the order of additions is the same
@@ -198,17 +214,23 @@ class ModalStructure {
   template <int Rows, int First, int MatrixRows>
   static void add_product(Eigen::Matrix<S, Rows, 1>& total, const Eigen::Matrix<S, MatrixRows, Ports>& matrix,
                           const PortVector& vector) noexcept {
-    for (int row = 0; row < Rows; row += 2) {
+    for (int row = 0; row + 1 < Rows; row += 2) {
       Eigen::Matrix<S, 2, 1> sum = total.template segment<2>(row);
       for (int column = 0; column < Ports; ++column) {
         sum += matrix.template block<2, 1>(First + row, column) * vector(column);
       }
       total.template segment<2>(row) = sum;
     }
+    if constexpr (Rows % 2 == 1) {
+      for (int column = 0; column < Ports; ++column) {
+        total(Rows - 1) += matrix(First + Rows - 1, column) * vector(column);
+      }
+    }
   }
 
   Table table_;
   double h_;
+  bool has_residual_ = false;  ///< without it nothing is left of it in a state either
   std::array<ModeStep, Capacity> steps_{};
   PortMatrix held_ = PortMatrix::Zero();  ///< H
   PortMatrix mean_flexibility_;

@@ -196,6 +196,19 @@ TEST(Linear, SmallDeviationsOfASimplexAreThoseOfASweep) { check_small_signals(kS
 
 TEST(Linear, SmallDeviationsOfATaosAreThoseOfASweep) { check_small_signals(kTaos, 4.0); }
 
+// A block so heavy that it rings at 20 Hz: the response at 14 Hz has it.
+TEST(Linear, SmallDeviationsOfABearingWithABlockAreThoseOfASweep) {
+  std::string blocked = kTaos;
+  blocked.replace(blocked.find("[gimbal]\n"), 9, "[gimbal]\nblock_mass = 1000\nblock_inertia = 2000\n");
+  check_small_signals(blocked, 4.0);
+  const auto at_14_hz = [](const std::string& text) {
+    const Case own = case_of(text);
+    const LinearModel model = small_signal_model(*make_plant(own.declared.parameters, kPeriod, {}), kPeriod);
+    return response(model, place_of(model.outputs, "engine.pitch", "output"), 0, 14.0, true);
+  };
+  CHECK_TRUE(gain_between(at_14_hz(blocked), at_14_hz(kTaos)) > 0.2);
+}
+
 TEST(Linear, SmallDeviationsOfAMasvAreThoseOfASweep) { check_small_signals(kMasv, 8.0); }
 
 TEST(Linear, DescribingFunctionsOfASimplexAreThoseOfSimulatedSinesAtFiveAmplitudes) {

@@ -84,6 +84,17 @@ TEST(Response, TheModalIntegralEndsAtTheLoadStiffnessOfTheModel) {
   }
 }
 
+TEST(Response, OfABearingWithABlockIsThatOfItsHalvesInSeries) {
+  const std::string taos_text =
+      "schema = 1\ntopology = \"taos\"\n[gimbal]\nthrust = 1e5\nunloaded_stiffness = 0.5\nstiffness = "
+      "[[2e9, 0, 0, 0, 0, 0], [0, 1e9, 0, 0, 0, 0], [0, 0, 1e9, 0, 0, 0], [0, 0, 0, 2e7, 0, 0], "
+      "[0, 0, 0, 0, 2e7, 0], [0, 0, 0, 0, 0, 2e7]]\n";
+  const Condition plain = load_condition(scratch.write("plain.toml", taos_text), {});
+  const Condition blocked =
+      load_condition(scratch.write("blocked.toml", taos_text + "block_mass = 50\nblock_inertia = 1\n"), {});
+  CHECK((plain.bearing - blocked.bearing).norm() < 1e-12 * plain.bearing.norm());
+}
+
 // Without modes and bearing: a mass on two springs in series, whose resonance is that of eq. 10.
 TEST(Response, OfARigidVehicleResonatesAtTheLoadResonance) {
   const Condition condition =

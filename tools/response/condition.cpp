@@ -37,7 +37,7 @@ ModeSet mode_set_of(const Parameters& parameters) {
 /// Arms, local flexibility and bearings as the plant has them at zero angles under its declared thrust.
 template <class Plant, class Parameters>
 void add_engines(const Parameters& parameters, std::vector<ConditionAxis> axes, Condition& condition) {
-  // The plant's own springs: their parameters do not depend on its step.
+  // The plant's own bearings: where they rest does not depend on its step.
   constexpr double kStep = 1e-3;
   condition.local.resize(Plant::kAxes);
   condition.arms = Eigen::MatrixXd::Zero(Plant::kAxes, Plant::kAxes);
@@ -46,7 +46,7 @@ void add_engines(const Parameters& parameters, std::vector<ConditionAxis> axes, 
     const auto own = static_cast<std::size_t>(engine);
     const auto& gimbal = parameters.gimbals[own];
     const auto pose = Plant::geometry_of(parameters, own).at(0.0, 0.0);
-    const model::GimbalSpring<double> spring(gimbal, kStep);
+    const model::CompliantBearing<double> bearing(gimbal, kStep);
     const model::Vector3<double> load = pose.thrust * (gimbal.bearing.thrust + gimbal.bearing.dead_load);
     for (int k = 0; k < 2; ++k) {
       const int axis = 2 * engine + k;
@@ -58,7 +58,7 @@ void add_engines(const Parameters& parameters, std::vector<ConditionAxis> axes, 
         const auto along = static_cast<std::size_t>(other);
         condition.arms(axis, 2 * engine + other) = pose.arm[actuator][along];
         const Eigen::Matrix<double, 6, 1> moved =
-            spring.settled(load + pose.direction[along], {}) - spring.settled(load, {});
+            bearing.settled(load + pose.direction[along]).whole() - bearing.settled(load).whole();
         condition.bearing(axis, 2 * engine + other) = pose.direction[actuator].dot(moved.template head<3>());
       }
     }

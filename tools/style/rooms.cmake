@@ -28,7 +28,7 @@ room(model declaration "how an effect declares itself: fields, sites, the list o
 room(model friction "friction laws: Coulomb, Stribeck, Dahl, LuGre, in one direction and in two" declaration numerics)
 room(model structure "structural modes and the flexibility of a vehicle" numerics)
 room(model actuator "one hydraulic axis: its parameters, its states, its step" declaration numerics)
-room(model engine "the engine on its gimbal: attach points, moment arms, the bearing" friction declaration numerics)
+room(model engine "the engine on its gimbal: attach points, moment arms, the bearing and its block" friction structure declaration numerics)
 room(model effects "the effects, one file each" actuator friction structure declaration numerics)
 room(model sensors "string potentiometers and what else reads a vehicle" effects engine declaration numerics)
 

@@ -191,8 +191,10 @@ TEST(VehicleAxes, beside_the_run_of_the_whole_vehicle_an_axis_does_what_it_does_
   // Rows of 2 ms are interpolated. On a compliant bearing friction breaks away within less than a row.
   const std::string rigid = std::string("[gimbal]\nthrust = 5e5\npitch_misalignment = 5e-3\n") + kFriction;
   const std::string compliant = std::string(kMisaligned) + kFriction;
+  const std::string blocked = std::string(kMisaligned) + "block_mass = 50\nblock_inertia = 1\n" + kFriction;
   for (const Vehicle& tried : {Vehicle{model_with("9490", kMisaligned), 0.2}, Vehicle{model_with("9490", rigid), 0.2},
-                               Vehicle{model_with("9490", compliant), 0.7}, Vehicle{flexible_vehicle(), 0.2}}) {
+                               Vehicle{model_with("9490", compliant), 0.7}, Vehicle{model_with("9490", blocked), 0.7},
+                               Vehicle{flexible_vehicle(), 0.2}}) {
     const Record record = record_of(tried.model);
     explain::VehicleAxes vehicle = explain::axes_of(tried.model, {record}, {});
     const auto run = explain::run_coupled(tried.model.parameters, vehicle, 2);

@@ -41,6 +41,9 @@ channel = "engine"
 time_constant = 0.0031
 )") + kInclinedAttachPoints + R"([gimbal]
 thrust = "418000 lbf"
+block_mass = 51.3
+block_inertia = 0.9
+vehicle_side_flexibility = 0.43
 stiffness = [
   [2e9, 0, 0, 0, 0, 0],
   [0, 2e9, 0, 0, 0, 9e6],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps from random states under random commands, for callgrind to count: vehicle_cost.cmake runs it.
-//   vehicle_cost axis|taos|taos-thrust|taos-disturbed|masv|masv-thrust|masv-disturbed MODES
+//   vehicle_cost axis|taos|masv[-block|-thrust|-disturbed] MODES
 
 #include <cstdio>
 #include <cstdlib>
@@ -58,8 +58,18 @@ void follow_thrust(Parameters& parameters) {
   }
 }
 
-/// What a step follows beside the commands: nothing, the thrust, or the thrust and all measured disturbances.
-enum class Follows { commands, thrust, disturbances };
+/// What a step follows beside the commands: nothing, a block in each bearing, the thrust, or the thrust and all measured
+/// disturbances.
+enum class Follows { commands, block, thrust, disturbances };
+
+/// Gives every bearing a block that rings at a few hundred hertz.
+template <class Parameters>
+void add_blocks(Parameters& parameters) {
+  for (auto& gimbal : parameters.gimbals) {
+    gimbal.bearing.block_mass = 50.0;
+    gimbal.bearing.block_inertia = 1.0;
+  }
+}
 
 /// Torque on the axes, force and vibration on the bearing of an engine.
 template <class Inputs>
@@ -75,7 +85,9 @@ void disturb_inputs(Inputs& inputs, int engine, Random& random) {
 template <class Vehicle, class Measured>
 void step_vehicle(int modes, Follows follows, Measured&& measured) {
   typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
-  if (follows != Follows::commands) {
+  if (follows == Follows::block) {
+    add_blocks(parameters);
+  } else if (follows != Follows::commands) {
     follow_thrust(parameters);
   }
   parameters.modes = random_modes<typename Vehicle::Modes>(modes, 1.0 / 1.05e8, 5);
@@ -86,7 +98,7 @@ void step_vehicle(int modes, Follows follows, Measured&& measured) {
     typename Vehicle::State state = rest;
     typename Vehicle::Inputs inputs;
     for (int e = 0; e < Vehicle::kEngines; ++e) {
-      if (follows != Follows::commands) {
+      if (follows == Follows::thrust || follows == Follows::disturbances) {
         inputs.thrust[static_cast<std::size_t>(e)] = -random.uniform(0.0, 1.86e6);
       }
       if (follows == Follows::disturbances) {
@@ -100,6 +112,9 @@ void step_vehicle(int modes, Follows follows, Measured&& measured) {
       auto& gimbal = state.gimbals[static_cast<std::size_t>(e)];
       gimbal.bristle = {size * random.uniform(-1e-4, 1e-4), size * random.uniform(-1e-4, 1e-4)};
       gimbal.torque = 1e8 * gimbal.bristle;
+      for (auto& mode : gimbal.bearing.block.modes) {
+        mode.velocity = follows == Follows::block ? random.either_sign(1e-9, 1.0) : 0.0;
+      }
     }
     for (int k = 0; k < modes; ++k) {
       state.structure.modes[static_cast<std::size_t>(k)].displacement += random.either_sign(1e-9, 1e-2);
@@ -118,6 +133,7 @@ int main(int argc, char** argv) {
   const int modes = argc > 2 ? static_cast<int>(std::strtol(argv[2], nullptr, 10)) : 0;
   const Follows follows = what.ends_with("-disturbed") ? Follows::disturbances
                           : what.ends_with("-thrust")  ? Follows::thrust
+                          : what.ends_with("-block")   ? Follows::block
                                                        : Follows::commands;
   if (what == "axis") {
     step_axis();
@@ -126,7 +142,7 @@ int main(int argc, char** argv) {
   } else if (what.starts_with("masv")) {
     step_vehicle<Masv>(modes, follows, hotfire_measured_masv);
   } else {
-    std::fputs("vehicle_cost axis|taos|taos-thrust|taos-disturbed|masv|masv-thrust|masv-disturbed MODES\n", stderr);
+    std::fputs("vehicle_cost axis|taos|masv[-block|-thrust|-disturbed] MODES\n", stderr);
     return 2;
   }
   return 0;

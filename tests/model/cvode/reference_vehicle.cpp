@@ -13,17 +13,18 @@ namespace {
 using Vector = Eigen::Vector3d;
 using Pair = Eigen::Vector2d;
 using Six = Eigen::Matrix<double, 6, 1>;
+using Five = Eigen::Matrix<double, 5, 1>;
 
-// States: of every engine two axes, the bristle, the bearing and, where they have inertia, its halves; then displacement and
-// rate of every mode.
+// States: of every engine two axes, the bristle, the bearing and, where there is one, its block; then displacement and rate
+// of every mode.
 constexpr int kAxisStates = kReferenceStates;
 constexpr int kBristle = 2 * kAxisStates;
 constexpr int kBearing = kBristle + 2;
-constexpr int kHalves = kBearing + 6;
-constexpr int kHalfStates = 8;  ///< about pitch, then yaw: angle and rate of the vehicle's half, then of the engine's
+constexpr int kBlock = kBearing + 6;
+constexpr int kBlockStates = 10;  ///< x, y, z against the vehicle, pitch and yaw in space; then their rates
 
-bool has_halves(const ReferenceVehicle& vehicle) { return vehicle.engines.front().half_inertia > 0.0; }
-std::size_t engine_states(const ReferenceVehicle& vehicle) { return kHalves + (has_halves(vehicle) ? kHalfStates : 0); }
+bool has_block(const ReferenceVehicle& vehicle) { return vehicle.engines.front().block_mass > 0.0; }
+std::size_t engine_states(const ReferenceVehicle& vehicle) { return kBlock + (has_block(vehicle) ? kBlockStates : 0); }
 
 struct Problem {
   const ReferenceVehicle* vehicle = nullptr;
@@ -141,12 +142,13 @@ Friction bristle(const ReferenceVehicle::Friction& law, const Load& load, const 
   return {law.stiffness * z + law.damping * fading * rate + law.viscous * slip, rate};
 }
 
-/// Where force and torque would bring the bearing: softer in translation while the force does not seat it.
+/// Where force and torque would bring the bearing, or its engine's half beside a block: softer in translation while the
+/// force does not seat it.
 Six seat(const ReferenceVehicle::Engine& engine, const Vector& force, const Pair& torque) {
   const auto& compliance = engine.bearing_compliance;
   Six wrench;
   wrench << force, 0.0, torque;
-  Six moved = compliance * wrench;
+  Six moved = (engine.block_mass > 0.0 ? 1.0 - engine.vehicle_side : 1.0) * compliance * wrench;
   if (engine.unloaded_stiffness < 1.0) {
     const Vector under_load = compliance.topLeftCorner<3, 3>() * force;
     const double squared = force.dot(under_load) / compliance(0, 0);
@@ -173,26 +175,6 @@ Friction friction_on_bearing(const ReferenceVehicle::Engine& engine, const Load&
   return friction;
 }
 
-/// Friction between two halves of a bearing that have inertia, each on half of its torsion: what the engine's half passes
-/// on, and the rate of the bristle.
-Friction friction_between_halves(const ReferenceVehicle::Engine& engine, const Load& load, const Pair& angles,
-                                 const Pair& rates, const Pair& z, const double* y, double* d) {
-  const Pair slip(y[3] - y[1], y[7] - y[5]);
-  const Friction friction = bristle(engine.friction, load, slip, z);
-  Friction passed{Pair::Zero(), friction.bristle_rate};
-  for (int axis = 0; axis < 2; ++axis) {
-    const double* own = y + 4 * axis;
-    double* rate = d + 4 * axis;
-    const double stiffness = 2.0 / engine.bearing_compliance(4 + axis, 4 + axis);
-    passed.torque(axis) = stiffness * (angles(axis) - own[2] + engine.loss_time * (rates(axis) - own[3]));
-    rate[0] = own[1];
-    rate[1] = (friction.torque(axis) - stiffness * (own[0] + engine.loss_time * own[1])) / engine.half_inertia;
-    rate[2] = own[3];
-    rate[3] = (passed.torque(axis) - friction.torque(axis)) / engine.half_inertia;
-  }
-  return passed;
-}
-
 /// What the structure does at one engine.
 struct Base {
   Pair moved = Pair::Zero();  ///< attach points pulled together [m]
@@ -206,19 +188,42 @@ struct OnStructure {
   Pair torques;
 };
 
+/// Newton's law of the block under the force and the torque of the joint. Returns the torque that the vehicle's half hands
+/// on.
+Pair block_derivative(const ReferenceVehicle::Engine& engine, const Base& base, const Vector& force, const Pair& torque,
+                      const double* y, double* d) {
+  const Eigen::Map<const Five> place(y);
+  const Eigen::Map<const Five> rate(y + 5);
+  Five moved = place + engine.loss_time * rate;
+  moved.tail<2>() -= base.turned + engine.loss_time * base.turned_rate;
+  const Five held = engine.block_stiffness * moved;
+  Five wrench;
+  wrench << force, torque;
+  Five inertia;
+  inertia << Vector::Constant(engine.block_mass), Pair::Constant(engine.block_inertia);
+  const Five faster = (wrench - held).cwiseQuotient(inertia);
+  std::copy(rate.begin(), rate.end(), d);
+  std::copy(faster.begin(), faster.end(), d + 5);
+  return held.tail<2>();
+}
+
 /// The equations of one engine, its states and their rates from `y` and `d` on.
 OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const OnEngine& on, const Base& base, const double* y,
                               double* d) {
   const auto of = [&](int axis, int i) { return y[axis * kAxisStates + i]; };
   const Turned turned(of(0, kReferenceAngle), of(1, kReferenceAngle));
   const Eigen::Map<const Six> bearing(y + kBearing);
+  const bool blocked = engine.block_mass > 0.0;
+  const Vector translation =
+      blocked ? Vector(bearing.head<3>() + Vector(y[kBlock], y[kBlock + 1], y[kBlock + 2])) : Vector(bearing.head<3>());
+  const Pair base_rate = blocked ? Pair(y[kBlock + 8], y[kBlock + 9]) : base.turned_rate;
   OnStructure result;
   Pair torque = on.torque - on.thrust * engine.misalignment;
   Vector on_bearing = (on.thrust + engine.dead_load) * (turned.rotation * Vector::UnitX()) + on.force;
   for (int axis = 0; axis < 2; ++axis) {
     const Actuator actuator = actuator_of(engine, axis, turned, of(axis, kReferenceAngle));
     const double deflection =
-        of(axis, kReferencePiston) - actuator.stroke - base.moved(axis) - actuator.direction.dot(bearing.head<3>());
+        of(axis, kReferencePiston) - actuator.stroke - base.moved(axis) - actuator.direction.dot(translation);
     const double force = study::spring_force((*on.springs)[static_cast<std::size_t>(axis)], deflection);
     result.forces(axis) = force;
     on_bearing += force * actuator.direction;
@@ -229,11 +234,9 @@ OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const OnEn
   Six bearing_rate;
   const Pair z(y[kBristle], y[kBristle + 1]);
   const Load load = load_of(engine, on.thrust, on_bearing);
-  Friction friction = friction_on_bearing(engine, load, rates - base.turned_rate, z, bearing, on_bearing, bearing_rate);
-  if (engine.half_inertia > 0.0) {
-    const Pair angles(of(0, kReferenceAngle), of(1, kReferenceAngle));
-    friction = friction_between_halves(engine, load, angles, rates, z, y + kHalves, d + kHalves);
-  }
+  const Friction friction = friction_on_bearing(engine, load, rates - base_rate, z, bearing, on_bearing, bearing_rate);
+  const Pair on_vehicle =
+      blocked ? block_derivative(engine, base, on_bearing, friction.torque, y + kBlock, d + kBlock) : friction.torque;
   Eigen::Map<Six>(d + kBearing) = bearing_rate;
   d[kBristle] = friction.bristle_rate(0);
   d[kBristle + 1] = friction.bristle_rate(1);
@@ -250,10 +253,11 @@ OnStructure engine_derivative(const ReferenceVehicle::Engine& engine, const OnEn
         (a.area * own[kReferencePressure] - result.forces(axis) - a.piston_damping * own[kReferencePistonRate]) /
         a.piston_mass;
     own_rate[kReferenceAngle] = own[kReferenceAngleRate];
-    result.torques(axis) = friction.torque(axis) + a.duct_stiffness * (own[kReferenceAngle] - base.turned(axis)) +
-                           a.damping * (own[kReferenceAngleRate] - base.turned_rate(axis));
+    const double beside = a.duct_stiffness * (own[kReferenceAngle] - base.turned(axis)) +
+                          a.damping * (own[kReferenceAngleRate] - base.turned_rate(axis));
+    result.torques(axis) = on_vehicle(axis) + beside;
     const double across = a.cross_stiffness * of(1 - axis, kReferenceAngle) + a.cross_damping * rates(1 - axis);
-    own_rate[kReferenceAngleRate] = (torque(axis) - result.torques(axis) - across) / a.inertia;
+    own_rate[kReferenceAngleRate] = (torque(axis) - friction.torque(axis) - beside - across) / a.inertia;
   }
   return result;
 }
@@ -301,8 +305,9 @@ std::vector<double> scales(const ReferenceVehicle& vehicle) {
     scale.insert(scale.end(), kAxis.begin(), kAxis.end());
     scale.insert(scale.end(), kAxis.begin(), kAxis.end());
     scale.insert(scale.end(), 8, 1e-4);
-    for (int half = 0; has_halves(vehicle) && half < 4; ++half) {
-      scale.insert(scale.end(), {1e-2, 0.1});
+    if (has_block(vehicle)) {
+      scale.insert(scale.end(), 5, 1e-4);
+      scale.insert(scale.end(), 5, 1e-2);
     }
   }
   for (std::size_t k = 0; k < vehicle.modes.size(); ++k) {
@@ -328,8 +333,8 @@ std::vector<std::vector<double>> integrate_reference(const ReferenceVehicle& veh
       std::copy(own.begin(), own.end(), y + axis * kAxisStates);
     }
     std::copy(engine.bearing.begin(), engine.bearing.end(), y + kBearing);
-    for (std::size_t axis = 0; has_halves(vehicle) && axis < 2; ++axis) {
-      y[kHalves + 4 * axis + 2] = engine.axes[axis][kReferenceAngle];
+    if (has_block(vehicle)) {
+      std::copy(engine.block.begin(), engine.block.end(), y + kBlock);
     }
     y += engine_states(vehicle);
   }

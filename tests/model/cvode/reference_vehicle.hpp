@@ -48,9 +48,12 @@ struct ReferenceVehicle {
     double unloaded_stiffness = 1.0;  ///< of the bearing in translation without load, over that under load
     double seat_scale = 1e5;          ///< load over which it rises [N]
     Friction friction;
-    /// Of each half of the bearing about pitch and yaw, with half of its torsion on either side of the friction [kg m^2];
-    /// zero: the halves have none. Only on a base at rest and for a torsion of its own about either axis.
-    double half_inertia = 0.0;
+    /// Between the halves of the bearing, on the vehicle's half; the friction is between block and engine's half. Zero:
+    /// none.
+    double block_mass = 0.0;                                                                ///< along x, y, z [kg]
+    double block_inertia = 0.0;                                                             ///< about pitch and yaw [kg m^2]
+    double vehicle_side = 0.5;                                                              ///< share of the compliance
+    Eigen::Matrix<double, 5, 5> block_stiffness = Eigen::Matrix<double, 5, 5>::Identity();  ///< x, y, z, pitch, yaw
   };
   std::vector<Engine> engines;
 
@@ -71,11 +74,13 @@ struct ReferenceVehicle {
     std::vector<double> torque{};  ///< on the engines, towards positive angles of all axes [N m]; empty: none
   };
 
-  /// Where a run starts: of every engine the eight states of both axes and six displacements of the bearing; the modes.
+  /// Where a run starts: of every engine the eight states of both axes and the displacements of bearing and block; the
+  /// modes.
   struct Start {
     struct Engine {
       std::array<std::array<double, 8>, 2> axes{};
       std::array<double, 6> bearing{};
+      std::array<double, 5> block{};  ///< x, y, z against the vehicle, pitch and yaw in space
     };
     std::vector<Engine> engines;
     std::vector<double> modes;

@@ -94,6 +94,11 @@ inline void tell_gimbal(const model::GimbalParameters<double>& gimbal, Reference
   engine.seat_scale = bearing.load_scale;
   if (gimbal.compliant) {
     engine.bearing_compliance = gimbal.stiffness.inverse();
+    engine.block_mass = bearing.block_mass;
+    engine.block_inertia = bearing.block_inertia;
+    engine.vehicle_side = bearing.vehicle_side_flexibility;
+    const std::array<int, 5> moving{0, 1, 2, 4, 5};
+    engine.block_stiffness = (engine.vehicle_side * engine.bearing_compliance(moving, moving)).inverse();
   }
   const auto& law = gimbal.friction;
   const bool dahl = law.law() == Law::dahl;
@@ -147,7 +152,13 @@ ReferenceVehicle::Start start_of(const State& state, int modes) {
       const auto& y = state.axes[2 * e + k].y;
       std::copy(y.begin(), y.end(), engine.axes[k].begin());
     }
-    std::copy(state.gimbals[e].displacement.begin(), state.gimbals[e].displacement.end(), engine.bearing.begin());
+    const auto& bearing = state.gimbals[e].bearing;
+    std::copy(bearing.displacement.begin(), bearing.displacement.end(), engine.bearing.begin());
+    const auto& block = bearing.block.displacement;
+    // In space: the vehicle's side turns with the modes.
+    const auto port = static_cast<Eigen::Index>(state.axes.size() + 2 * e);
+    const auto turned = state.structure.displacement.template segment<2>(port);
+    engine.block = {block(0), block(1), block(2), block(4) + turned(0), block(5) + turned(1)};
     start.engines.push_back(engine);
   }
   for (int k = 0; k < modes; ++k) {

@@ -19,7 +19,8 @@ inline Excitation interpolated(const std::vector<double>& values, int steps) {
 
 /// The friction of an engine's bearing about one axis, beside the given slip about the other: `model::BearingFriction` as
 /// declared, under the force through the bearing of the run of the whole vehicle. What the friction itself turns is found
-/// with it (`model::GimbalSpring`); all other rotation of the two sides is given.
+/// with it, by the whole bearing in series (`model::GimbalSpring`). All other rotation of the two sides is given, with what
+/// the inertia of a block makes of the friction that the run had.
 template <class S>
 class BearingInVehicle {
  public:

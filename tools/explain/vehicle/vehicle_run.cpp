@@ -175,7 +175,7 @@ class AroundAxes {
   static double turned_of(std::size_t axis, const typename Plant::State& state) {
     const auto own = static_cast<Eigen::Index>(axis);
     return state.structure.displacement(static_cast<Eigen::Index>(Plant::kAxes) + own) + state.structure.residual(own) +
-           state.gimbals[axis / 2].displacement(rotation_about(axis));
+           state.gimbals[axis / 2].bearing.whole()(rotation_about(axis));
   }
 
   /// Size of the force through a bearing, as `model::Vehicle` has it.

@@ -201,7 +201,17 @@ void label_vehicle(State& state, const Parameters& parameters, Labels<S>& labels
         {{".x", "m"}, {".y", "m"}, {".z", "m"}, {".roll", "rad"}, {".pitch", "rad"}, {".yaw", "rad"}}};
     for (int i = 0; i < 6; ++i) {
       const auto& own = kDisplacement[static_cast<std::size_t>(i)];
-      labels.add(gimbal.displacement(i), name + std::string(own[0]), std::string(own[1]));
+      labels.add(gimbal.bearing.displacement(i), name + std::string(own[0]), std::string(own[1]));
+    }
+    if (parameters.gimbals[e].has_block()) {
+      auto& block = gimbal.bearing.block;
+      for (std::size_t k = 0; k < block.modes.size(); ++k) {
+        const std::string mode = name + ".block_mode" + std::to_string(k + 1);
+        labels.add(block.modes[k].displacement, mode + ".displacement", "kg^0.5.m", true);
+        labels.add(block.modes[k].velocity, mode + ".rate", "kg^0.5.m/s", true);
+      }
+      labels.add(block.displacement, "iteration.block" + std::to_string(e + 1), "");
+      labels.add(block.forces, "iteration.wrench" + std::to_string(e + 1), "");
     }
     // Rigid friction has no bristle.
     const auto& friction = parameters.gimbals[e].friction;
