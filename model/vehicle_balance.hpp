@@ -55,7 +55,7 @@ void Vehicle<S, Engines, Capacity, List>::couple_at_rest(State& state, std::arra
     const S own_thrust = gimbal.bearing.thrust + thrust[at(e)];
     const std::array<S, 2> misalignment{gimbal.bearing.pitch_misalignment, gimbal.bearing.yaw_misalignment};
     state.gimbals[at(e)].bearing = gimbal.spring.settled(pushed(state, pose, own_thrust, e));
-    const Vector3<S> moved_bearing = state.gimbals[at(e)].bearing.whole().template head<3>();
+    const Vector3<S> moved_bearing = state.gimbals[at(e)].bearing.translation();
     for (int k = 0; k < 2; ++k) {
       const int i = 2 * e + k;
       const auto& parameters = axes_[at(i)].parameters();

@@ -12,14 +12,14 @@
 namespace hotfire::model {
 
 /// The modes of the block between the halves of a bearing, on the vehicle's half; none without a block. Ports: translation
-/// along x, y, z and rotation about them, against the vehicle. The block solves
+/// along x, y, z and rotation about y (pitch) and z (yaw), against the vehicle. The block solves
 ///   M u'' + K_v (u + loss_time u') = (N, T),   K_v = stiffness / vehicle_side_flexibility,
-/// M being `block_mass` along x, y, z and `block_inertia` about y and z. Rotation about x has no inertia and no torque, and
-/// follows the other five. With C their compliance and C = L L^T, the eigenvectors q and values 1 / w^2 of L^T M L give the
-/// modes L q w, which are mass-normalised and have the damping ratio loss_time w / 2.
+/// M being `block_mass` along x, y, z and `block_inertia` about y and z. Rotation about x has no inertia and no torque: it
+/// follows the other five, and nothing follows it. With C their compliance and C = L L^T, the eigenvectors q and values 1 /
+/// w^2 of L^T M L give the modes L q w, which are mass-normalised and have the damping ratio loss_time w / 2.
 template <class S>
-ModeTable<S, 6, 6> block_modes(const GimbalParameters<S>& gimbal) {
-  ModeTable<S, 6, 6> table;
+ModeTable<S, 5, 6> block_modes(const GimbalParameters<S>& gimbal) {
+  ModeTable<S, 5, 6> table;
   if (!gimbal.has_block()) {
     return table;
   }
@@ -29,18 +29,15 @@ ModeTable<S, 6, 6> block_modes(const GimbalParameters<S>& gimbal) {
   const std::array<S, kMoving> inertia{bearing.block_mass, bearing.block_mass, bearing.block_mass, bearing.block_inertia,
                                        bearing.block_inertia};
   const Eigen::Matrix<S, 6, 6> whole = inverse_of_positive_definite<S, 6>(gimbal.stiffness);
-  Eigen::Matrix<S, 6, kMoving> compliance;
-  Eigen::Matrix<S, kMoving, kMoving> own;
+  Eigen::Matrix<S, kMoving, kMoving> compliance;
   for (int j = 0; j < kMoving; ++j) {
-    for (int i = 0; i < 6; ++i) {
-      compliance(i, j) = bearing.vehicle_side_flexibility * whole(i, kPlaces[static_cast<std::size_t>(j)]);
-    }
     for (int i = 0; i < kMoving; ++i) {
-      own(i, j) = compliance(kPlaces[static_cast<std::size_t>(i)], j);
+      compliance(i, j) = bearing.vehicle_side_flexibility *
+                         whole(kPlaces[static_cast<std::size_t>(i)], kPlaces[static_cast<std::size_t>(j)]);
     }
   }
   Eigen::Matrix<S, kMoving, kMoving> factor;
-  factorise<S, kMoving>(own, factor);
+  factorise<S, kMoving>(compliance, factor);
   Eigen::Matrix<S, kMoving, kMoving> carried = Eigen::Matrix<S, kMoving, kMoving>::Zero();
   for (int i = 0; i < kMoving; ++i) {
     for (int j = 0; j < kMoving; ++j) {
@@ -57,8 +54,7 @@ ModeTable<S, 6, 6> block_modes(const GimbalParameters<S>& gimbal) {
     table.frequency[mode] = w / (2.0 * std::numbers::pi);
     table.damping_ratio[mode] = 0.5 * bearing.loss_time * w;
     const Eigen::Matrix<S, kMoving, 1> direction = modes.vectors.col(k);
-    const Eigen::Matrix<S, kMoving, 1> moved = times<S, kMoving, kMoving>(factor, direction);
-    table.shape.col(k) = times<S, 6, kMoving>(compliance, solve_factorised<S, kMoving>(factor, moved)) * w;
+    table.shape.col(k) = times<S, kMoving, kMoving>(factor, direction) * w;
   }
   return table;
 }
@@ -74,7 +70,7 @@ template <class S>
 class CompliantBearing {
  public:
   using Six = typename GimbalSpring<S>::Six;
-  using Block = ModalStructure<S, 6, 6>;
+  using Block = ModalStructure<S, 5, 6>;
   using Advance = typename Block::Advance;  ///< of the block; unset without one
 
   struct State {
@@ -82,10 +78,19 @@ class CompliantBearing {
     typename Block::State block{};   ///< against the vehicle
 
     /// Of the engine's half against the vehicle.
-    Six whole() const noexcept { return displacement + block.displacement; }
+    Vector3<S> translation() const noexcept {
+      return displacement.template head<3>() + block.displacement.template head<3>();
+    }
+    Pair<S> rotation() const noexcept {
+      return {displacement(4) + block.displacement(3), displacement(5) + block.displacement(4)};
+    }
   };
 
-  CompliantBearing(const GimbalParameters<S>& gimbal, double h) : spring_(gimbal, h), block_(block_modes(gimbal), h) {}
+  CompliantBearing(const GimbalParameters<S>& gimbal, double h) : spring_(gimbal, h), block_(block_modes(gimbal), h) {
+    if (has_block()) {
+      spring_.add_rate_flexibility(block_.rate_flexibility());
+    }
+  }
 
   bool has_block() const noexcept { return block_.table().modes > 0; }
 
@@ -111,7 +116,8 @@ class CompliantBearing {
                         const Pair<S>& torque) const noexcept {
     Pair<S> rate = spring_.rotation_rate(state.displacement, force, torque);
     if (has_block()) {
-      add_rate_of_block(advance, force, torque, rate);
+      rate.pitch += advance.rate(0);
+      rate.yaw += advance.rate(1);
     }
     return rate;
   }
@@ -145,15 +151,7 @@ class CompliantBearing {
   }
 
   /// Mean rate of rotation per mean torque.
-  SymmetricPair<S> rate_flexibility() const noexcept {
-    SymmetricPair<S> flexibility = spring_.rate_flexibility();
-    if (has_block()) {
-      const auto& of_block = block_.rate_flexibility();
-      flexibility = {flexibility.pitch + of_block(1, 4), flexibility.yaw + of_block(2, 5),
-                     flexibility.cross + of_block(1, 5)};
-    }
-    return flexibility;
-  }
+  SymmetricPair<S> rate_flexibility() const noexcept { return spring_.rate_flexibility(); }
 
  private:
   // What a block takes stands apart from the step of a vehicle, which without a block costs what it did: inlined, it would
@@ -169,13 +167,6 @@ class CompliantBearing {
     for (int i = 0; i < 3; ++i) {
       mean(i) += advance.mean(i) + under(flexibility, i, force, torque);
     }
-  }
-
-  [[gnu::noinline]] void add_rate_of_block(const Advance& advance, const Vector3<S>& force, const Pair<S>& torque,
-                                           Pair<S>& rate) const noexcept {
-    const auto& flexibility = block_.rate_flexibility();
-    rate.pitch += advance.rate(1) + under(flexibility, 1, force, torque);
-    rate.yaw += advance.rate(2) + under(flexibility, 2, force, torque);
   }
 
   [[gnu::noinline]] void finish_block(State& state, const Advance& advance, const Vector3<S>& force,
@@ -197,11 +188,11 @@ class CompliantBearing {
   template <class Matrix>
   static S under(const Matrix& matrix, int row, const Vector3<S>& force, const Pair<S>& torque) noexcept {
     return matrix(row, 0) * force(0) + matrix(row, 1) * force(1) + matrix(row, 2) * force(2) +
-           matrix(row, 4) * torque.pitch + matrix(row, 5) * torque.yaw;
+           matrix(row, 3) * torque.pitch + matrix(row, 4) * torque.yaw;
   }
 
   static void load(State& state, const Vector3<S>& force, const Pair<S>& torque) noexcept {
-    state.block.forces << force(0), force(1), force(2), S(0.0), torque.pitch, torque.yaw;
+    state.block.forces << force(0), force(1), force(2), torque.pitch, torque.yaw;
   }
 
   GimbalSpring<S> spring_;

@@ -33,7 +33,12 @@ class GimbalSpring {
       further_ /= share;
     }
     seats_ = gimbal.compliant && value_of(further_) > 0.0;
+    turning_ << compliance_.template block<2, 3>(4, 0), compliance_.template block<2, 2>(4, 4);
   }
+
+  /// Adds what else turns with the spring: mean rate of its rotation about pitch and yaw per mean force along x, y, z and
+  /// mean torque about pitch and yaw.
+  void add_rate_flexibility(const Eigen::Matrix<S, 2, 5>& more) noexcept { turning_ += more * (h_ / (1.0 - fade_)); }
 
   /// Translational compliance under a force, over that under full load.
   S softness(const Vector3<S>& force) const noexcept {
@@ -71,7 +76,7 @@ class GimbalSpring {
   /// Mean rate of rotation over the step.
   Pair<S> rotation_rate(const Six& start, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
     const S share = (1.0 - fade_) / h_;
-    return {share * (rest(4, force, torque) - start(4)), share * (rest(5, force, torque) - start(5))};
+    return {share * (turned(0, force, torque) - start(4)), share * (turned(1, force, torque) - start(5))};
   }
 
   /// Where a force and a torque would bring the bearing to rest. Set-up only.
@@ -97,12 +102,16 @@ class GimbalSpring {
   /// Mean rate of rotation per mean torque.
   SymmetricPair<S> rate_flexibility() const noexcept {
     const S share = (1.0 - fade_) / h_;
-    return {share * compliance_(4, 4), share * compliance_(5, 5), share * compliance_(4, 5)};
+    return {share * turning_(0, 3), share * turning_(1, 4), share * turning_(0, 4)};
   }
 
  private:
   S rest(int i, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
     return translation(i, S(1.0), force, torque);
+  }
+  S turned(int i, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
+    return (turning_(i, 0) * force(0) + turning_(i, 1) * force(1) + turning_(i, 2) * force(2)) +
+           turning_(i, 3) * torque.pitch + turning_(i, 4) * torque.yaw;
   }
   S translation(int i, const S& soft, const Vector3<S>& force, const Pair<S>& torque) const noexcept {
     return soft * (compliance_(i, 0) * force(0) + compliance_(i, 1) * force(1) + compliance_(i, 2) * force(2)) +
@@ -115,6 +124,7 @@ class GimbalSpring {
   S further_;
   bool seats_ = false;
   Eigen::Matrix<S, 6, 6> compliance_;
+  Eigen::Matrix<S, 2, 5> turning_;  ///< its rows of pitch and yaw, and what was added
 };
 
 }  // namespace hotfire::model

@@ -97,7 +97,7 @@ class VehicleReadings {
     std::array<S, Sensors::kStrings> lengths{};
     for (std::size_t e = 0; e < geometry_.size(); ++e) {
       // The bearing's translation carries the engine's end: the same as the anchors carried the other way.
-      const Vector3<S> bearing = state.gimbals[e].bearing.whole().template head<3>();
+      const Vector3<S> bearing = state.gimbals[e].bearing.translation();
       const auto own = geometry_[e].lengths(state.axes[2 * e].y(V::AxisModel::kAngle),
                                             state.axes[2 * e + 1].y(V::AxisModel::kAngle), -bearing);
       for (std::size_t k = 0; k < own.size(); ++k) {

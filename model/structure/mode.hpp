@@ -14,8 +14,32 @@ struct ModeMotion {
   S velocity{0.0};
 };
 
-/// `advance_mode` for a damping ratio of 1 or more, by its two real rates of decay: the slow one p, and p + gap. Their
-/// difference is never divided by where it vanishes.
+/// `advance_mode` beside critical damping, where the damped frequency and its derivatives have no finite value. Its cosine
+/// and sine are power series in the square of the frequency, which is small and of either sign.
+template <class S>
+ModeMotion<S> advance_nearly_critical_mode(const ModeMotion<S>& from, const S& w, const S& damping_ratio,
+                                           double h) noexcept {
+  constexpr int kTerms = 12;  // the last is below 1e-20 where the envelope is above 1e-40
+  const S squared = (w * h) * (w * h) * (damping_ratio * damping_ratio - 1.0);
+  S cosine_term{1.0};
+  S sine_term{1.0};
+  S cosine{1.0};
+  S sine{1.0};
+  for (int k = 1; k <= kTerms; ++k) {
+    cosine_term = cosine_term * squared / ((2.0 * k - 1.0) * (2.0 * k));
+    sine_term = sine_term * squared / ((2.0 * k) * (2.0 * k + 1.0));
+    cosine += cosine_term;
+    sine += sine_term;
+  }
+  const S decay_rate = damping_ratio * w;
+  const S envelope = exp(-decay_rate * h);
+  const S c = cosine * envelope;
+  const S s = sine * envelope * h;
+  return {from.displacement * c + (from.velocity + decay_rate * from.displacement) * s,
+          from.velocity * c - (from.velocity * decay_rate + from.displacement * (w * w)) * s};
+}
+
+/// `advance_mode` for a damping ratio above 1, by its two real rates of decay: the slow one p, and p + gap.
 template <class S>
 ModeMotion<S> advance_overdamped_mode(const ModeMotion<S>& from, const S& w, const S& damping_ratio, double h) noexcept {
   using std::expm1;
@@ -24,7 +48,7 @@ ModeMotion<S> advance_overdamped_mode(const ModeMotion<S>& from, const S& w, con
   const S fast = w * (damping_ratio + root);
   const S gap = 2.0 * w * root;
   const S fade = exp(-slow * h);
-  const S spread = value_of(gap) > 0.0 ? S(fade * (-expm1(-gap * h)) / gap) : S(fade * h);
+  const S spread = fade * (-expm1(-gap * h)) / gap;
   return {from.displacement * (fade + slow * spread) + from.velocity * spread,
           from.velocity * (fade - fast * spread) - from.displacement * (slow * fast) * spread};
 }
@@ -36,7 +60,11 @@ template <class S>
 ModeMotion<S> advance_mode(const ModeMotion<S>& from, const S& w, const S& damping_ratio, double h) noexcept {
   using std::cos;
   using std::sin;
-  if (!(value_of(damping_ratio) < 1.0)) {
+  constexpr double kNearlyCritical = 1e-3;  // off a damping ratio of 1: the series has full precision
+  if (std::abs(value_of(damping_ratio) - 1.0) < kNearlyCritical) {
+    return advance_nearly_critical_mode(from, w, damping_ratio, h);
+  }
+  if (value_of(damping_ratio) > 1.0) {
     return advance_overdamped_mode(from, w, damping_ratio, h);
   }
   const S decay_rate = damping_ratio * w;

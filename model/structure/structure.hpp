@@ -45,7 +45,7 @@ class ModalStructure {
   using PortVector = Eigen::Matrix<S, Ports, 1>;
   using PortMatrix = Eigen::Matrix<S, Ports, Ports>;
 
-  /// Half of the ports: all attach points, or all rotations of gimbals.
+  /// Half of the ports: all attach points, or all rotations of gimbals. Of an odd number the rotations are the smaller part.
   static constexpr int kHalf = Ports / 2;
   using HalfVector = Eigen::Matrix<S, kHalf, 1>;
   using RateMatrix = Eigen::Matrix<S, kHalf, Ports>;
@@ -115,7 +115,7 @@ class ModalStructure {
     for (int k = 0; k < table_.modes; ++k) {
       state.displacement += table_.shape.col(k) * state.modes[static_cast<std::size_t>(k)].displacement;
     }
-    add_product<kHalf, kHalf>(state.residual, table_.residual, forces);
+    add_product<kHalf, Ports - kHalf>(state.residual, table_.residual, forces);
     return state;
   }
 
@@ -149,7 +149,7 @@ class ModalStructure {
   /// Mean rotation of the vehicle's side of the gimbals under the forces in `state`, and its mean rate.
   HalfVector rotation(const State& state, const Advance& advance) const noexcept {
     HalfVector sum = advance.mean.template tail<kHalf>();
-    add_product<kHalf, kHalf>(sum, mean_flexibility_, state.forces);
+    add_product<kHalf, Ports - kHalf>(sum, mean_flexibility_, state.forces);
     return sum;
   }
   HalfVector rotation_rate(const State& state, const Advance& advance) const noexcept {
@@ -168,9 +168,9 @@ class ModalStructure {
     }
     state.displacement = advance.free;
     add_product<Ports, 0>(state.displacement, held_, state.forces);
+    state.residual = HalfVector::Zero();
     if (has_residual_) {
-      state.residual = HalfVector::Zero();
-      add_product<kHalf, kHalf>(state.residual, table_.residual, state.forces);
+      add_product<kHalf, Ports - kHalf>(state.residual, table_.residual, state.forces);
     }
   }
 
@@ -197,15 +197,19 @@ class ModalStructure {
   /// Generalised forces on modes k and k + 1. Sums run in pairs of ports, so that the order of additions is the same
   /// whatever instruction set a compiler has.
   Eigen::Matrix<S, 2, 1> modal_forces(const PortVector& forces, int k) const noexcept {
-    static_assert(Ports % 2 == 0 && Capacity % 2 == 0);
+    static_assert(Capacity % 2 == 0);
     const auto part = [&](int port, int mode) {
       return table_.shape.template block<2, 1>(port, mode).cwiseProduct(forces.template segment<2>(port));
     };
     Eigen::Matrix<S, 2, 1> first = part(0, k);
     Eigen::Matrix<S, 2, 1> second = part(0, k + 1);
-    for (int port = 2; port < Ports; port += 2) {
+    for (int port = 2; port + 1 < Ports; port += 2) {
       first += part(port, k);
       second += part(port, k + 1);
+    }
+    if constexpr (Ports % 2 == 1) {
+      first(0) += table_.shape(Ports - 1, k) * forces(Ports - 1);
+      second(0) += table_.shape(Ports - 1, k + 1) * forces(Ports - 1);
     }
     return {first(0) + first(1), second(0) + second(1)};
   }
@@ -230,7 +234,7 @@ class ModalStructure {
 
   Table table_;
   double h_;
-  bool has_residual_ = false;  ///< without it nothing is left of it in a state either
+  bool has_residual_ = false;
   std::array<ModeStep, Capacity> steps_{};
   PortMatrix held_ = PortMatrix::Zero();  ///< H
   PortMatrix mean_flexibility_;

@@ -89,6 +89,7 @@ std::vector<std::size_t> largest_error_first(const VehicleAxes& vehicle, const C
   }
   std::ranges::sort(errors);
   std::vector<std::size_t> order;
+  order.reserve(errors.size());
   for (const auto& [error, i] : errors) {
     order.push_back(i);
   }

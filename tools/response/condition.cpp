@@ -57,9 +57,9 @@ void add_engines(const Parameters& parameters, std::vector<ConditionAxis> axes, 
       for (int other = 0; other < 2; ++other) {
         const auto along = static_cast<std::size_t>(other);
         condition.arms(axis, 2 * engine + other) = pose.arm[actuator][along];
-        const Eigen::Matrix<double, 6, 1> moved =
-            bearing.settled(load + pose.direction[along]).whole() - bearing.settled(load).whole();
-        condition.bearing(axis, 2 * engine + other) = pose.direction[actuator].dot(moved.template head<3>());
+        const model::Vector3<double> moved =
+            bearing.settled(load + pose.direction[along]).translation() - bearing.settled(load).translation();
+        condition.bearing(axis, 2 * engine + other) = pose.direction[actuator].dot(moved);
       }
     }
   }

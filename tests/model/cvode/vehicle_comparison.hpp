@@ -158,7 +158,7 @@ ReferenceVehicle::Start start_of(const State& state, int modes) {
     // In space: the vehicle's side turns with the modes.
     const auto port = static_cast<Eigen::Index>(state.axes.size() + 2 * e);
     const auto turned = state.structure.displacement.template segment<2>(port);
-    engine.block = {block(0), block(1), block(2), block(4) + turned(0), block(5) + turned(1)};
+    engine.block = {block(0), block(1), block(2), block(3) + turned(0), block(4) + turned(1)};
     start.engines.push_back(engine);
   }
   for (int k = 0; k < modes; ++k) {

@@ -38,7 +38,7 @@ typename Vehicle::Inputs lively(double t) {
 /// Stored energy of a TAOS whose valves are shut: axes, springs, modes, bearing.
 double stored_energy(const Taos& plant, const Taos::State& state, const Taos::Parameters& parameters) {
   const auto pose = plant.geometry(0).at(state.axes[0].y(Taos::AxisModel::kAngle), state.axes[1].y(Taos::AxisModel::kAngle));
-  const Eigen::Matrix<double, 6, 1> bearing = state.gimbals[0].bearing.whole();
+  const Eigen::Matrix<double, 6, 1> bearing = state.gimbals[0].bearing.displacement;
   double energy = 0.5 * bearing.dot(parameters.gimbals[0].stiffness * bearing);
   for (int i = 0; i < 2; ++i) {
     const auto k = static_cast<std::size_t>(i);

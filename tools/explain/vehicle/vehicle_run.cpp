@@ -31,9 +31,6 @@ bool has_more_than_springs(const Parameters& parameters) {
   return more;
 }
 
-/// Place of the rotation about an axis among the six displacements of a bearing: y for pitch, z for yaw.
-constexpr Eigen::Index rotation_about(std::size_t axis) { return axis % 2 == 0 ? 4 : 5; }
-
 /// Flexibility at rest of the attach point of an axis under its own force, beyond its own spring, at the declared thrust
 /// [m/N].
 template <class Plant>
@@ -55,7 +52,8 @@ double flexibility_of(const Plant& plant, const typename Plant::Parameters& para
 template <class Parameters>
 double rotation_of(const Parameters& parameters, std::size_t axis) {
   const auto& gimbal = parameters.gimbals[axis / 2];
-  const auto about = rotation_about(axis);
+  // Among the six displacements of a bearing: y for pitch, z for yaw.
+  const Eigen::Index about = axis % 2 == 0 ? 4 : 5;
   return gimbal.compliant ? model::inverse_of_positive_definite<double, 6>(gimbal.stiffness)(about, about) : 0.0;
 }
 
@@ -174,8 +172,9 @@ class AroundAxes {
   /// Rotation of the vehicle's side of a bearing, and of the bearing, about an axis.
   static double turned_of(std::size_t axis, const typename Plant::State& state) {
     const auto own = static_cast<Eigen::Index>(axis);
+    const model::Pair<double> bearing = state.gimbals[axis / 2].bearing.rotation();
     return state.structure.displacement(static_cast<Eigen::Index>(Plant::kAxes) + own) + state.structure.residual(own) +
-           state.gimbals[axis / 2].bearing.whole()(rotation_about(axis));
+           (axis % 2 == 0 ? bearing.pitch : bearing.yaw);
   }
 
   /// Size of the force through a bearing, as `model::Vehicle` has it.
