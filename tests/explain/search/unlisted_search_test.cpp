@@ -47,8 +47,15 @@ TEST(UnlistedSearch, TermsThatLeaveMoreOfARecordThanTheCalibratedModelAreRefused
   // A calibrated model that leaves nothing: every term that leaves more than noise is worse than that.
   explain::Prediction perfect = mass.calibrated.prediction;
   perfect[0][0] = mass.data.experiments[0].measured[0];
-  const auto found =
-      explain::search_unlisted(mass.data, mass.refiner, mass.calibrated, perfect, {}, mass.scales, true, 2, mass.watch, 1);
+  const explain::Located anywhere;
+  const auto found = explain::search_unlisted({.data = mass.data,
+                                               .refiner = mass.refiner,
+                                               .beside = mass.calibrated,
+                                               .calibrated = perfect,
+                                               .located = anywhere,
+                                               .scales = mass.scales,
+                                               .threads = 2,
+                                               .watch = mass.watch});
   CHECK_FALSE(found.best.has_value());
   CHECK_FALSE(found.leaves_less_than(1.0));
   const std::string& first = found.trials.front().reason;

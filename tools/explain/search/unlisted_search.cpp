@@ -39,6 +39,7 @@ constexpr std::size_t kTermFinalists = 2;
 constexpr std::size_t kFittedOfSite = 3;
 /// Finalists in the place of those that something speaks against.
 constexpr std::size_t kReplaced = 4;
+
 /// True if a term on a signal makes it fall where it is asked to rise. No amplifier and no valve does: such a table imitates
 /// something that it does not depend on, and an axis that meets it beyond these records sticks where it falls.
 bool falls_as_it_rises(const Fitted& model, const Candidate& candidate) {
@@ -118,43 +119,44 @@ std::size_t terms_to_fit(const std::vector<Screened>& proposals) {
 }
 
 /// What speaks against a term although it explains much; empty if nothing.
-std::string objection(const Dataset& data, const Prediction& calibrated, const Assessed& with, const Candidate& candidate) {
+std::string objection(const UnlistedTask& task, const Assessed& with, const Candidate& candidate) {
   if (falls_as_it_rises(with.model, candidate)) {
     return std::string(words::text(words::Reason::falls_as_it_rises));
   }
   if (feeds_energy(with.model.parameters(), candidate)) {
     return std::string(words::text(words::Reason::feeds_energy));
   }
-  const std::string harm = harm_of(data, with.prediction, calibrated);
+  const std::string harm = harm_of(task.data, with.prediction, task.calibrated);
   return harm.empty() ? std::string() : "; " + words::refused(harm);
 }
 
 /// Fits the first of what was screened with everything else, until there are `most` that nothing speaks against, and files
 /// all of them. Those behind one that leaves no more than noise are not fitted: they promised less.
-void fit_finalists(const Dataset& data, const Refiner& refiner, const Assessed& beside, const Prediction& calibrated,
-                   std::span<const double> frozen, const std::vector<Screened>& screened, std::size_t most,
-                   const Effort& effort, int round, const Watch& watch, UnlistedSearch& result) {
+void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, const std::vector<Screened>& screened,
+                   std::size_t most, const Effort& effort, UnlistedSearch& result) {
   std::size_t to_fit = most;
   std::size_t may_replace = kReplaced;
   for (const Screened& s : screened) {
-    Trial trial{round, s.candidate, false,     s.criterion,
-                1.0,   s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
+    Trial trial{task.round, s.candidate, false,     s.criterion,
+                1.0,        s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
     double left = std::numeric_limits<double>::infinity();
-    const bool is_decided = result.reaches_noise(data) && s.candidate.site == result.trials[*result.best].candidate.site;
-    if (to_fit > 0 && !is_decided && !watch.interrupted()) {
+    const bool is_decided =
+        result.reaches_noise(task.data) && s.candidate.site == result.trials[*result.best].candidate.site;
+    if (to_fit > 0 && !is_decided && !task.watch.interrupted()) {
       --to_fit;
-      watch.progress({Work::unlisted, fmt::format("unlisted: fitting {} with everything else", label(s.candidate)),
-                      SharesOfWork::kProposed});
+      task.watch.progress({Work::unlisted, fmt::format("unlisted: fitting {} with everything else", label(s.candidate)),
+                           SharesOfWork::kProposed});
       const Stopwatch stopwatch;
-      Assessed finalist = refiner.of_screened(s.fitted, frozen, effort);
+      Assessed finalist = task.refiner.of_screened(s.fitted, frozen, effort);
       trial.seconds += stopwatch.seconds();
       if (finalist.good()) {
-        compare_and_say(trial, finalist, beside);
-        left = excess_over_noise(data, finalist.prediction);
-        if (const std::string against = objection(data, calibrated, finalist, s.candidate); !against.empty()) {
+        compare_and_say(trial, finalist, task.beside);
+        left = excess_over_noise(task.data, finalist.prediction);
+        if (const std::string against = objection(task, finalist, s.candidate); !against.empty()) {
           trial.reason += against;
-          to_fit += may_replace > 0 ? 1 : 0;
-          may_replace -= may_replace > 0 ? 1 : 0;
+          const std::size_t replacement = may_replace > 0 ? 1 : 0;
+          to_fit += replacement;
+          may_replace -= replacement;
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
           result.model = std::move(finalist);
@@ -178,6 +180,49 @@ void mark_tied_sites(UnlistedSearch& result) {
   }
 }
 
+/// Terms of the grammar: proposed by regression, simulated, fitted shortly, and the best of every site fitted jointly.
+void fit_terms_of_grammar(const UnlistedTask& task, const Fitted& around, const Evaluator& evaluator,
+                          UnlistedSearch& result) {
+  auto proposals = propose_terms(evaluator.data(), around, task.located, task.scales, task.threads, task.watch);
+  proposals = by_simulation(evaluator, around, std::move(proposals), task.threads);
+  fit_shortly(task.refiner, around.u, proposals, task.watch);
+  fit_finalists(task, around.u, proposals, terms_to_fit(proposals), kCheck, result);
+}
+
+/// Tables and short laws at the sites of the task, where no effect is active and no load is measured.
+void fit_tables(const UnlistedTask& task, const Fitted& around, const Evaluator& evaluator, UnlistedSearch& result) {
+  const Screening screening(evaluator, around, task.scales, task.threads);
+  std::vector<Candidate> candidates = unlisted_candidates(around.base, task.data);
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    return is_active(around.base, candidate.effect) || !task.located.allows(candidate.site) ||
+           is_measured_load(task.data, candidate.site);
+  });
+  Watch of_unlisted = task.watch;
+  of_unlisted.progress = [&task](Doing doing) {
+    doing.work = Work::unlisted;
+    task.watch.progress(doing);
+  };
+  const auto screened = screening.run(candidates, "unlisted", of_unlisted);
+  fit_finalists(task, around.u, screened, unlisted_finalists(screened), kRanking, result);
+}
+
+/// The best term with everything free, and with one phase for all records where it is periodic and this is no worse.
+void settle_best(const UnlistedTask& task, UnlistedSearch& result) {
+  Trial& best = result.trials[*result.best];
+  Assessed settled = task.refiner.settled(result.model.model);
+  if (settled.good()) {
+    compare_and_say(best, settled, task.beside);
+    result.model = std::move(settled);
+  }
+  if (is_periodic(best.candidate)) {
+    Assessed common = task.refiner.settled(with_common_phase(task.data, result.model.model, best.candidate));
+    if (common.good() && criterion_change(common, result.model, result.model.goodness.fitted) <= 0.0) {
+      compare_and_say(best, common, task.beside);
+      result.model = std::move(common);
+    }
+  }
+}
+
 }  // namespace
 
 bool UnlistedSearch::leaves_less_than(double share) const {
@@ -192,51 +237,21 @@ bool UnlistedSearch::reaches_noise(const Dataset& data) const {
   return best && excess_over_noise(data, model.prediction) < policy().nothing_left;
 }
 
-UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, const Assessed& beside,
-                               const Prediction& calibrated, const Located& located, const Scales& scales, bool tables,
-                               unsigned threads, const Watch& watch, int round) {
-  const Fitted around = is_within_tolerances(beside.model) ? beside.model : with_declared_values(beside.model);
-  const Evaluator evaluator = refiner.for_screening(around);
+UnlistedSearch search_unlisted(const UnlistedTask& task) {
+  const Fitted around =
+      is_within_tolerances(task.beside.model) ? task.beside.model : with_declared_values(task.beside.model);
+  const Evaluator evaluator = task.refiner.for_screening(around);
   UnlistedSearch result;
   if (is_hydraulic_axis(around.base)) {
-    auto proposals = propose_terms(evaluator.data(), around, located, scales, threads, watch);
-    proposals = by_simulation(evaluator, around, std::move(proposals), threads);
-    fit_shortly(refiner, around.u, proposals, watch);
-    const std::size_t wanted = terms_to_fit(proposals);
-    fit_finalists(data, refiner, beside, calibrated, around.u, proposals, wanted, kCheck, round, watch, result);
+    fit_terms_of_grammar(task, around, evaluator, result);
   }
   // A law that somebody has named is one more hypothesis as long as something is visible of what the grammar leaves.
-  if (tables && result.leaves_visible(data)) {
-    const Screening screening(evaluator, around, scales, threads);
-    std::vector<Candidate> candidates = unlisted_candidates(around.base, data);
-    std::erase_if(candidates, [&](const Candidate& candidate) {
-      return is_active(around.base, candidate.effect) || !located.allows(candidate.site) ||
-             is_measured_load(data, candidate.site);
-    });
-    Watch of_unlisted = watch;
-    of_unlisted.progress = [&watch](Doing doing) {
-      doing.work = Work::unlisted;
-      watch.progress(doing);
-    };
-    auto screened = screening.run(candidates, "unlisted", of_unlisted);
-    const std::size_t wanted = unlisted_finalists(screened);
-    fit_finalists(data, refiner, beside, calibrated, around.u, screened, wanted, kRanking, round, watch, result);
+  if (task.tables && result.leaves_visible(task.data)) {
+    fit_tables(task, around, evaluator, result);
   }
   if (result.best) {
     mark_tied_sites(result);
-    Trial& best = result.trials[*result.best];
-    Assessed settled = refiner.settled(result.model.model);
-    if (settled.good()) {
-      compare_and_say(best, settled, beside);
-      result.model = std::move(settled);
-    }
-    if (is_periodic(best.candidate)) {
-      Assessed common = refiner.settled(with_common_phase(data, result.model.model, best.candidate));
-      if (common.good() && criterion_change(common, result.model, result.model.goodness.fitted) <= 0.0) {
-        compare_and_say(best, common, beside);
-        result.model = std::move(common);
-      }
-    }
+    settle_best(task, result);
   }
   return result;
 }

@@ -25,12 +25,23 @@ struct UnlistedSearch {
   bool reaches_noise(const Dataset& data) const;
 };
 
-/// Screens every term of unknown law that `located` allows beside a model and fits the best jointly with everything else.
-/// `calibrated` is what the calibrated model predicts, for the veto. `tables` says whether tables and short laws are tried
-/// where the grammar leaves more than the noise: beside another term of unknown law they are not. `round` is what the trials
-/// are filed under.
-UnlistedSearch search_unlisted(const Dataset& data, const Refiner& refiner, const Assessed& beside,
-                               const Prediction& calibrated, const Located& located, const Scales& scales, bool tables,
-                               unsigned threads, const Watch& watch, int round);
+/// What a search for a term of unknown law is based on.
+struct UnlistedTask {
+  const Dataset& data;
+  const Refiner& refiner;
+  const Assessed& beside;        ///< the model that each term is tried beside
+  const Prediction& calibrated;  ///< of the calibrated model, for the veto
+  const Located& located;        ///< the sites that are searched
+  const Scales& scales;
+  /// True if tables and short laws are tried where the grammar leaves more than the noise. Beside another term of unknown
+  /// law they are not tried.
+  bool tables = true;
+  unsigned threads = 1;
+  const Watch& watch;
+  int round = 1;  ///< of the trials
+};
+
+/// Screens every term of unknown law at the sites of the task and fits the best jointly with everything else.
+UnlistedSearch search_unlisted(const UnlistedTask& task);
 
 }  // namespace hotfire::explain

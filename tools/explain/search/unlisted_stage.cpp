@@ -125,11 +125,22 @@ void UnlistedStage::refuse_misplaced_names() {
   }
 }
 
+UnlistedTask UnlistedStage::task_beside(const Assessed& model, const Located& located) const {
+  return {.data = data_,
+          .refiner = refiner_,
+          .beside = model,
+          .calibrated = result_.calibrated.prediction,
+          .located = located,
+          .scales = scales_,
+          .threads = options_.threads,
+          .watch = options_.watch,
+          .round = result_.next_round()};
+}
+
 /// Searches for a term of unknown law instead of the listed effects: once, since it is beside the calibrated model.
 void UnlistedStage::look_instead() {
   if (!instead_) {
-    instead_ = search_unlisted(data_, refiner_, result_.calibrated, result_.calibrated.prediction, located(), scales_, true,
-                               options_.threads, options_.watch, result_.next_round());
+    instead_ = search_unlisted(task_beside(result_.calibrated, located()));
     instead_trials_ = result_.trials.size();
     result_.trials.insert(result_.trials.end(), instead_->trials.begin(), instead_->trials.end());
   }
@@ -183,9 +194,9 @@ void UnlistedStage::add_beside() {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
-    const UnlistedSearch beside =
-        search_unlisted(data_, refiner_, result_.explained, result_.calibrated.prediction, locate_explained(), scales_,
-                        !has_unlisted(), options_.threads, options_.watch, result_.next_round());
+    UnlistedTask task = task_beside(result_.explained, locate_explained());
+    task.tables = !has_unlisted();
+    const UnlistedSearch beside = search_unlisted(task);
     const std::size_t first = result_.trials.size();
     result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
     if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||

@@ -42,6 +42,7 @@ class UnlistedStage {
   bool is_unlisted(const Kept& kept) const;
   bool has_unlisted() const;
   Located locate_about(const Assessed& model) const;
+  UnlistedTask task_beside(const Assessed& model, const Located& located) const;
   const Located& located();
   void take_out_names(const std::string& why);
   void refuse_misplaced_names();
