@@ -39,6 +39,7 @@ constexpr std::size_t kTermFinalists = 2;
 constexpr std::size_t kFittedOfSite = 3;
 /// Finalists in the place of those that something speaks against.
 constexpr std::size_t kReplaced = 4;
+
 /// True if a term on a signal makes it fall where it is asked to rise. No amplifier and no valve does: such a table imitates
 /// something that it does not depend on, and an axis that meets it beyond these records sticks where it falls.
 bool falls_as_it_rises(const Fitted& model, const Candidate& candidate) {
