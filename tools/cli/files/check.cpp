@@ -203,7 +203,7 @@ void add_check(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "check",
-      "Check model files, profiles, CAN schedules, records and recordings; each problem has its place and a remedy");
+      "Check model files, profiles, CAN schedules, records and recordings; print the place and the remedy of each problem");
   command
       ->add_option("FILE", options->files,
                    "model files, profiles and CAN schedules (.toml), records (.csv, candump .log, .mf4, .h5, .mat) and "

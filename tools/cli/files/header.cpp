@@ -85,7 +85,7 @@ void add_header(CLI::App& program) {
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
       "Example: hotfire header --model axis.toml --output axis_image.hpp --name kAxisImage\n"
-      "The header is for hotfire::model::parameters_of: docs/interfaces/small-targets.md.");
+      "The function hotfire::model::parameters_of reads the array: docs/interfaces/small-targets.md.");
   command->callback([options] { run_header(*options); });
 }
 
