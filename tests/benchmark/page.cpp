@@ -277,8 +277,9 @@ void Collector::ReportRuns(const std::vector<Run>& runs) {
 std::string performance_page(const Results& measured) {
   std::string text =
       "# Performance\n\n"
-      "This page gives the cost of a step of the model, and compares its accuracy and cost with those of a general-purpose\n"
-      "integrator. Use it to choose a period, a step and a processor. TAOS is one engine with two axes. MASV is four "
+      "With this page you can choose a period, a step and a processor. It gives the cost of a step of the model, and "
+      "compares its\n"
+      "accuracy and cost with those of a general-purpose integrator. TAOS is one engine with two axes. MASV is four "
       "engines with\n"
       "eight axes on one structure.\n"
       "\n"
