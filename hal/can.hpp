@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaxCanSenders = 32;
 /// Frames that one `receive` takes in.
 inline constexpr std::size_t kMaxCanArrivals = 256;
 
-/// What identifies a frame of a bus: 11 bits, or 29 if extended.
+/// The identifier of a frame: 11 bits, or 29 if extended.
 struct CanId {
   std::uint32_t value = 0;
   bool extended = false;
@@ -34,7 +34,7 @@ struct CanFrame {
   std::span<const std::uint8_t> bytes() const noexcept { return {data.data(), length}; }
 };
 
-/// A frame that a program listens to. One of the other format (classic, FD) under the same id is not taken.
+/// A frame that a program receives. A frame of the other format (classic, FD) under the same id is not received.
 struct CanSubscription {
   CanId id;
   bool fd = false;
@@ -57,7 +57,7 @@ struct CanArrival {
   std::int64_t arrived_ns = 0;  ///< on CLOCK_MONOTONIC, by the kernel's stamp
 };
 
-/// How a bus is, best first. Bus-off and down are kept until a person's `rearm`, whatever the bus says later.
+/// The state of a bus, best first. Bus-off and down stay until a person's `rearm`, even if the bus recovers.
 enum class CanState : std::uint8_t { good, warning, passive, bus_off, down };
 inline constexpr std::array<const char*, 5> kCanStates{"good", "warning", "passive", "bus-off", "down"};
 

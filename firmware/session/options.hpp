@@ -15,11 +15,11 @@
 
 namespace hotfire::firmware {
 
-/// What gives a plant its cycles: the machine's clock, syncs on the clock that replace those of a rig, or SYNC frames.
+/// The trigger of a plant's cycles: the machine's clock, simulated syncs of a rig, or SYNC frames.
 enum class PaceKind : std::uint8_t { clock, sim, can };
 inline constexpr std::array<std::string_view, 3> kPaceKinds{"clock", "sim", "can"};
 
-/// How the kernel is asked to schedule a loop: first-in first-out at a priority, or by the deadline of each cycle.
+/// Scheduling of a loop by the kernel: first-in first-out at a priority, or by the deadline of each cycle.
 enum class Scheduler : std::uint8_t { fifo, deadline };
 inline constexpr std::array<std::string_view, 2> kSchedulers{"fifo", "deadline"};
 
