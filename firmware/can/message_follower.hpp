@@ -26,7 +26,7 @@ struct MessageCounters {
 
   /// Damaged on the way, or lost there.
   std::uint64_t damaged() const noexcept { return refused + skipped; }
-  /// What one sender alone does not do.
+  /// Frames that a single sender does not send.
   std::uint64_t of_two_senders() const noexcept { return repeated + backward + too_many; }
 };
 

@@ -33,7 +33,7 @@ struct InterlockSettings {
   std::uint32_t most_stopping = 0;  ///< after which a stopping rig is safe, whether it is at rest or not
 };
 
-/// What an interlock sees in one cycle.
+/// The inputs of an interlock in one cycle.
 struct InterlockInputs {
   FaultSet causes;             ///< faults whose cause is present now
   bool arm = false;            ///< what the line of the arm button says

@@ -46,7 +46,7 @@ struct LabInputs {
   bool stop = false;
 };
 
-/// What it does in that cycle.
+/// The outputs of a lab in that cycle.
 struct LabOutputs {
   InterlockOutputs interlock;
   PerActuator commands{};  ///< [rad]; finite

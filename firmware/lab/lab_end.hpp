@@ -31,7 +31,7 @@ class LabLeaving {
   std::uint64_t waited_ = 0;    ///< cycles
 };
 
-/// What the end of a lab has reached.
+/// The result of the end of a lab.
 struct LabEnd {
   bool lines_dropped = true;  ///< every output is off
   bool left_the_bus = true;   ///< no command is before the bus

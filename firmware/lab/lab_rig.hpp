@@ -24,22 +24,21 @@
 
 namespace hotfire::firmware {
 
-/// A lab on its bus and lines. For the loop it is plant and bus in one: a cycle reads the bus and the lines, looks for
-/// faults, sets the lines, and then sends the currents of that cycle if anything may be driven. `Can` has the ids of
+/// A lab on its bus and lines. For the loop it is both plant and bus. A cycle reads the bus and the lines, checks for faults
+/// and sets the lines. It then sends the currents of that cycle if anything may be driven. `Can` has the ids of
 /// `can::controller_ids`, with load pressures if the lab has a limit of them.
 ///
-/// Every frame of a cycle is checked, not only the newest: one that is damaged, lost, dropped by the kernel or of another
-/// format is a bad frame; a counter twice or of the past, more frames than are due, or a frame under an id of the lab's own
-/// is a second sender.
+/// Every frame of a cycle is checked, not only the newest. A frame that is damaged, lost, dropped by the kernel or of
+/// another format is a bad frame. A repeated or earlier counter, a surplus frame, or a frame under an id of the lab is a
+/// second sender.
 ///
-/// When driving ends, a command that is still before the bus one cycle later is taken back with `stop`, so that it does not
-/// leave when the bus can be used again. Where the kernel refuses that, it is asked again every kTakeBackEveryNs, and until
-/// it does so the rig is faulted.
+/// After driving ends, a command that still waits one cycle later is taken back with `stop`, so that it cannot leave later.
+/// If the kernel refuses this, it is asked again every kTakeBackEveryNs. The rig is faulted until it agrees.
 ///
 /// The program may end (`ended`) when that is decided, the lines are set and the read-backs agree (`LabLeaving`).
 ///
-/// After bus-off, down or a command that was taken back, the first press of the arm button, which the interlock refuses,
-/// takes the bus into use again, with what is heard from then on, and the next one arms.
+/// After bus-off, down or a command that was taken back, the interlock refuses the first press of the arm button. This press
+/// puts the bus into use again, without earlier frames. The next press arms.
 template <hal::CanBus Can, hal::GpioLines Gpio, hal::Clock Clock>
 class LabRig {
  public:
@@ -156,7 +155,7 @@ class LabRig {
   void add_to(hal::Fnv1a& hash) const noexcept { lab_.add_to(hash); }
 
   const Lab& lab() const noexcept { return lab_; }
-  /// What the lab has seen in this cycle.
+  /// The inputs of the lab in this cycle.
   const LabInputs& inputs() const noexcept { return inputs_; }
   /// Messages that the lab receives: those of the pistons, then the load pressures.
   std::size_t messages() const noexcept { return messages_; }

@@ -47,7 +47,7 @@ struct LoopSettings {
   bool number_skipped = false;
 };
 
-/// What a loop leaves behind.
+/// The result of a loop.
 struct LoopResult {
   explicit LoopResult(std::int64_t period_ns) noexcept : account(period_ns) {}
 

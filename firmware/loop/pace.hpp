@@ -10,7 +10,7 @@
 
 namespace hotfire::firmware {
 
-/// How a cycle came to begin.
+/// The cause of the start of a cycle.
 struct Wake {
   std::int64_t release_ns = 0;  ///< when it was due
   std::int64_t woken_ns = 0;

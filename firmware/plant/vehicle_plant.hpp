@@ -194,7 +194,7 @@ class VehiclePlant {
     return thrust;
   }
 
-  /// What acts on the engines in a plant step of the cycle: faults add to a recorded torque, and replace a recorded thrust.
+  /// The loads on the engines in a plant step of the cycle: faults add to a recorded torque, and replace a recorded thrust.
   void put_loads(int step) noexcept {
     const std::uint64_t cycle = readings_.cycle();
     for (std::size_t axis = 0; axis < actuators(); ++axis) {

@@ -39,13 +39,13 @@ struct RunOptions {
   std::string command_line;
 };
 
-/// Of a run that is started with the number of its actuators and with the commands that it makes up.
+/// Of a run with a number of actuators and with commands that the program generates.
 struct CommandedRunOptions : RunOptions {
   bool actuators_given = false;  ///< else a vehicle says how many there are
   hal::sim::CommandSource source;
 };
 
-/// Of a run of an image, and the recording of which the image becomes a part.
+/// Of a run of an image, and of its recording, which contains the image.
 struct ImageOptions {
   std::string image;  ///< path of a plant image or of a lab's; empty: the reference plant with every effect (timing only)
   std::string recording;   ///< path to write to; empty: none

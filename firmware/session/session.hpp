@@ -18,7 +18,7 @@
 
 namespace hotfire::firmware {
 
-/// What became of a lab's profile.
+/// The result of a lab's profile.
 struct LabAccount {
   RigState state = RigState::safe;  ///< when the loop ended
   bool completed = false;           ///< the profile was run to its end

@@ -59,7 +59,7 @@ constexpr std::size_t cycle_bytes(std::size_t actuators, std::size_t readings) n
   return sizeof(CycleHead) + sizeof(double) * (actuators + readings);
 }
 
-/// What precedes every block.
+/// The head of every block.
 struct BlockHead {
   enum Kind : std::uint32_t { kCycles = 0, kEnd = 1 };
   static constexpr std::uint64_t kMagic = 0x314b434f4c424648;  // the bytes "HFBLOCK1"

@@ -8,7 +8,7 @@
 
 namespace hotfire::hal {
 
-/// Why a recording goes no further.
+/// The reason why a recording ends.
 struct SinkRefusal {
   std::string why;
   /// True: the disk refused a request, and a part of the data may be lost. False: a limit was reached that the options set.
