@@ -191,7 +191,7 @@ TEST(ImportCandump, unit_is_that_of_the_dbc_file_or_agrees_with_it) {
   const Record scaled = imported(with(with(kMap, "unit = \"mm\"", "unit = \"m\""), "factor = -1", "factor = 0.001"), log());
   DOUBLES_EQUAL(3e-3, scaled.find("piston")->values[3], 1e-12);
   expect_message(refused(with(with(kMap, "FEEDBACK.POSITION", "TEMPERATURE"), "unit = \"mm\"\n", ""), log()),
-                 {"map.toml:6: channels.piston: unit: missing", "\"Schritte\", which is no known unit"});
+                 {"map.toml:6: channels.piston: unit: missing", "\"Schritte\", which is not a known unit"});
 }
 
 TEST(ImportCandump, what_is_no_line_of_a_log_or_no_frame_of_its_message_is_refused_with_its_line) {

@@ -35,7 +35,7 @@ void require_identifier(const std::string& name) {
   }
 }
 
-/// An entry of `model::ImageEntry` for a line `key value` of a plant image. A value that is no number is a word.
+/// An entry of `model::ImageEntry` for a line `key value` of a plant image. A value that is not a number is a word.
 std::string entry_of(const std::string& line) {
   const std::size_t space = line.find(' ');
   const std::string key = line.substr(0, space);

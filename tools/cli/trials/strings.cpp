@@ -35,7 +35,7 @@ analysis::AngleCalibration calibration_of(const StringOptions& options, std::siz
   try {
     return analysis::AngleCalibration(settled);
   } catch (const std::invalid_argument& problem) {
-    throw FileError(fmt::format("{}: {} poses are held for {:g} s; {}; --hold says for how long a pose is held",
+    throw FileError(fmt::format("{}: {} poses are held for {:g} s; {}; --hold sets the time for which a pose is held",
                                 options.settled, poses, options.hold, problem.what()));
   }
 }

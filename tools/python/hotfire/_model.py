@@ -14,7 +14,7 @@ from ._toml import text_of
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a model: its value in SI, what it may be, and what it means."""
+    """A parameter of a model: its value in SI, allowed range and meaning."""
 
     key: str
     value: float
