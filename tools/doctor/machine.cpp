@@ -37,7 +37,7 @@ Finding preemption(const Patient& patient) {
   }
   if (version.find("PREEMPT_DYNAMIC") != std::string::npos) {
     return {"preemption", Level::advice,
-            "the kernel is preempted at chosen points only, it was not booted with preempt=full",
+            "the kernel can be preempted at certain points only, because it was not booted with preempt=full",
             std::string("boot with preempt=full: ") + kBootOptions};
   }
   return {"preemption", Level::bad, "the kernel is not preempted while it works for another process",

@@ -147,11 +147,12 @@ std::string line_of(const Json& result) {
                        joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].get<std::size_t>());
   }
   if (result["kind"] == "profile") {
+    const auto actuators = result["actuators"].get<unsigned>();
     return fmt::format(
-        "profile of {} actuators, {:g} s long, digest {}; to run it: hotfire lab --profile {} --bus can0 --gpio CHIP "
+        "profile of {} {}, {:g} s long, digest {}; to run it: hotfire lab --profile {} --bus can0 --gpio CHIP "
         "--record run.hfr --confirm {}",
-        result["actuators"].get<unsigned>(), result["duration"].get<double>(), result["digest"].get<std::string>(),
-        result["file"].get<std::string>(), result["digest"].get<std::string>());
+        actuators, actuators == 1 ? "actuator" : "actuators", result["duration"].get<double>(),
+        result["digest"].get<std::string>(), result["file"].get<std::string>(), result["digest"].get<std::string>());
   }
   if (result["kind"] == "schedule") {
     return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",
