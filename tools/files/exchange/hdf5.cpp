@@ -145,7 +145,7 @@ class Datasets {
     put_text(bytes_, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
   }
 
-  /// Why the values of a dataset cannot be had; empty: they can.
+  /// Reads the values of a dataset. Returns the reason if they are not available.
   static std::string read(hid_t dataset, std::vector<double>& values) {
     const Handle space(H5Dget_space(dataset), H5Sclose);
     const Handle type(H5Dget_type(dataset), H5Tclose);
