@@ -70,7 +70,7 @@ TEST(DoctorMachine, CpuOfTheLoopHasToBeAmongTheIsolatedOnesAndWithoutTick) {
   patient.cpu = 3;
   expect_remedy(found("isolation"), Level::advice, "CPU 3 is not isolated (isolated: 1-2)", "isolcpus=3");
   files.put("sys/devices/system/cpu/isolated", "");
-  expect_remedy(found("isolation"), Level::advice, "none is", "isolcpus=3");
+  expect_remedy(found("isolation"), Level::advice, "no CPU is", "isolcpus=3");
   files.put("sys/devices/system/cpu/isolated", "3");
   expect_remedy(found("isolation"), Level::advice, "has a timer tick", "nohz_full=3");
   patient.cpu.reset();
