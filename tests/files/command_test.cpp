@@ -230,7 +230,7 @@ TEST(Command, stiffness_of_a_test_is_read_again_from_its_record_with_the_model_b
   LONGS_EQUAL(2, status_of(of_bench + " --from 9 --to 5"));
   expect_message(err, {"--from 9 --to 5", "--from below --to"});
   LONGS_EQUAL(6, status_of(of_bench + " --record " + kept + " --from 12 --to 20"));
-  expect_message(err, {"sines.csv: piston has no notch from 12 to 20 Hz", "--from and --to say"});
+  expect_message(err, {"sines.csv: piston has no notch from 12 to 20 Hz", "--from and --to set"});
   LONGS_EQUAL(0, status_of("simulate --model " + bench + " --output " + kept + " --input " +
                            scratch.write("ramp.csv", ramp()).string()));
   LONGS_EQUAL(6, status_of(of_bench + " --record " + kept));
