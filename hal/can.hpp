@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaxCanSenders = 32;
 /// Frames that one `receive` takes in.
 inline constexpr std::size_t kMaxCanArrivals = 256;
 
-/// What identifies a frame of a bus: 11 bits, or 29 if extended.
+/// The identifier of a frame: 11 bits, or 29 if extended.
 struct CanId {
   std::uint32_t value = 0;
   bool extended = false;
@@ -34,7 +34,7 @@ struct CanFrame {
   std::span<const std::uint8_t> bytes() const noexcept { return {data.data(), length}; }
 };
 
-/// A frame that a program listens to. One of the other format (classic, FD) under the same id is not taken.
+/// A frame that a program receives. A frame of the other format (classic, FD) under the same id is not received.
 struct CanSubscription {
   CanId id;
   bool fd = false;
@@ -57,7 +57,7 @@ struct CanArrival {
   std::int64_t arrived_ns = 0;  ///< on CLOCK_MONOTONIC, by the kernel's stamp
 };
 
-/// How a bus is, best first. Bus-off and down are kept until a person's `rearm`, whatever the bus says later.
+/// The state of a bus, best first. Bus-off and down stay until a person's `rearm`, even if the bus recovers.
 enum class CanState : std::uint8_t { good, warning, passive, bus_off, down };
 inline constexpr std::array<const char*, 5> kCanStates{"good", "warning", "passive", "bus-off", "down"};
 
@@ -76,26 +76,28 @@ struct CanCounters {
   std::uint64_t state_changes = 0;  ///< of CanState
 };
 
-/// What became of a frame.
+/// Result of an attempt to send a frame.
 enum class CanSend : std::uint8_t { taken, pending, queue_full, unusable };
 
 /// One bus of a cyclic program.
 ///
-/// - `receive(now_ns)`: takes in all that has arrived, `now_ns` being the loop's time. Once a cycle. Never blocks; bounded.
-/// - `mailbox(i)`: the newest frame of subscription `i`; the older ones are dropped and counted.
-/// - `arrivals()`: every frame of a subscription that the last `receive` took in, oldest first, so that a program can check
-///   those too that a newer one has overtaken. Of more than kMaxCanArrivals the later ones are dropped and counted.
-/// - `in_time(i, now_ns)`: there is one, and it is no older than its age limit.
-/// - `try_send(frame)`: hands the frame over now, or drops it and says why. Never blocks, never queues behind an older frame
-///   of the same id, never retries: the next cycle has a newer one. The id is one of those named at set-up.
-/// - `state()`, `counters()`: since set-up. Bus-off and down make `try_send` refuse.
-/// - `anything_pending()`: a frame was handed over that is not known to be out.
-/// - `stop()`: from its return on, nothing that was handed over leaves any more; false if that cannot be had. Outside the
-///   cycle, as it may block. `try_send` then refuses.
-/// - `rearm()`: a person's decision to use the bus again after bus-off, down or `stop`; false if it is still down. Outside
-///   the cycle.
+/// - `receive(now_ns)`: takes all frames that have arrived; `now_ns` is the loop's time. Call it once a cycle. Never blocks;
+///   bounded.
+/// - `mailbox(i)`: the newest frame of subscription `i`; older ones are dropped and counted.
+/// - `arrivals()`: every frame of a subscription that the last `receive` took, oldest first. A program can therefore also
+///   check frames that a newer one supersedes. Frames beyond kMaxCanArrivals are dropped and counted.
+/// - `in_time(i, now_ns)`: there is a frame, and it is not older than its age limit.
+/// - `try_send(frame)`: gives the frame to the bus now, or drops it and returns the reason. Never blocks, never queues
+///   behind an older frame of the same id, never retries: the next cycle has a newer one. The id is one of those named at
+///   set-up.
+/// - `state()`, `counters()`: since set-up. After bus-off and down, `try_send` refuses.
+/// - `anything_pending()`: the bus has not confirmed every frame that it was given.
+/// - `stop()`: no frame that was given to the bus leaves after its return; false if that cannot be ensured. Call it outside
+///   the cycle, because it may block. `try_send` then refuses.
+/// - `rearm()`: a person's decision to use the bus again after bus-off, down or `stop`; false if it is still down. Call it
+///   outside the cycle.
 ///
-/// All but `stop` and `rearm` without allocation, lock or exception.
+/// All except `stop` and `rearm` without allocation, lock or exception.
 template <class B>
 concept CanBus = requires(B& bus, const B& seen, const CanFrame& frame, std::size_t i, std::int64_t now_ns) {
   { bus.receive(now_ns) }

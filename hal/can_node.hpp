@@ -8,11 +8,11 @@
 
 namespace hotfire::hal {
 
-/// What every backend of `CanBus` keeps in the same way: mailboxes, pending frames, state and counters. A backend feeds it
-/// what the bus says. No allocation after construction.
+/// The part of `CanBus` that is the same for every backend: mailboxes, pending frames, state and counters. A backend reports
+/// the events of the bus to it. No allocation after construction.
 class CanNode {
  public:
-  /// `senders` are the ids that are sent; more than kMaxCanSubscriptions or kMaxCanSenders are left out.
+  /// `senders` are the ids that are sent. Entries beyond kMaxCanSubscriptions or kMaxCanSenders are left out.
   CanNode(std::span<const CanSubscription> subscriptions, std::span<const CanId> senders) noexcept
       : subscribed_(std::min(subscriptions.size(), kMaxCanSubscriptions)),
         sending_(std::min(senders.size(), kMaxCanSenders)) {
@@ -20,7 +20,7 @@ class CanNode {
     std::copy_n(senders.begin(), sending_, senders_.begin());
   }
 
-  /// A receive begins: what was fresh is seen now.
+  /// Begins a receive: frames that were new are not new any more.
   void begin_receive() noexcept {
     arrived_ = 0;
     for (std::size_t i = 0; i < subscribed_; ++i) {
@@ -51,7 +51,7 @@ class CanNode {
     ++(sender(frame.id) < sending_ ? counters_.impostors : counters_.foreign);
   }
 
-  /// The bus says that a frame of this id, sent by this node, is out.
+  /// The bus confirms that a frame of this id, sent by this node, has left.
   void confirm(const CanId& id) noexcept {
     const std::size_t i = sender(id);
     if (i < sending_ && pending_[i]) {
@@ -60,7 +60,7 @@ class CanNode {
     }
   }
 
-  /// May a frame of this id be handed over? Else why not, counted.
+  /// Whether a frame of this id may be given to the bus. If not, the reason, counted.
   CanSend may_send(const CanId& id) noexcept {
     const std::size_t i = sender(id);
     if (i == sending_ || stopped_ || state_ >= CanState::bus_off) {
@@ -80,7 +80,7 @@ class CanNode {
     ++counters_.sent;
   }
 
-  /// The controller reports another state; the worst two stay.
+  /// The controller reports another state. The worst two states stay.
   void change_state(CanState state) noexcept {
     if (state != state_ && (state_ < CanState::bus_off || state > state_)) {
       state_ = state;
@@ -90,7 +90,7 @@ class CanNode {
 
   void stop() noexcept { stopped_ = true; }
 
-  /// Forgets bus-off, down and stop, what is pending, and every mailbox: what arrived before is no reading of today.
+  /// Clears bus-off, down and stop, the pending frames, and every mailbox: an earlier frame is not a present reading.
   void rearm() noexcept {
     stopped_ = false;
     counters_.state_changes += state_ == CanState::good ? 0 : 1;
@@ -143,8 +143,8 @@ class CanNode {
   CanCounters counters_;
 };
 
-/// The part of `CanBus` that a backend answers from its node. What the program may read is public, the node is the
-/// backend's.
+/// The part of `CanBus` that a backend delegates to its node. Public calls are for the program; the node belongs to the
+/// backend.
 class OnCanNode {
  public:
   const CanMailbox& mailbox(std::size_t i) const noexcept { return node_.mailbox(i); }

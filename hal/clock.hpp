@@ -6,11 +6,11 @@
 
 namespace hotfire::hal {
 
-/// The time that the loop runs by.
+/// The clock of the loop.
 ///
-/// - `now_ns()`: monotonic, never set back or forth by anyone, same origin for the life of the process. Does not block.
-/// - `sleep_until_ns(t)`: returns at or after the absolute time `t`, at once if it has passed. A signal does not cut it
-///   short. The only call of the loop that blocks.
+/// - `now_ns()`: monotonic, never set by anyone, with the same origin for the life of the process. Does not block.
+/// - `sleep_until_ns(t)`: returns at or after the absolute time `t`, at once if it has passed. A signal does not interrupt
+///   it. The only call of the loop that blocks.
 ///
 /// Both without allocation, lock or exception.
 template <class C>

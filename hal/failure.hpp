@@ -6,13 +6,13 @@
 
 namespace hotfire::hal {
 
-/// Why a step of a set-up was refused by the machine, and what a person does about it.
+/// The reason why the machine refused a step of a set-up, and the remedy.
 struct Failure {
   std::string what;
   std::string remedy;
 };
 
-/// That a call of the system failed with `error`, a value of errno.
+/// A system call failed with `error`, a value of errno.
 inline Failure failed_call(const std::string& call, int error, const std::string& remedy) {
   return {call + ": " + std::strerror(error), remedy};
 }

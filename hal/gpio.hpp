@@ -10,7 +10,7 @@
 
 namespace hotfire::hal {
 
-/// A line of a GPIO chip. Its level here is logical: true is active, which an active-low line is when it carries no voltage.
+/// A line of a GPIO chip. Its level here is logical: true is active. An active-low line is active at zero voltage.
 struct GpioInput {
   std::string line;  ///< the name the chip gives it
   bool active_low = false;
@@ -46,14 +46,14 @@ using GpioLevels = std::uint32_t;
 
 /// The GPIO lines of a cyclic program.
 ///
-/// - `try_read(levels)`: the inputs now; false, and `levels` untouched, if they cannot be read, which is to be taken for the
-///   worst they could say.
+/// - `try_read(levels)`: the inputs now. False, with `levels` unchanged, if they cannot be read: assume the worst levels
+///   then.
 /// - `try_write(levels)`: sets every output; false if they cannot be set.
-/// - `read_edges(edges)`: how many changes it took in, oldest first of each line; call it until it fills less than it could.
-///   Never waits for one.
-/// - `lost_edges()`: changes that are known to be missing from what `read_edges` gave.
-/// - outputs have their safe level from the moment they are requested, and again when the object ends. What a line does
-///   after that is the board's matter: wire it so that inactive is safe.
+/// - `read_edges(edges)`: returns the number of changes that it took, for each line the oldest first. Call it until it
+///   returns less than its capacity. Never waits for a change.
+/// - `lost_edges()`: changes that are known to be missing in the results of `read_edges`.
+/// - Outputs have their safe level from the moment they are requested, and again when the object ends. After that the board
+///   determines the level of a line: wire it so that inactive is safe.
 ///
 /// All without allocation, lock or exception. On a chip behind I2C, SPI or USB the first two wait for its bus.
 template <class G>

@@ -10,8 +10,8 @@
 
 namespace hotfire::hal {
 
-/// A thread beside a real-time loop, for what may wait: an ordinary process on any CPU of this one, whatever the thread that
-/// starts it is or becomes. It gets no signals, and its stack is small, since locked memory counts all of it.
+/// A thread beside a real-time loop, for work that may wait. It is an ordinary process on any CPU of this process, whatever
+/// the thread that starts it is or becomes. It gets no signals. Its stack is small, because locked memory counts all of it.
 class OrdinaryThread {
  public:
   OrdinaryThread() = default;
@@ -19,10 +19,10 @@ class OrdinaryThread {
   OrdinaryThread(const OrdinaryThread&) = delete;
   OrdinaryThread& operator=(const OrdinaryThread&) = delete;
 
-  /// To be called before the calling thread is bound to a CPU. The body must not throw.
+  /// Call it before the calling thread is bound to a CPU. The body must not throw.
   std::optional<Failure> start(std::function<void()> body);
 
-  /// Waits for the end of the body. Nothing if it was not started.
+  /// Waits for the end of the body. Does nothing if it was not started.
   void join();
 
   bool running() const noexcept { return running_; }

@@ -12,13 +12,13 @@ inline constexpr std::size_t kMaxActuators = 8;
 inline constexpr std::size_t kMaxReadings = 3 * kMaxActuators;
 inline constexpr std::size_t kMaxStrings = 2 * kMaxActuators;
 
-/// What a controller asks of the plant: one value an actuator, in the plant's SI unit.
+/// The commands of a controller to the plant: one value for each actuator, in the plant's SI unit.
 struct Command {
   std::array<double, kMaxActuators> values{};
   std::uint64_t sequence = 0;  ///< counted by the sender
 };
 
-/// What the plant's sensors read, actuator after actuator.
+/// The readings of the plant's sensors, actuator after actuator.
 struct Reading {
   std::array<double, kMaxReadings> values{};
   std::size_t count = 0;                      ///< how many of `values` are used
@@ -31,9 +31,9 @@ struct Reading {
 
 /// The plant's side of the wire to a controller.
 ///
-/// - `try_receive_command(command)`: the newest command that has arrived since the last call, older ones are dropped; false
-///   and `command` untouched if none has. Never blocks.
-/// - `try_send_reading(reading)`: hands the reading to the wire now, or drops it and returns false. Never blocks, never
+/// - `try_receive_command(command)`: the newest command since the last call; older ones are dropped. False, with `command`
+///   unchanged, if none has arrived. Never blocks.
+/// - `try_send_reading(reading)`: gives the reading to the wire now, or drops it and returns false. Never blocks, never
 ///   queues, never retries: the next cycle has a newer one.
 ///
 /// Both without allocation, lock or exception.

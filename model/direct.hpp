@@ -49,8 +49,8 @@ class Direct {
     std::array<S, 1> measured{};
   };
 
-  /// The longest step [s] at these parameters: a tenth of a radian of the mass's own oscillation. What is not linear is held
-  /// over a step, which is wrong by a 24th of the square of that angle: 0.04 % of it. A mass without a spring moves slowly.
+  /// The longest step [s] at these parameters: a tenth of a radian of the mass's own oscillation. Nonlinear terms are held
+  /// over a step. The error of this is a 24th of the square of that angle: 0.04 %. A mass without a spring moves slowly.
   static double longest_step(const Parameters& parameters) noexcept {
     constexpr double kAngle = 0.1;
     constexpr double kShortestStep = 5e-6;  // s: bounds the steps of a real-time period

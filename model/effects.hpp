@@ -40,7 +40,7 @@
 
 namespace hotfire::model {
 
-/// Every effect a hydraulic axis knows. At serial sites the order is the order of application: along the signal path for
+/// Every effect of a hydraulic axis. At serial sites the order is the order of application: along the signal path for
 /// command and valve; at the load spring geometry first, then play, then the spring itself.
 using SimplexEffects =
     EffectList<CommandScale, RateLimit, CommandDelay, UnlistedSignal<Site::command>, Term<Site::command>,
@@ -52,9 +52,9 @@ using SimplexEffects =
                SensorNonlinearity, UnlistedWiperPlay, UnlistedReading, UnlistedDrift, UnlistedRipple, Term<Site::sensor, 0>,
                Term<Site::sensor, 1>, SensorLag, SensorDelay, SensorScale>;
 
-/// Every effect an axis of a `Masv` knows, in the same order. What the vehicle has itself is not among them: geometry, modes
-/// and the friction of its bearings. Nor are the delays of command and sensors, whose memory of 24 KiB an axis would be most
-/// of the state of eight. A `Taos` knows the whole list.
+/// Every effect of an axis of a `Masv`, in the same order. Effects that the vehicle itself contains are left out: geometry,
+/// modes and the friction of its bearings. The delays of command and sensors are left out too: their memory of 24 KiB an
+/// axis would be most of the state of eight. A `Taos` has the whole list.
 using MasvEffects =
     EffectList<RateLimit, ValveBias, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction, Backlash,
                SoftStiffness, DuctHardening, TorqueOffset, CrossAxis, SensorNonlinearity, SensorLag>;

@@ -9,8 +9,8 @@
 
 namespace hotfire::model {
 
-/// The full name of a parameter as plant images and messages write it: "engine.inertia",
-/// "effects.gimbal_friction.coulomb_torque", "pitch2.engine.inertia". Without heap, so that the model can hand it out.
+/// The full name of a parameter in plant images and messages: "engine.inertia", "effects.gimbal_friction.coulomb_torque",
+/// "pitch2.engine.inertia". It needs no heap, so the model can return it.
 class KeyText {
  public:
   /// `prefix` is of the caller that has several of such sections, "pitch2." say, or empty.

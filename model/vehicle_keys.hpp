@@ -70,8 +70,9 @@ void visit_modes(Modes& modes, Sensors& sensors, Visitor& visitor) {
 
 }  // namespace detail
 
-/// Shows everything that makes a vehicle with its sensors to a visitor, under its full key. The keys of an axis begin with
-/// "pitch1.", "yaw1.", "pitch2." and so on, those of an engine with "engine1.". Beside what `visit_keys` asks of a visitor:
+/// Gives every number of a vehicle with its sensors to a visitor, with its full key. The keys of an axis begin with
+/// "pitch1.", "yaw1.", "pitch2." and so on, those of an engine with "engine1.". In addition to the calls of `visit_keys`, a
+/// visitor has:
 /// - `list(key, lower, upper, values)`: numbers between these bounds, a `std::span`;
 /// - `count(key, most, count)`: a whole number from 0 on, an `int`.
 /// Set-up only. The values that the visitor sees are const if `instrumented` is (`InstrumentedVehicle`).

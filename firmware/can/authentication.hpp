@@ -13,17 +13,17 @@ namespace hotfire::firmware::can {
 
 using AuthenticationKey = std::array<std::uint8_t, 16>;
 
-/// Proves that a frame comes from who has the key, and is new. A message that can be authenticated ends with 32 bits of
-/// freshness and a code of 64 bits: the first half of CMAC-AES-128 (NIST SP 800-38B; RFC 4493) over data id, freshness (64
-/// bits) and the frame's bytes from its counter to its freshness, numbers little-endian. The shape is that of AUTOSAR's
-/// Secure Onboard Communication. The check of the frame covers freshness and code too.
+/// Proves that a frame is new and comes from a sender with the key. A message that can be authenticated ends with 32 bits of
+/// freshness and a code of 64 bits. The code is the first half of CMAC-AES-128 (NIST SP 800-38B; RFC 4493) over data id,
+/// freshness (64 bits) and the bytes of the frame from its counter to its freshness. Numbers are little-endian. This is the
+/// structure of AUTOSAR's Secure Onboard Communication. The check of the frame covers freshness and code too.
 ///
-/// Freshness is the sender's real time in microseconds, of which a frame has the lower half; it is never given twice. A
-/// frame is taken if it is newer than the last one of its message and no further from the receiver's own time than a
-/// tolerance, so that both clocks have to agree to that, and a replayed frame is refused, after a restart too unless it is
-/// younger than the tolerance.
+/// Freshness is the sender's real time in microseconds. A frame has its lower half. A sender never uses a value twice. A
+/// receiver accepts a frame if it is newer than the last one of its message and within a tolerance of the receiver's own
+/// time. Both clocks must therefore agree to that tolerance. A replayed frame is refused, unless the receiver has restarted
+/// and the frame is younger than the tolerance.
 ///
-/// All memory is its own: no call allocates, and none fails.
+/// The object has all its memory: no call allocates, and none fails.
 class Authentication {
  public:
   using RealTime = std::int64_t (*)() noexcept;  ///< [ns] since any beginning that sender and receiver share

@@ -12,13 +12,13 @@
 
 namespace hotfire::firmware {
 
-/// What became of the frames of a message that a program listened to.
+/// Counts of the frames of a message that a program receives.
 struct MessageAccount {
   std::string_view name;
   can::MessageCounters counters;
 };
 
-/// What a program's CAN bus has been like, for its report.
+/// State and counters of a program's CAN bus, for its report.
 struct BusAccount {
   std::string interface;
   can::Layout layout = can::Layout::classic;
@@ -32,7 +32,7 @@ struct BusAccount {
   std::uint64_t unsayable = 0;     ///< frames not sent because a value is beyond its signal
   std::uint64_t lost_syncs = 0;    ///< not sent
 
-  /// Frames that are not as they should be: lost, damaged, repeated or out of order.
+  /// Faulty frames: lost, damaged, repeated or out of order.
   std::uint64_t lost() const noexcept {
     std::uint64_t sum = frames.dropped + frames.foreign + frames.impostors;
     for (const MessageAccount& message : messages) {

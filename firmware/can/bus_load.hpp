@@ -8,8 +8,9 @@
 
 namespace hotfire::firmware::can {
 
-/// Share of a bus that plant and controller take in the worst case: command, readings and SYNC once a period, load pressures
-/// too of a plant that sends them; status and heartbeat as the map says, and so the string potentiometers. Rates in bit/s.
+/// Share of a bus that plant and controller take in the worst case. Command, readings and SYNC come once a period, and so do
+/// load pressures if the plant sends them. Status, heartbeat and string potentiometers come as often as the map says. Rates
+/// in bit/s.
 inline double bus_load(Layout layout, std::size_t actuators, std::int64_t period_ns, double bit_rate, double data_bit_rate,
                        MoreReadings more = {}) noexcept {
   const double period = 1e-9 * static_cast<double>(period_ns);

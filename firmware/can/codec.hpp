@@ -11,28 +11,28 @@
 
 namespace hotfire::firmware::can {
 
-/// What a frame is found to be; the first that applies.
+/// Result of decoding a frame: the first that applies.
 enum class Decoding : std::uint8_t { good, wrong_id, wrong_format, wrong_length, wrong_crc, out_of_range };
 inline constexpr std::array<std::string_view, 6> kDecodings{"good",         "wrong id",  "wrong format",
                                                             "wrong length", "wrong CRC", "out of range"};
 
-/// Takes a frame apart: the physical values of `message.signals` in their order, and its counter. Both are touched only if
-/// the frame is good: of this id, format and length, with the right check, every value within its range. Bits that no
-/// signal has may be anything. `values` has room for all signals. Constant time for a message; no allocation.
+/// Decodes a frame: the physical values of `message.signals` in their order, and its counter. Both change only if the frame
+/// is good. It then has this id, format and length, the right check, and every value in its range. Bits without a signal are
+/// ignored. `values` has room for all signals. Constant time for a message; no allocation.
 Decoding decode(const Message& message, const hal::CanFrame& frame, std::span<double> values,
                 std::uint8_t& counter) noexcept;
 
-/// Puts a frame together; values are rounded to the nearest code. False, and `frame` untouched, if one is not finite or
-/// beyond its range: what cannot be said is not said wrongly. FD frames ask for the faster bit rate.
+/// Encodes a frame; values are rounded to the nearest code. Returns false and leaves `frame` unchanged if a value is not
+/// finite or beyond its range. FD frames request the faster bit rate.
 bool encode(const Message& message, std::span<const double> values, std::uint8_t counter, hal::CanFrame& frame) noexcept;
 
-/// Puts the check of a frame in its place, after its bytes were changed.
+/// Writes the check of a frame after a change of its bytes.
 void put_check(const Message& message, hal::CanFrame& frame) noexcept;
 
 /// Follows the counter of a message.
 class Sequence {
  public:
-  /// What a counter says after the one before it: the first ever, the next, the same again, or later by more than one.
+  /// Relation of a counter to the one before it: the first one, the next, the same again, or later by more than one.
   enum class Step : std::uint8_t { first, next, repeated, skipped };
 
   Step see(std::uint8_t counter) noexcept {
@@ -44,7 +44,7 @@ class Sequence {
     return step;
   }
 
-  /// Counters that were left out; one that goes back counts as nearly all of 256.
+  /// Number of counter values that were left out; a counter that goes back counts as nearly all of 256.
   std::uint64_t lost() const noexcept { return lost_; }
 
  private:

@@ -11,11 +11,11 @@
 
 namespace hotfire::firmware::can {
 
-/// How old the commands are that the nodes of a rig say they have. A node echoes the counter of its newest command in every
-/// reading; a counter that does not change, or that of no command, is no answer.
+/// Age of the newest commands that the nodes of a rig have received. A node echoes the counter of its newest command in
+/// every reading. A counter that does not change, or that belongs to no command, is not an answer.
 class CommandEcho {
  public:
-  /// Of so many reading messages, each of a node of its own.
+  /// `messages`: number of reading messages, each of a separate node.
   explicit CommandEcho(std::size_t nodes) noexcept : nodes_(nodes) {}
 
   void note_sent(std::uint8_t counter, std::int64_t now_ns) noexcept {
@@ -34,12 +34,13 @@ class CommandEcho {
     last_[node] = counter;
   }
 
-  /// Since the newest command that every node has was sent; before any is known to be there, since the first one was.
+  /// Time since the newest command was sent that every node has. Until a node is known to have one, the time since the first
+  /// command.
   std::int64_t age_ns(std::int64_t now_ns) const noexcept {
     return begun_ ? now_ns - *std::min_element(answered_ns_.begin(), answered_ns_.begin() + nodes_) : 0;
   }
 
-  /// Commanding has ended; the next command is the first again.
+  /// Ends commanding; the next command is the first again.
   void forget() noexcept { begun_ = false; }
 
  private:

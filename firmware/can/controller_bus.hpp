@@ -23,11 +23,10 @@ struct ControllerBusSettings {
   Authentication* authentication = nullptr;  ///< of commands and readings, if it is asked for
 };
 
-/// The controller's side of a CAN bus. For the loop it is a `hal::PlantBus` turned round: what it receives are the pistons
-/// [m], each the mean of its two readings, and what it sends as a reading are the commands [rad]. `Bus` has the ids of
-/// `controller_ids`.
+/// The controller's side of a CAN bus. For the loop it is a `hal::PlantBus` with exchanged roles. It receives the pistons
+/// [m], each the mean of its two readings, and it sends the commands [rad]. `Bus` has the ids of `controller_ids`.
 ///
-/// SYNC follows the command, so that a plant that is locked to it finds the command there, and its answer is read in the
+/// SYNC follows the command. A plant that is locked to SYNC therefore finds the command there. Its answer is read in the
 /// next cycle.
 template <hal::CanBus Bus, hal::Clock Clock>
 class ControllerBus {
@@ -92,7 +91,7 @@ class ControllerBus {
 
   const MessageCounters& readings(std::size_t message) const noexcept { return readings_[message].counters(); }
   std::uint64_t lost_syncs() const noexcept { return lost_syncs_; }
-  /// Commands that were not sent because one is beyond what its signal can carry.
+  /// Commands that were not sent because one is beyond the range of its signal.
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
  private:

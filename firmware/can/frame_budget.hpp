@@ -6,13 +6,13 @@
 
 namespace hotfire::firmware::can {
 
-/// How many frames of a message one sender may have sent: one every `due_ns`. Two senders whose counters happen to fit are
-/// found by this. A leaky bucket in time (ITU-T I.371, generic cell rate algorithm) with two depths:
+/// The number of frames of a message that one sender may have sent: one every `due_ns`. It detects a second sender whose
+/// counters fit those of the first. It is a leaky bucket in time (ITU-T I.371, generic cell rate algorithm) with two depths:
 ///
-/// - A frame may come early by less than two, which is what the phases of two clocks and their jitter do. Where every frame
-///   comes when it is due, a second sender is thus found in the second cycle in which both have sent.
-/// - Frames that did not come when they were due may come later and at once, as from the queue of a gateway: those of
-///   `held_up_ns`, as a reading that is older is a fault by itself, and kMostHeldUp at most.
+/// - A frame may come early by less than two frames. This covers the phases of two clocks and their jitter. If every frame
+///   comes on time, a second sender is detected in the second cycle in which both have sent.
+/// - Frames that did not come when they were due may come later and together, as from the queue of a gateway. These are the
+///   frames of `held_up_ns`, because an older reading is a fault by itself, and at most kMostHeldUp.
 class FrameBudget {
  public:
   FrameBudget() noexcept = default;
@@ -21,7 +21,8 @@ class FrameBudget {
         early_ns_(due_ns + due_ns / 2),
         most_ns_(early_ns_ + std::clamp(held_up_ns, due_ns, kMostHeldUp * due_ns)) {}
 
-  /// In every cycle, with the frames that it has brought. Returns how many of them are more than one sender sends.
+  /// Called in every cycle with the number of its frames. Returns the number of surplus frames, which a single sender does
+  /// not send.
   std::uint64_t excess(std::uint64_t frames, std::int64_t now_ns) noexcept {
     if (saved_ns_ == kNotBegun) {
       // What had gathered before the first cycle says nothing about a rate.
@@ -43,9 +44,9 @@ class FrameBudget {
   void forget() noexcept { saved_ns_ = kNotBegun; }
 
  private:
-  /// Frames that a node or a gateway may hold up and then send at once.
+  /// Frames that a node or a gateway may delay and then send together.
   static constexpr std::int64_t kMostHeldUp = 16;
-  /// A node's clock may be fast by one part in this: a hundred times what a quartz drifts.
+  /// A node's clock may be fast by one part in this number: a hundred times the drift of a quartz.
   static constexpr std::int64_t kClockTolerance = 100;
 
   static constexpr std::int64_t kNotBegun = -1;

@@ -12,15 +12,15 @@
 
 namespace hotfire::firmware::can {
 
-/// Which frames carry commands and readings (docs/can-map.md). `classic`: one engine of two actuators. `fd`: eight. In a
-/// `split` one the two redundant readings of an actuator come in frames of their own, each from a node of its own, so that
-/// no single node can make them agree.
+/// The frames that carry commands and readings (docs/can-map.md). `classic`: one engine of two actuators. `fd`: eight
+/// actuators. In a `split` layout the two redundant readings of an actuator come in separate frames from separate nodes. A
+/// single node can therefore not make them agree.
 enum class Layout : std::uint8_t { classic, fd, classic_split, fd_split };
 inline constexpr std::array<std::string_view, 4> kLayouts{"classic", "fd", "classic-split", "fd-split"};
 
 constexpr bool is_fd(Layout layout) noexcept { return layout == Layout::fd || layout == Layout::fd_split; }
 constexpr bool is_split(Layout layout) noexcept { return layout == Layout::classic_split || layout == Layout::fd_split; }
-/// Whether a reading says which command its node had when it was sent.
+/// Whether a reading contains the counter of the newest command of its node.
 constexpr bool has_echo(Layout layout) noexcept { return layout != Layout::classic; }
 
 constexpr std::size_t most_actuators(Layout layout) noexcept {
@@ -75,7 +75,7 @@ constexpr const Message& load_pressure_message(Layout layout) noexcept {
   return is_fd(layout) ? load_pressures_fd::kMessage : load_pressures::kMessage;
 }
 
-/// What a plant sends beside its pistons if it is asked to.
+/// What a plant sends in addition to its pistons.
 struct MoreReadings {
   bool strings = false;
   bool load_pressure = false;
@@ -106,7 +106,7 @@ static_assert(pistons_a_fd::command_counter == kEchoPlace && piston_1_a::command
 
 constexpr hal::CanId id_of(const Message& message) noexcept { return {message.id, false}; }
 
-/// What a node of the bus listens to and sends; its mailboxes are in the order of `subscriptions`.
+/// The frames that a node receives and sends; its mailboxes are in the order of `subscriptions`.
 struct NodeIds {
   std::vector<hal::CanSubscription> subscriptions;
   std::vector<hal::CanId> senders;
@@ -128,7 +128,7 @@ inline NodeIds plant_ids(Layout layout, std::size_t actuators, MoreReadings more
   return ids;
 }
 
-/// Of a controller: subscription i is reading message i; the one behind them is the load pressures, if it takes them.
+/// Of a controller: subscription i is reading message i. The last one is the load pressures, if the controller reads them.
 inline NodeIds controller_ids(Layout layout, std::size_t actuators, bool load_pressure = false) {
   NodeIds ids{{}, {id_of(sync::kMessage), id_of(command_message(layout)), id_of(heartbeat::kMessage)}};
   for (std::size_t i = 0; i < reading_messages(layout, actuators); ++i) {

@@ -13,7 +13,7 @@
 
 namespace hotfire::firmware::can {
 
-/// What became of the frames of one message.
+/// Counts of the frames of one message.
 struct MessageCounters {
   std::uint64_t taken = 0;
   std::uint64_t superseded = 0;   ///< good, but a newer one was there before they were looked at
@@ -26,18 +26,18 @@ struct MessageCounters {
 
   /// Damaged on the way, or lost there.
   std::uint64_t damaged() const noexcept { return refused + skipped; }
-  /// What one sender alone does not do.
+  /// Frames that a single sender does not send.
   std::uint64_t of_two_senders() const noexcept { return repeated + backward + too_many; }
 };
 
-/// Follows the frames of one message, every one of them: a frame is taken if it is good and its counter is ahead of the last
-/// one's by less than half of 256. One that is repeated, or comes late from a gateway's queue, is not taken.
+/// Follows every frame of one message. A frame is accepted if it is good and its counter is ahead of the last one by less
+/// than half of 256. A frame that is repeated, or comes late from the queue of a gateway, is not accepted.
 class MessageFollower {
  public:
-  /// From now on only frames that are authentic are taken, of a message that can be.
+  /// From now on accepts only authentic frames, if the message can be authenticated.
   void require(Authentication* authentication) noexcept { authentication_ = authentication; }
 
-  /// The values of a frame. False, and `values` untouched, if it is not to be taken.
+  /// The values of a frame. Returns false and leaves `values` unchanged if the frame is not accepted.
   bool take(const Message& message, const hal::CanFrame& frame, std::span<double> values) noexcept {
     std::array<double, kMostSignals> read{};
     std::uint8_t counter = 0;
@@ -58,8 +58,8 @@ class MessageFollower {
     return true;
   }
 
-  /// Looks at every frame of a subscription; the values are those of the newest that is to be taken. Returns when that one
-  /// arrived; none, and `values` untouched, if there is none.
+  /// Checks every frame of a subscription; the values are those of the newest accepted one. Returns its time of arrival, or
+  /// nothing and unchanged `values` if there is none.
   std::optional<std::int64_t> take_newest(const Message& message, std::span<const hal::CanArrival> arrivals,
                                           std::size_t subscription, std::span<double> values) noexcept {
     std::optional<std::int64_t> arrived_ns;
@@ -75,10 +75,10 @@ class MessageFollower {
     return arrived_ns;
   }
 
-  /// So many frames were more than one sender sends.
+  /// Counts surplus frames, which a single sender does not send.
   void note_too_many(std::uint64_t frames) noexcept { counters_.too_many += frames; }
 
-  /// The counter of the last frame that was taken, carried on beyond 256.
+  /// The counter of the last accepted frame, continued beyond 256.
   std::uint64_t sequence() const noexcept { return sequence_; }
   const MessageCounters& counters() const noexcept { return counters_; }
 

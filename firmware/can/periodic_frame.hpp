@@ -10,16 +10,17 @@
 
 namespace hotfire::firmware::can {
 
-/// A message that is sent every so many cycles of a loop, as often as the map says but no more often than once a cycle.
+/// A message that is sent every n cycles of a loop, as often as the map says and at most once a cycle.
 class PeriodicFrame {
  public:
   PeriodicFrame(const Message& message, std::int64_t period_ns) noexcept
       : message_(message), every_(std::max<std::int64_t>(1, message.cycle_ms * kMillisecond / period_ns)) {}
 
-  /// Whether it is due in this cycle. To be called once a cycle.
+  /// Whether the frame is due in this cycle. Call it once a cycle.
   bool is_due() noexcept { return cycle_++ % every_ == 0; }
 
-  /// Sends it with the next counter, also if the bus did not take the one before: a receiver sees that it is missing.
+  /// Sends the frame with the next counter, even if the bus did not take the previous one. A receiver then detects the
+  /// missing frame.
   template <hal::CanBus Bus>
   hal::CanSend send(Bus& bus, std::span<const double> values) noexcept {
     hal::CanFrame frame;

@@ -32,17 +32,20 @@ struct PlantBusSettings {
   bool heartbeat_optional = false;             ///< a controller that has never sent a HEARTBEAT is followed all the same
 };
 
-/// The plant's side of a CAN bus (`hal::PlantBus`): takes the command of its layout, sends the readings of its actuators,
-/// the first value of each as both of its redundant ones, its load pressures if it is asked to, those of its string
-/// potentiometers if it has any, and its status.
-/// `Bus` has the ids of `plant_ids`.
+/// The plant's side of a CAN bus (`hal::PlantBus`). It receives the command of its layout. It sends the readings of its
+/// actuators, with the first value of each as both redundant ones, and its status. It sends load pressures on request, and
+/// the readings of string potentiometers if there are any. `Bus` has the ids of `plant_ids`.
 ///
-/// A servovalve that nobody commands gets no current: when the newest command is older than its age limit, the plant is
-/// commanded zero, and the next frame is the first of a new series. The same when the controller's HEARTBEAT is older than
-/// its limit though commands come, or has not come for as long since the first of them; and for `kSecondSenderHoldNs` after
-/// a frame that a single controller does not send: of two it cannot know the right one. So too after a command that is not
-/// authentic. STATUS carries the number of that fault. What a played fault keeps from being sent is left out; in a frame of
-/// several actuators it is held, and the frame left out if none is left.
+/// A servovalve gets no current in these cases, and the next frame is then the first of a new series:
+///
+/// - The newest command is older than its age limit.
+/// - The controller's HEARTBEAT is older than its limit, or has not come for that time since the first command.
+/// - A frame that a single controller does not send has come within `kSecondSenderHoldNs`: the plant cannot know which of
+///   two is right.
+/// - A command is not authentic.
+///
+/// STATUS carries the number of that fault. Readings that a declared fault suppresses are left out. In a frame of several
+/// actuators they are held, and the frame is left out if no reading remains.
 template <hal::CanBus Bus, hal::Clock Clock>
 class PlantBus {
  public:
@@ -55,8 +58,8 @@ class PlantBus {
     commands_.require(settings.authentication);
   }
 
-  /// How long one frame of a second controller keeps the valves without current: as long as between two STATUS frames, so
-  /// that one of them reports.
+  /// Time for which one frame of a second controller keeps the valves without current. It is the time between two STATUS
+  /// frames, so that one of them reports it.
   static constexpr std::int64_t kSecondSenderHoldNs = 1'000'000 * std::int64_t{status::kMessage.cycle_ms};
 
   bool try_receive_command(hal::Command& command) noexcept {
@@ -108,11 +111,11 @@ class PlantBus {
 
   const MessageCounters& commands() const noexcept { return commands_.counters(); }
   const MessageCounters& heartbeats() const noexcept { return heartbeats_.counters(); }
-  /// Cycles without a command that is young enough, from the first command on.
+  /// Cycles without a command within its age limit, from the first command on.
   std::uint64_t stale_cycles() const noexcept { return stale_cycles_; }
-  /// Commands that were too old when the loop came to look at them, not acted on.
+  /// Commands that were too old when the loop read them, and were not used.
   std::uint64_t too_old() const noexcept { return too_old_; }
-  /// Frames that were not sent because a reading is beyond what its signal can carry.
+  /// Frames that were not sent because a reading is beyond the range of its signal.
   std::uint64_t unsayable() const noexcept { return unsayable_; }
 
  private:
@@ -120,7 +123,8 @@ class PlantBus {
   static constexpr std::size_t kCommandBox = 0;  ///< as in `plant_ids`
   static constexpr std::size_t kHeartbeatBox = 1;
 
-  /// Why no command is acted on, though one may be there; none if it may be. `commanded_ns`: when one has come, if any has.
+  /// The reason why no command is used, although one may be present; none if one is used. `commanded_ns`: its time of
+  /// arrival, if one has come.
   Fault refuses_controller(std::int64_t now, std::optional<std::int64_t> commanded_ns) noexcept {
     std::array<double, heartbeat::kSignals.size()> said{};
     const auto heard_ns = heartbeats_.take_newest(heartbeat::kMessage, bus_.arrivals(), kHeartbeatBox, said);
@@ -187,7 +191,7 @@ class PlantBus {
     return bus_.try_send(frame) == hal::CanSend::taken;
   }
 
-  /// What every reading message of the layout says.
+  /// The content that every reading message of the layout has.
   using Values = std::array<std::array<double, pistons_fd::kSignals.size()>, kMostReadingMessages>;
 
   Values values_of(const hal::Reading& reading) const noexcept {

@@ -10,8 +10,8 @@
 
 namespace hotfire::firmware::can {
 
-/// The SYNC frames of a bus as what a loop is locked to (`hal::SyncSource`). A frame with a wrong check, or that repeats the
-/// one before, is no sync. `Frames` has `wait_for_frame(deadline_ns, frame, arrival_ns)`.
+/// The SYNC frames of a bus as the trigger of a loop (`hal::SyncSource`). A frame with a wrong check, or one that repeats
+/// the previous one, is not a sync. `Frames` has `wait_for_frame(deadline_ns, frame, arrival_ns)`.
 template <class Frames>
 class CanSyncSource {
  public:

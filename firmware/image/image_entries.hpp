@@ -22,7 +22,7 @@ struct Entry {
   bool used = false;
 };
 
-/// The lines of an image, each to be used once, and the first thing found wrong with them.
+/// The lines of an image, each to be used once, and the first error that was found in them.
 class Entries {
  public:
   Entries(const std::string& text, const std::string& name) : name_(name) {
@@ -51,7 +51,7 @@ class Entries {
     return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key.starts_with(prefix); });
   }
 
-  /// The entry of a key that must be there; null after a refusal.
+  /// The entry of a required key; null after a refusal.
   const Entry* take(const std::string& key) {
     Entry* entry = find(key);
     if (entry == nullptr) {

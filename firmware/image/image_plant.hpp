@@ -37,7 +37,7 @@ struct PlantOf<model::Direct<double>::Parameters> : PlantOfAxes<model::Direct<do
 
 }  // namespace detail
 
-/// How many actuators the plant of an image has; 0: as many as are asked for, each a copy of one axis.
+/// Number of actuators of the plant in an image; 0: any number, each a copy of one axis.
 inline std::size_t actuators_of(const PlantParameters& parameters) {
   return std::visit(
       []<class Parameters>(const Parameters&) -> std::size_t {
@@ -58,8 +58,8 @@ inline std::string refused_record(const PlantImage& image, double period) {
                     image.recorded.period * 1e6, period * 1e6);
 }
 
-/// What `use` makes of the plant of an image that has been read, on the heap. `period` in s; `actuators`: copies of one
-/// axis, not read for a vehicle.
+/// Constructs the plant of an image on the heap and returns the result of `use` with it. `period` in s; `actuators`: copies
+/// of one axis, ignored for a vehicle.
 template <class Use>
 auto with_plant(const PlantImage& image, double period, std::size_t actuators, Use&& use) {
   return std::visit(

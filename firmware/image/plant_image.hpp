@@ -70,8 +70,8 @@ struct PlantImage {
 ///     disturbance.0.values 0x1.388p+13,0x1.388p+14
 ///
 /// Every parameter of every part is there, and every parameter of an effect that is active. Strict: an unknown, repeated or
-/// missing key, a value that is no number, NaN or outside its bounds, a table that does not rise, is refused with its line;
-/// attach points, a gimbal or an effect whose values contradict each other, with their prefix.
+/// missing key, a value that is not a number, NaN or outside its bounds, a table that does not rise, is refused with its
+/// line; attach points, a gimbal or an effect whose values contradict each other, with their prefix.
 PlantImage read_plant_image(const std::string& path);
 
 /// The same from text; `name` represents the file in messages.

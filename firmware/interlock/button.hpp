@@ -5,8 +5,8 @@
 
 namespace hotfire::firmware {
 
-/// What a contact is taken to say once it has settled. It begins on: a button that is held when the program starts, or whose
-/// line has not settled yet, has not been seen off.
+/// The settled state of a contact. It begins as on. A button that is held at the start of the program, or whose line has not
+/// settled, therefore does not count as seen off.
 struct Contact {
   bool on = true;
   std::uint32_t differing = 0;  ///< cycles in a row that the line said the other thing
@@ -14,9 +14,9 @@ struct Contact {
   friend constexpr bool operator==(const Contact&, const Contact&) noexcept = default;
 };
 
-/// Debounces both edges: the contact follows its line once the line has said the same for `cycles` whole periods, so in
-/// `cycles` + 1 looks, without a change between two of them. `changed`: the line has changed since the look before, whatever
-/// it says now.
+/// Debounces both edges. The contact follows its line once the line has been the same for `cycles` whole periods, which is
+/// `cycles` + 1 samples, without a change between two of them. `changed`: the line has changed since the previous sample,
+/// whatever its level is now.
 constexpr Contact settled(Contact contact, bool line, bool changed, std::uint32_t cycles) noexcept {
   if (line == contact.on) {
     contact.differing = 0;
@@ -26,7 +26,7 @@ constexpr Contact settled(Contact contact, bool line, bool changed, std::uint32_
   return contact.differing > cycles ? Contact{line, 0} : contact;
 }
 
-/// A person's button as far as it has been pressed.
+/// The state of a person's button within a press.
 struct Button {
   bool ready = false;      ///< it was seen off when a press might begin
   bool refused = false;    ///< something forbade the press while it lasted
@@ -43,11 +43,11 @@ struct PressTimes {
   std::uint32_t most = 1;
 };
 
-/// A press is a button that goes on and, after `times`, off again: it acts when it is released, as ISO 13849-1:2015, 5.2.2,
-/// asks of a manual reset. So neither a contact that sticks nor a wire that breaks is one. `may_begin`: a press may begin
-/// after this cycle if the button is off in it, and its line too: a line that is on already belongs to a press that began
-/// before and has not settled. `forbidden`: the press is refused, also if that is over when it ends, and
-/// one that begins after this cycle: a line that could not be read was not seen off.
+/// A press is a button that goes on and, after `times`, off again. It acts when it is released, as ISO 13849-1:2015, 5.2.2,
+/// requires of a manual reset. A contact that sticks, or a wire that breaks, is therefore not a press. `may_begin`: a press
+/// may begin after this cycle if the button and its line are off in it. A line that is already on belongs to an earlier
+/// press that has not settled. `forbidden`: the press is refused, even if the reason is over at its end. A press that begins
+/// after this cycle is refused too, because a line that could not be read was not seen off.
 constexpr Press press(Button& button, Contact contact, bool may_begin, bool forbidden, PressTimes times) noexcept {
   if (contact.on) {
     button.held += button.ready && button.held <= times.most ? 1 : 0;

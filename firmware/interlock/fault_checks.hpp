@@ -14,20 +14,20 @@
 
 namespace hotfire::firmware {
 
-/// What a lab allows of one actuator. A position is that of a piston [m].
+/// The limits of one actuator of a lab. A position is that of a piston [m].
 struct ActuatorLimits {
   std::int64_t reading_age_ns = 0;
   double lowest_position = 0.0;  ///< where the piston may be, and be sent
   double highest_position = 0.0;
   double speed = 0.0;  ///< measured over `speed_cycles` [m/s]
-  /// Of the pressure difference across the piston, either way [Pa]; infinite: it is not measured.
+  /// Limit of the pressure difference across the piston, in either direction [Pa]; infinite: it is not measured.
   double load_pressure = std::numeric_limits<double>::infinity();
 };
 
-/// The highest limit of a load pressure [Pa], well within what a frame can say: what is beyond it is then seen.
+/// The highest limit of a load pressure [Pa]. It is well within the range of a frame, so that a value beyond it is detected.
 inline constexpr double kMostLoadPressure = 50e6;
 
-/// What a lab allows. A command is what the profile asks of a piston [m].
+/// The limits of a lab. A command is the piston position that the profile requires [m].
 struct FaultLimits {
   static constexpr std::uint64_t kMostSpeedCycles = 64;
 
@@ -42,7 +42,7 @@ struct FaultLimits {
   std::uint64_t speed_cycles = 1;      ///< over which a speed is measured; kMostSpeedCycles at most
   std::uint64_t read_back_cycles = 0;  ///< for which a line may read back other than it is commanded: contactors take time
   std::array<ActuatorLimits, hal::kMaxActuators> actuators{};
-  /// How often a node sends each of its messages: more of them are those of a second sender. 0: once in a period of the lab.
+  /// The period of each message of a node: surplus messages are those of a second sender. 0: one in a period of the lab.
   std::int64_t reading_period_ns = 0;
   bool readings_answer_sync = false;  ///< one for each SYNC, which the lab sends in every cycle
 
@@ -56,7 +56,7 @@ struct FaultLimits {
   bool has_load_pressure() const noexcept { return std::isfinite(actuators[0].load_pressure); }
 };
 
-/// One actuator in one cycle: what it is asked for, its two redundant readings, and its load pressure [Pa].
+/// One actuator in one cycle: its command, its two redundant readings, and its load pressure [Pa].
 struct ObservedActuator {
   double command = 0.0;
   std::array<double, 2> readings{};
@@ -84,8 +84,8 @@ struct ObservedRig {
   bool fault_line_reads_other = false;  ///< as the supply
 };
 
-/// Finds what is wrong in a cycle, before anything is sent in it. A value that is not finite is that fault and no other of
-/// its actuator: its limits say nothing then. Pure logic, no allocation.
+/// Finds the faults of a cycle before anything is sent in it. A value that is not finite is that fault and no other of its
+/// actuator, because comparisons with limits have no meaning then. Pure logic, no allocation.
 class FaultChecks {
  public:
   /// `period` in s.
@@ -118,7 +118,7 @@ class FaultChecks {
     return found;
   }
 
-  /// The commands of the cycle before are no longer what the next ones are compared with: after a stop.
+  /// After a stop: the next commands are no longer compared with those of the cycle before.
   void forget() noexcept { last_ = {}; }
 
  private:
@@ -128,7 +128,7 @@ class FaultChecks {
     std::uint64_t error_cycles = 0;
   };
 
-  /// Where an actuator was in the last cycles, that of `cycles` at the place of its remainder.
+  /// Positions of an actuator in the last cycles; that of `cycles` is at the place of its remainder.
   struct Track {
     std::array<double, FaultLimits::kMostSpeedCycles> positions{};
     std::uint64_t cycles = 0;

@@ -10,8 +10,8 @@
 
 namespace hotfire::firmware {
 
-/// What can go wrong on a rig. The numbers are permanent: they are in logs, recordings and people's heads, so a fault that
-/// is no longer raised keeps its number. Each has a section in docs/faults.md.
+/// The faults of a rig. The numbers are permanent, because they are in logs, in recordings and in people's memory. A fault
+/// that is no longer raised keeps its number. Each has a section in docs/faults.md.
 enum class Fault : std::uint8_t {
   stale_command = 1,
   stale_sensor = 2,
@@ -39,7 +39,7 @@ enum class Fault : std::uint8_t {
   not_authentic = 39,
 };
 
-/// Every number is below this: a set of faults is one word.
+/// Every number is below this one, so that a set of faults is one word.
 inline constexpr std::size_t kFaultNumbers = 64;
 
 struct FaultText {
@@ -124,7 +124,7 @@ class FaultSet {
   std::uint64_t bits_ = 0;
 };
 
-/// Faults of what should be off while nothing is driven: they make a safe rig faulted too.
+/// Faults of outputs that should be off while nothing is driven. They make a safe rig faulted too.
 inline constexpr FaultSet kFaultsOfASafeRig =
     FaultSet(Fault::take_back_refused) | Fault::supply_read_back | Fault::fault_read_back;
 

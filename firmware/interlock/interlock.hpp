@@ -12,10 +12,10 @@
 namespace hotfire::firmware {
 
 /// - `safe`: nothing is driven.
-/// - `armed`: a person has armed; supply enabled, every actuator held where it is.
+/// - `armed`: a person has armed; the supply is enabled and every actuator is held at its position.
 /// - `running`: the profile commands.
 /// - `stopping`: the actuators are brought to rest.
-/// - `faulted`: nothing is driven, and the faults are kept for the person who comes to look.
+/// - `faulted`: nothing is driven, and the faults are kept until a person arms again.
 enum class RigState : std::uint8_t { safe, armed, running, stopping, faulted };
 inline constexpr std::array<std::string_view, 5> kRigStates{"safe", "armed", "running", "stopping", "faulted"};
 
@@ -33,7 +33,7 @@ struct InterlockSettings {
   std::uint32_t most_stopping = 0;  ///< after which a stopping rig is safe, whether it is at rest or not
 };
 
-/// What an interlock sees in one cycle.
+/// The inputs of an interlock in one cycle.
 struct InterlockInputs {
   FaultSet causes;             ///< faults whose cause is present now
   bool arm = false;            ///< what the line of the arm button says
@@ -42,11 +42,11 @@ struct InterlockInputs {
   bool start_changed = false;  ///< as `arm_changed`
   bool stop = false;           ///< acts while it is on; also when the profile has ended
   bool at_rest = false;        ///< every actuator is at rest
-  /// What was switched off still reads on: a press to arm is refused. It is no fault before `read_back_cycles`.
+  /// An output that was switched off still reads on: a press to arm is refused. It becomes a fault after `read_back_cycles`.
   bool supply_still_on = false;
 };
 
-/// Everything that an interlock remembers from one cycle to the next. The default is what a program starts with.
+/// The memory of an interlock between two cycles. The default is that at the start of a program.
 struct InterlockMemory {
   RigState state = RigState::safe;
   std::uint32_t cycles = 0;  ///< in a state that is timed: how many it has lasted
@@ -60,7 +60,7 @@ struct InterlockMemory {
   friend constexpr bool operator==(const InterlockMemory&, const InterlockMemory&) noexcept = default;
 };
 
-/// What the next cycle remembers, and what holds for this cycle only.
+/// The memory for the next cycle, and the results that hold for this cycle only.
 struct InterlockDecision {
   InterlockMemory memory;
   bool refused_press = false;  ///< the arm button was pressed while something forbade arming
@@ -89,7 +89,7 @@ constexpr InterlockMemory with_faults(InterlockMemory memory, FaultSet causes) n
   return memory;
 }
 
-/// The state that follows if no cause is present. `arm` and `start`: a press was completed in this cycle.
+/// The next state if no cause of a fault is present. `arm` and `start`: a press was completed in this cycle.
 constexpr RigState next_state(const InterlockSettings& settings, const InterlockMemory& memory,
                               const InterlockInputs& inputs, bool arm, bool start) noexcept {
   switch (memory.state) {
@@ -111,16 +111,16 @@ constexpr RigState next_state(const InterlockSettings& settings, const Interlock
 
 }  // namespace interlock_rules
 
-/// Decides whether anything may be driven. Rules, in this order:
+/// Decides whether anything may be driven. The rules apply in this order:
 ///
-/// 1. A cause that is present while anything is driven makes the rig `faulted` in the same cycle; nothing is driven any
-/// more. Those of `kFaultsOfASafeRig` do so in `safe` too.
-/// 2. Nothing leaves `faulted` or `safe` but a person's arming: a press of the arm button (`press`), from its beginning to
-/// its end in that state, with no cause present, no stop asked for and the supply read back as off meanwhile.
-/// 3. `armed` to `running`: a press of the start button that begins no sooner than `least_armed` after the arming. After
-/// `most_armed` the rig is `safe` again.
-/// 4. `stop` brings `armed` to `safe` and `running` to `stopping`, which ends in `safe` when the actuators are at rest, or
-/// after `most_stopping` whether they are or not.
+/// 1. A cause of a fault while anything is driven makes the rig `faulted` in the same cycle; nothing is driven any more. The
+///   causes of `kFaultsOfASafeRig` do so in `safe` too.
+/// 2. Only a person's arming ends `faulted` or `safe`. This is a press of the arm button (`press`) from its beginning to its
+///   end in that state. During the press no cause is present, no stop is requested and the supply reads off.
+/// 3. A press of the start button leads from `armed` to `running`. It begins at least `least_armed` after the arming. After
+///   `most_armed` the rig is `safe` again.
+/// 4. `stop` leads from `armed` to `safe` and from `running` to `stopping`. `stopping` ends in `safe` when the actuators are
+///   at rest, and after `most_stopping` in any case.
 ///
 /// A function of its arguments: no clock, no bus, no allocation.
 constexpr InterlockDecision decide(const InterlockSettings& settings, InterlockMemory memory,
@@ -150,7 +150,7 @@ constexpr InterlockDecision decide(const InterlockSettings& settings, InterlockM
   return {entered(memory, state), arm == Press::refused};
 }
 
-/// What may be done in the cycle that a decision is of.
+/// What is allowed in the cycle of a decision.
 struct InterlockOutputs {
   RigState state = RigState::safe;
   bool drive = false;          ///< commands may be sent and the supply is enabled

@@ -17,7 +17,7 @@
 
 namespace hotfire::firmware {
 
-/// What a lab does with its actuators, and what it allows.
+/// Settings of a lab: its actuators and their limits.
 struct LabSettings {
   Profile profile{{}};
   std::size_t actuators = 1;
@@ -32,7 +32,7 @@ struct LabSettings {
   std::uint64_t most_overruns = 0;   ///< in a row that are no fault
 };
 
-/// What a lab sees in a cycle: the rig, the readings of every actuator, and a person's switches.
+/// Inputs of a lab in a cycle: the rig, the readings of every actuator, and a person's switches.
 struct LabInputs {
   ObservedRig rig;
   std::array<std::array<double, 2>, hal::kMaxActuators> readings{};  ///< [m]
@@ -46,16 +46,16 @@ struct LabInputs {
   bool stop = false;
 };
 
-/// What it does in that cycle.
+/// The outputs of a lab in that cycle.
 struct LabOutputs {
   InterlockOutputs interlock;
   PerActuator commands{};  ///< [rad]; finite
   PerActuator currents{};  ///< [A]; to be sent only if `interlock.drive`
 };
 
-/// Drives actuators through a profile behind the interlock: holds them where they are when armed, brings them slowly to the
-/// beginning of the profile when started, runs it, and holds them where they are at its end or when asked to stop. Pure
-/// logic: no clock, no bus, no allocation.
+/// Drives actuators through a profile behind the interlock. When armed, it holds them at their positions. When started, it
+/// brings them slowly to the beginning of the profile and runs the profile. At the end of the profile or on a stop request,
+/// it holds them at their positions. Pure logic: no clock, no bus, no allocation.
 class Lab {
  public:
   /// `period` in s.
@@ -100,14 +100,14 @@ class Lab {
   const LabOutputs& outputs() const noexcept { return outputs_; }
   std::size_t actuators() const noexcept { return settings_.actuators; }
   const FaultLimits& limits() const noexcept { return settings_.limits; }
-  /// Where the pistons are, each the mean of its readings [m].
+  /// Positions of the pistons, each the mean of its readings [m].
   std::span<const double> positions() const noexcept { return std::span(positions_).first(settings_.actuators); }
   /// Adds the commands and the positions.
   void add_to(hal::Fnv1a& hash) const noexcept {
     hash.add(std::span(outputs_.commands).first(settings_.actuators));
     hash.add(positions());
   }
-  /// The whole profile has been run since the last arming.
+  /// Whether the whole profile has been run since the last arming.
   bool completed() const noexcept { return completed_; }
   /// False if the time to stop was over before every piston was at rest, since the last arming.
   bool came_to_rest() const noexcept { return came_to_rest_; }
@@ -134,7 +134,8 @@ class Lab {
     }
   }
 
-  /// A command that is not finite is a fault and is not sent; nor is it handed on, as the loop of a plant would end at it.
+  /// A command that is not finite is a fault and is not sent. It is not returned either, because the loop of a plant would
+  /// end at it.
   void leave_out_what_is_not_finite() noexcept {
     for (std::size_t i = 0; i < settings_.actuators; ++i) {
       const double present = std::isfinite(positions_[i]) ? positions_[i] / settings_.piston_per_command : 0.0;

@@ -34,7 +34,7 @@ enum LabInput : std::uint8_t {
 };
 enum LabOutput : std::uint8_t { kSupply, kHeartbeat, kFault };
 
-/// The lines as a chip is asked for them, and where each input of the lab is among them.
+/// The lines as requested from a chip, and the place of each input of the lab among them.
 struct LabGpio {
   static constexpr std::uint8_t kNotWired = hal::kMaxGpioLines;
 
@@ -44,8 +44,8 @@ struct LabGpio {
   bool is_wired(LabInput input) const noexcept { return places[input] != kNotWired; }
 };
 
-/// A broken wire of an input reads off, which is a stop, no enable, and a button that is not pressed. Stop, enable and the
-/// buttons report their edges: what comes and goes between two cycles is seen.
+/// A broken wire of an input reads off: a stop, no enable, a button that is not pressed. Stop, enable and the buttons report
+/// their edges, so that a change between two cycles is detected.
 inline LabGpio lab_gpio(const LabLines& lines, const std::string& chip) {
   LabGpio gpio;
   gpio.settings.chip = chip;

@@ -16,10 +16,10 @@
 
 namespace hotfire::firmware {
 
-/// What a recording keeps of each actuator of a lab. `piston` is where it was at the end of the cycle, as in the recording
-/// of a plant; the others are of the cycle itself: the current for its servovalve, sent if anything was driven, then what
-/// the cycle was decided on: the two readings as they had come, and the age of each. A lab that measures load pressures
-/// keeps three more: `load_pressure` at the end of the cycle, then what the cycle was decided on, and its age.
+/// The channels that a recording has for each actuator of a lab. `piston` is the position at the end of the cycle, as in the
+/// recording of a plant. The other channels are of the cycle itself. They are the current for the servovalve, which was sent
+/// if anything was driven, and the inputs of the decision: the two readings and the age of each. A lab that measures load
+/// pressures has three more: `load_pressure` at the end of the cycle, then the value of the decision and its age.
 enum LabChannel : std::uint8_t {
   kPiston,
   kServovalveCurrent,
@@ -54,21 +54,21 @@ inline std::vector<hal::RecordedChannel> lab_channels(bool has_load_pressure) {
   return channels;
 }
 
-/// What a lab has seen that is a yes or no, from bit `kInputsShift` of the flags of a cycle on, in this order.
+/// Boolean inputs of a lab, from bit `kInputsShift` of the flags of a cycle on, in this order.
 inline constexpr auto kSeenBits = std::to_array<bool ObservedRig::*>(
     {&ObservedRig::bad_frame, &ObservedRig::transmit_queue_full, &ObservedRig::overrun, &ObservedRig::dropped_recording,
      &ObservedRig::emergency_stop, &ObservedRig::hydraulic_enable, &ObservedRig::bus_off, &ObservedRig::bus_down,
      &ObservedRig::take_back_refused, &ObservedRig::supply_reads_other, &ObservedRig::fault_line_reads_other});
 inline constexpr auto kSwitchBits = std::to_array<bool LabInputs::*>(
     {&LabInputs::arm, &LabInputs::arm_changed, &LabInputs::start, &LabInputs::start_changed, &LabInputs::stop});
-/// What it has seen of the bus beside those, from bit `kBusShift` of the flags on.
+/// Further inputs from the bus, from bit `kBusShift` of the flags on.
 inline constexpr std::array<bool ObservedRig::*, 3> kBusBits{&ObservedRig::second_sender, &ObservedRig::command_not_answered,
                                                              &ObservedRig::not_authentic};
 inline constexpr unsigned kBusShift = 40;
 static_assert(hal::CycleHead::kInputsShift + kSeenBits.size() + kSwitchBits.size() <= kBusShift);
 static_assert(kBusShift + kBusBits.size() <= hal::CycleHead::kSkippedShift);
 
-/// Everything `Lab::step` is given in a cycle, taken out of its recording bit for bit.
+/// All inputs of `Lab::step` in a cycle, from its recording bit for bit.
 inline LabInputs recorded_inputs(const hal::RecordedCycle& cycle) noexcept {
   LabInputs inputs;
   std::uint64_t bits = cycle.head.flags >> hal::CycleHead::kInputsShift;
@@ -102,15 +102,15 @@ inline LabInputs recorded_inputs(const hal::RecordedCycle& cycle) noexcept {
   return inputs;
 }
 
-/// Records a lab: what it saw and what it did, so that a replay can decide every cycle again. `Rig` is a `LabRig`, `Outputs`
-/// what takes its cycles.
+/// Records the inputs and outputs of a lab, so that a replay can decide every cycle again. `Rig` is a `LabRig`, `Outputs`
+/// takes the cycles.
 template <class Rig, class Outputs = Recorder>
 class LabRecorder {
  public:
   LabRecorder(Outputs& recorder, const Rig& rig) noexcept
       : recorder_(recorder), rig_(rig), channels_(lab_channel_count(rig.lab().limits().has_load_pressure())) {}
 
-  /// Keeps the cycle, and hands on the one before it, whose end this one has seen.
+  /// Keeps the cycle, and passes on the previous cycle, whose end is now known.
   void record(const hal::CycleHead& head, std::span<const double>, std::span<const double> commands) noexcept {
     finish();
     const std::size_t actuators = commands.size();
@@ -133,8 +133,8 @@ class LabRecorder {
     }
   }
 
-  /// Hands on the cycle that is kept, with where the pistons are now and their load pressures: at the end of the loop, where
-  /// none sees its end, that is what it had itself read.
+  /// Passes on the last cycle, with the present positions of the pistons and the load pressures. At the end of the loop no
+  /// later cycle gives its end, so these are its own readings.
   void finish() noexcept {
     if (!begun_) {
       return;

@@ -24,29 +24,28 @@
 
 namespace hotfire::firmware {
 
-/// A lab on its bus and lines. For the loop it is plant and bus in one: a cycle reads the bus and the lines, looks for
-/// faults, sets the lines, and then sends the currents of that cycle if anything may be driven. `Can` has the ids of
+/// A lab on its bus and lines. For the loop it is both plant and bus. A cycle reads the bus and the lines, checks for faults
+/// and sets the lines. It then sends the currents of that cycle if anything may be driven. `Can` has the ids of
 /// `can::controller_ids`, with load pressures if the lab has a limit of them.
 ///
-/// Every frame of a cycle is checked, not only the newest: one that is damaged, lost, dropped by the kernel or of another
-/// format is a bad frame; a counter twice or of the past, more frames than are due, or a frame under an id of the lab's own
-/// is a second sender.
+/// Every frame of a cycle is checked, not only the newest. A frame that is damaged, lost, dropped by the kernel or of
+/// another format is a bad frame. A repeated or earlier counter, a surplus frame, or a frame under an id of the lab is a
+/// second sender.
 ///
-/// When driving ends, a command that is still before the bus one cycle later is taken back with `stop`, so that it does not
-/// leave when the bus can be used again. Where the kernel refuses that, it is asked again every kTakeBackEveryNs, and until
-/// it does so the rig is faulted.
+/// After driving ends, a command that still waits one cycle later is taken back with `stop`, so that it cannot leave later.
+/// If the kernel refuses this, it is asked again every kTakeBackEveryNs. The rig is faulted until it agrees.
 ///
 /// The program may end (`ended`) when that is decided, the lines are set and the read-backs agree (`LabLeaving`).
 ///
-/// After bus-off, down or a command that was taken back, the first press of the arm button, which the interlock refuses,
-/// takes the bus into use again, with what is heard from then on, and the next one arms.
+/// After bus-off, down or a command that was taken back, the interlock refuses the first press of the arm button. This press
+/// puts the bus into use again, without earlier frames. The next press arms.
 template <hal::CanBus Can, hal::GpioLines Gpio, hal::Clock Clock>
 class LabRig {
  public:
-  /// How often the kernel is asked for a command that it has not given back.
+  /// Interval in which the kernel is asked again to take a command back.
   static constexpr std::int64_t kTakeBackEveryNs = 100'000'000;
 
-  /// `wiring`: where the inputs of the lab are among those of `gpio`.
+  /// `wiring`: the places of the lab's inputs among those of `gpio`.
   LabRig(Lab& lab, Can& can, Gpio& gpio, const LabGpio& wiring, Clock& clock, can::Layout layout,
          std::int64_t period_ns) noexcept
       : lab_(lab),
@@ -69,7 +68,7 @@ class LabRig {
   /// The recorder whose drops are a fault; null: nothing is recorded.
   void watch(const Recorder* recorder) noexcept { recorder_ = recorder; }
 
-  /// Readings have to be authentic, and commands are made so. Before the loop.
+  /// Requires authentic readings, and authenticates commands. Call it before the loop.
   void authenticate(can::Authentication& authentication) noexcept {
     authentication_ = &authentication;
     for (can::MessageFollower& follower : followers_) {
@@ -77,15 +76,15 @@ class LabRig {
     }
   }
 
-  /// From any thread: the profile is to be stopped and the program to end. `ended` becomes true when nothing is driven then,
-  /// and when the profile has been run.
+  /// From any thread: requests the end of the profile and of the program. `ended` becomes true when nothing is driven after
+  /// that, and when the profile is complete.
   void ask_to_stop_when(const std::atomic<bool>& asked) noexcept { stop_asked_ = &asked; }
   const std::atomic<bool>& ended() const noexcept { return ended_; }
-  /// Asks to stop by itself after so many cycles; 0: never.
+  /// Number of cycles after which the lab requests a stop itself; 0: never.
   void stop_after(std::uint64_t cycles) noexcept { most_cycles_ = cycles; }
 
-  /// Sets every output to off, whatever the interlock says: when the loop has ended. False if they cannot be set.
-  /// `hold_fault`: all but the fault line of a rig that is faulted.
+  /// Sets every output to off, whatever the interlock decides: after the end of the loop. False if they cannot be set.
+  /// `hold_fault`: all except the fault line of a faulted rig.
   bool drop_lines(bool hold_fault = false) noexcept {
     constexpr int kTries = 3;
     const bool fault = hold_fault && lab_.outputs().interlock.fault_out;
@@ -97,7 +96,7 @@ class LabRig {
     return false;
   }
 
-  /// Whether a command may still be before the bus: it must leave no more.
+  /// Whether a command may still wait below the program: it must not be sent any more.
   bool may_have_command_before_bus() const noexcept { return drove_ || take_back_refused_; }
 
   bool try_receive_command(hal::Command&) noexcept {
@@ -156,9 +155,9 @@ class LabRig {
   void add_to(hal::Fnv1a& hash) const noexcept { lab_.add_to(hash); }
 
   const Lab& lab() const noexcept { return lab_; }
-  /// What the lab has seen in this cycle.
+  /// The inputs of the lab in this cycle.
   const LabInputs& inputs() const noexcept { return inputs_; }
-  /// Messages that it listens to: those of the pistons, then the load pressures.
+  /// Messages that the lab receives: those of the pistons, then the load pressures.
   std::size_t messages() const noexcept { return messages_; }
   const can::Message& message(std::size_t which) const noexcept {
     return which < piston_messages_ ? can::reading_message(layout_, which) : can::load_pressure_message(layout_);
@@ -169,13 +168,13 @@ class LabRig {
  private:
   static constexpr std::size_t kMostMessages = can::kMostReadingMessages + 1;
   static constexpr double kNode = 1.0;
-  /// A driver that confirms a frame a little late is no fault; one that does so twice in a row is.
+  /// A late confirmation by the driver is no fault once; it is one in two cycles in a row.
   static constexpr unsigned kMostNotTaken = 2;
 
   /// A count of what should not be.
   class Growth {
    public:
-    /// Whether it has grown since the last call.
+    /// Whether the count has grown since the last call.
     bool is_seen(std::uint64_t count) noexcept {
       const bool grown = count != before_;
       before_ = count;
@@ -262,8 +261,8 @@ class LabRig {
     inputs_.start_changed = bit(changed, kStart);
   }
 
-  /// Inputs that have changed since the cycle before. Which way is not asked: of a pulse that is over when the kernel looks,
-  /// it reports the level that it finds. More edges than can be read or kept are taken for a change of every input.
+  /// Inputs that have changed since the previous cycle. The direction is not used: for a pulse that is already over, the
+  /// kernel reports the level that it finds. More edges than can be read or kept count as a change of every input.
   hal::GpioLevels take_changes() noexcept {
     constexpr int kMostReads = 8;
     std::array<hal::GpioEdge, 64> edges{};
@@ -349,7 +348,7 @@ class LabRig {
   }
 
   static constexpr std::int64_t kNever = std::int64_t{1} << 62;
-  /// Half as much again as any limit, so that a frame says that it is exceeded, and by how much.
+  /// Half as much again as any limit, so that a frame can show that a limit is exceeded, and by how much.
   static_assert(can::load_pressures::kSignals[0].factor * can::load_pressures::kSignals[0].highest_raw >=
                 1.5 * kMostLoadPressure);
 

@@ -16,8 +16,8 @@ namespace hotfire::firmware {
 /// A value for each actuator.
 using PerActuator = std::array<double, hal::kMaxActuators>;
 
-/// A stretch of a profile: for each actuator a straight line and a sine on it. The sine is the same for all but for its
-/// amplitude; its frequency rises or falls by the same factor in equal times.
+/// A part of a profile: for each actuator a straight line with a sine on it. The sine is the same for all except for its
+/// amplitude. Its frequency rises or falls by the same factor in equal times.
 struct Segment {
   double duration = 0.0;  ///< [s]
   PerActuator from{};     ///< of the line, at both ends [rad]
@@ -43,7 +43,7 @@ struct Segment {
   }
 };
 
-/// What a lab asks of its actuators: segments one after the other. At the border of two the later one counts.
+/// The commands of a lab: segments one after the other. At the border of two segments the later one applies.
 class Profile {
  public:
   explicit Profile(std::vector<Segment> segments) : segments_(std::move(segments)) {

@@ -16,14 +16,14 @@
 
 namespace hotfire::firmware {
 
-/// A count of the running program, and how the loop's thread reads it: without allocation, lock or system call.
+/// A count of the running program. The loop's thread reads it without allocation, lock or system call.
 struct LiveCounter {
   std::string group;
   std::string name;
   std::function<std::uint64_t()> value;
 };
 
-/// What a running program shows: every cycle with the counters at its end.
+/// The live view of a running program: every cycle with the counters at its end.
 class LiveView {
  public:
   LiveView(hal::LiveWriter writer, std::vector<LiveCounter> counters) noexcept
@@ -53,7 +53,7 @@ class LiveView {
   std::vector<LiveCounter> counters_;
 };
 
-/// What a loop hands its cycles to: a recorder, a live view, both or none.
+/// The outputs of a loop's cycles: a recorder, a live view, both or none.
 struct CycleOutputs {
   Recorder* recorder = nullptr;
   LiveView* view = nullptr;

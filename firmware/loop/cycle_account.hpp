@@ -9,14 +9,14 @@
 
 namespace hotfire::firmware {
 
-/// What an overrun is blamed on. `backlog`: the cycle began late only because the one before had not ended.
+/// The cause of an overrun. `backlog`: the cycle began late only because the one before had not ended.
 enum class Blame : std::uint8_t { wake_up, read, step, write, backlog };
 inline constexpr std::array<std::string_view, 5> kBlameNames{"wake_up", "read", "step", "write", "backlog"};
 
 /// The phases of a cycle.
 inline constexpr std::array<std::string_view, 5> kPhaseNames{"wake_up", "read", "step", "write", "account"};
 
-/// The moments of one cycle, in the order they come [ns].
+/// The times of one cycle, in their order [ns].
 struct CycleTimes {
   std::int64_t release;  ///< when it was due
   std::int64_t woken;
@@ -27,7 +27,7 @@ struct CycleTimes {
   bool slept;              ///< false if it was already due when the cycle before had ended
 };
 
-/// Counts what the cycles of a loop cost. A cycle overruns if its reading is sent after the next cycle is due.
+/// Statistics of the cycles of a loop. A cycle overruns if its reading is sent after the next cycle is due.
 class CycleAccount {
  public:
   /// The time of every phase [ns].

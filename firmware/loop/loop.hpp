@@ -18,22 +18,22 @@
 
 namespace hotfire::firmware {
 
-/// What follows when a cycle overruns. The schedule keeps its phase in all of them.
-/// - `catch_up`: every cycle is run; late ones follow without sleep until the schedule is reached again. The plant's time
-///   stays that of the clock.
+/// Reaction to an overrun. The schedule keeps its phase in every case.
+/// - `catch_up`: every cycle runs; late ones follow without sleep until the schedule is reached again. The plant's time
+///   stays equal to the clock.
 /// - `skip`: the cycles that are already due are left out and counted. The plant's time falls behind by as many periods.
 /// - `stop`: the loop ends.
 enum class OverrunPolicy : std::uint8_t { catch_up, skip, stop };
 inline constexpr std::array<std::string_view, 3> kOverrunPolicies{"catch-up", "skip", "stop"};
 
-/// Why a loop ended. `not_finite`: a sensor's value was NaN or infinite; that reading is not sent. `sync_lost`: what its
-/// cycles are locked to has stopped.
+/// Cause of the end of a loop. `not_finite`: a sensor's value was NaN or infinite; that reading is not sent. `sync_lost`:
+/// the syncs of its cycles have stopped.
 enum class Ending : std::uint8_t { completed, asked, overrun, not_finite, sync_lost };
 inline constexpr std::array<std::string_view, 5> kEndings{"completed", "asked to stop", "stopped by an overrun",
                                                           "stopped by a value that is not finite",
                                                           "stopped because the sync was lost"};
 
-/// 20 kHz: what a cycle takes beside the model, some microseconds, is then a tenth of it.
+/// 20 kHz: the overhead of a cycle beside the model, some microseconds, is then a tenth of it.
 inline constexpr std::int64_t kShortestPeriodNs = 50'000;
 inline constexpr std::int64_t kLongestPeriodNs = 10'000'000;
 
@@ -42,12 +42,12 @@ struct LoopSettings {
   std::uint64_t cycles = 0;            ///< after warm-up; 0: until asked to stop
   std::uint64_t warm_up_cycles = 100;  ///< run like the others but counted apart, always with the policy `skip`
   OverrunPolicy policy = OverrunPolicy::catch_up;
-  /// The number of a cycle counts those that were left out before it: what the loop drives goes on without it. Else it
-  /// counts the cycles that were run, as the time of a plant that only a cycle advances.
+  /// True: the number of a cycle counts the skipped cycles before it, because the driven rig continues without them. False:
+  /// it counts the cycles that ran, like the time of a plant that only a cycle advances.
   bool number_skipped = false;
 };
 
-/// What a loop leaves behind.
+/// The result of a loop.
 struct LoopResult {
   explicit LoopResult(std::int64_t period_ns) noexcept : account(period_ns) {}
 
@@ -63,7 +63,7 @@ struct LoopResult {
   hal::Reading last_reading;
 };
 
-/// Where the cycles of a loop are kept: called once a cycle, after its reading is sent. Real-time.
+/// The outputs of a loop's cycles: called once a cycle, after its reading is sent. Real-time.
 template <class R>
 concept CycleRecorder = requires(R& recorder, const hal::CycleHead& head, std::span<const double> values) {
   { recorder.record(head, values, values) }
@@ -75,15 +75,15 @@ struct NoRecorder {
   void record(const hal::CycleHead&, std::span<const double>, std::span<const double>) noexcept {}
 };
 
-/// The real-time loop of a plant: at every cycle of its pace read the newest command, step the plant, write its reading,
-/// account for it. Nothing in it allocates, locks, throws or logs, and its only system calls are those of the pace and the
-/// bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and `actuators()`. A bus that has
-/// `note_overrun()` is called after every cycle that overran.
+/// The real-time loop of a plant. In every cycle of its pace it reads the newest command, steps the plant, writes its
+/// reading and accounts for the cycle. It does not allocate, lock, throw or log. Its only system calls are those of the pace
+/// and the bus. `Plant` has `step(command)`, `measured()`, `missing()`, `add_to(hash)` and `actuators()`. If a bus has
+/// `note_overrun()`, it is called after every cycle that overran.
 ///
-/// It counts up a heartbeat every turn, also while it waits for a first cycle, which a monitor of the process may
-/// look at from another thread.
+/// The loop increments a heartbeat in every turn, also while it waits for a first cycle. A monitor in another thread may
+/// read it.
 ///
-/// About 200 kB: make it on the heap, before memory is locked.
+/// Its size is about 200 kB: make it on the heap, before memory is locked.
 template <class Plant, hal::PlantBus Bus, hal::Clock Clock, class Pace = OwnPace<Clock>, CycleRecorder Recorder = NoRecorder>
 class Loop {
  public:
@@ -97,7 +97,7 @@ class Loop {
         recorder_(recorder),
         result_(settings.period_ns) {}
 
-  /// Cycles of the loop's own clock, not recorded.
+  /// The cycles of the loop's own clock, not recorded.
   Loop(Plant& plant, Bus& bus, Clock& clock, const LoopSettings& settings) noexcept
       : Loop(plant, bus, clock, settings, Pace(clock, settings.period_ns), nullptr) {}
 
@@ -201,7 +201,7 @@ class Loop {
                       std::span(result_.last_reading.values).first(result_.last_reading.count));
   }
 
-  /// Whether this cycle was the last for another reason than their number.
+  /// Whether this cycle was the last one for another reason than the number of cycles.
   bool ended(const CycleTimes& times) noexcept {
     if (!finite_) {
       result_.ending = Ending::not_finite;

@@ -10,7 +10,7 @@
 
 namespace hotfire::firmware {
 
-/// How a cycle came to begin.
+/// The cause of the start of a cycle.
 struct Wake {
   std::int64_t release_ns = 0;  ///< when it was due
   std::int64_t woken_ns = 0;
@@ -25,8 +25,8 @@ struct Wake {
 //
 // All without allocation, lock or exception.
 
-/// Cycles at absolute times of the loop's own clock: the schedule does not drift with the work, and keeps its phase whatever
-/// is left out.
+/// Cycles at absolute times of the loop's own clock. The schedule does not drift with the work, and keeps its phase if
+/// cycles are left out.
 template <hal::Clock Clock>
 class OwnPace {
  public:
@@ -63,13 +63,13 @@ class OwnPace {
   std::int64_t next_ns_ = 0;  ///< 0: not begun
 };
 
-/// Cycles at the syncs of someone else, one a sync: the plant ticks as the rig does, and its time is counted in syncs.
+/// Cycles at external syncs, one for each sync. The plant follows the rig, and its time is counted in syncs.
 ///
-/// A cycle is released by the arrival of its sync. If none has come by the patience after it should have, it is
-/// missed: the cycle is run without it, on the schedule of the last one, so that a lost frame does not take a period from
-/// the plant's time. Its sync may come yet, within half a period; later it is the next cycle's, come early. After more than
-/// `most_missed` in a row the pace is lost. Syncs that arrive while a cycle overruns are run one after the other, or left
-/// out by `drop_overdue`.
+/// The arrival of a sync releases its cycle. A sync is missed if it has not come by the patience after its due time. Its
+/// cycle then runs without it, on the schedule of the last one, so that a lost frame takes no period from the plant's time.
+/// A sync within half a period later still belongs to that cycle. After that it is an early sync of the next cycle. After
+/// more than `most_missed` in a row the pace is lost. Syncs that arrive during an overrun run one after the other, or
+/// `drop_overdue` leaves them out.
 template <hal::Clock Clock, hal::SyncSource Source>
 class SyncPace {
  public:
@@ -150,9 +150,9 @@ class SyncPace {
   std::uint64_t missed_in_a_row_ = 0;
 };
 
-/// Cycles that wait for an answer: at the period of the loop's own clock, but none before the plant has answered the last
-/// one. The rig then runs as fast as its slowest part, no cycle is lost, and none overruns for another's sake. `Answers`
-/// has `wait_for_frame(deadline_ns, frame, arrival_ns)`.
+/// Cycles that wait for an answer. They come at the period of the loop's own clock, but not before the plant has answered
+/// the last one. The rig then runs as fast as its slowest part. No cycle is lost, and no part overruns because of another
+/// one. `Answers` has `wait_for_frame(deadline_ns, frame, arrival_ns)`.
 template <hal::Clock Clock, class Answers>
 class LockstepPace {
  public:

@@ -15,10 +15,10 @@
 
 namespace hotfire::firmware {
 
-/// What a plant plays on purpose, so that a controller can be tried on it.
+/// Faults that a plant simulates, to test a controller.
 ///
-/// Of a sensor: `stuck` holds what it read before; `biased` adds `value`; `noisy` adds white noise of rms `value`; `dropped`
-/// is not sent; `delayed` is sent `value` seconds late. Of an actuator: `leak` has a leakage of `value` across the piston;
+/// Of a sensor: `stuck` holds the last reading; `biased` adds `value`; `noisy` adds white noise of rms `value`; `dropped` is
+/// not sent; `delayed` is sent `value` seconds late. Of an actuator: `leak` has a leakage of `value` across the piston;
 /// `lost_supply` has a supply pressure of `value`. `bus_off`: the plant neither receives nor sends. Of an engine: `torque`
 /// of `value` turns it towards positive angles of the actuator's axis; `thrust` of `value` replaces the declared one.
 enum class PlayedKind : std::uint8_t { stuck, biased, noisy, dropped, delayed, leak, lost_supply, bus_off, torque, thrust };
@@ -39,7 +39,7 @@ inline constexpr double kLargestThrust = 1e8;
 /// The longest delay of a sensor [s].
 inline constexpr double kLongestSensorDelay = 1.0;
 
-/// One fault that a plant plays, from a time to a time [s] of the plant, which begins with its first cycle.
+/// One simulated fault, from a time to a time [s] of the plant, whose time begins with its first cycle.
 struct PlayedFault {
   PlayedKind kind = PlayedKind::stuck;
   double from = 0.0;
@@ -51,7 +51,7 @@ struct PlayedFault {
   bool is_of(std::size_t one) const noexcept { return actuator == 0 || static_cast<std::size_t>(actuator) == one + 1; }
 };
 
-/// The parameters of an axis while a fault of its actuator lasts. One without hydraulics stays what it is.
+/// The parameters of an axis during a fault of its actuator. An axis without hydraulics does not change.
 template <class Parameters>
 void put_into(Parameters& axis, const PlayedFault& fault) {
   if constexpr (requires { axis.actuator.leakage; }) {
@@ -78,7 +78,7 @@ struct CycleSpan {
   }
 };
 
-/// What acts on the engines of a plant from outside, by the faults that say so.
+/// External loads on the engines of a plant by declared faults.
 class PlayedLoads {
  public:
   PlayedLoads(const std::vector<PlayedFault>& faults, double period) {
@@ -91,7 +91,7 @@ class PlayedLoads {
 
   bool any() const noexcept { return !loads_.empty(); }
 
-  /// The torque on an actuator's engine in a cycle: the sum of all that last [N m]. Real-time.
+  /// The torque on an actuator's engine in a cycle: the sum of all active faults [N m]. Real-time.
   double torque(std::uint64_t cycle, std::size_t actuator) const noexcept {
     double sum = 0.0;
     for (const Load& load : loads_) {
@@ -100,7 +100,7 @@ class PlayedLoads {
     return sum;
   }
 
-  /// The thrust of an engine in a cycle [N]; `declared` while none is played. Real-time.
+  /// The thrust of an engine in a cycle [N]; `declared` if no fault sets one. Real-time.
   double thrust(std::uint64_t cycle, std::size_t engine, double declared) const noexcept {
     for (const Load& load : loads_) {
       if (load.is(PlayedKind::thrust, cycle) && (load.fault.is_of(2 * engine) || load.fault.is_of(2 * engine + 1))) {
@@ -121,7 +121,7 @@ class PlayedLoads {
   std::vector<Load> loads_;
 };
 
-/// Plays the faults of the sensors of a plant on what they read. The same faults and readings give the same bits.
+/// Applies the faults of sensors to their readings. The same faults and readings give the same bits.
 class PlayedSensors {
  public:
   /// `period` in s, `channels` an actuator.
@@ -135,8 +135,8 @@ class PlayedSensors {
     }
   }
 
-  /// Changes the readings of a cycle. `before` is what was sent in the cycle before it. Real-time. Returns the readings that
-  /// are not sent, one bit each.
+  /// Changes the readings of a cycle. `before` has the readings that were sent in the previous cycle. Real-time. Returns the
+  /// readings that are not sent, one bit each.
   std::uint32_t play(std::uint64_t cycle, std::span<const double> before, std::span<double> readings) noexcept {
     std::uint32_t missing = 0;
     for (Played& one : played_) {
@@ -178,7 +178,7 @@ class PlayedSensors {
       }
     }
 
-    /// Takes a reading in and gives the one that is as late as the delay says.
+    /// Takes a reading and returns the reading that is older by the delay.
     double kept(double now) noexcept {
       if (past.empty()) {
         return now;
@@ -207,14 +207,14 @@ class PlayedSensors {
   std::vector<Played> played_;
 };
 
-/// What the sensors of a plant read, with what its faults make of that, cycle by cycle.
+/// The readings of a plant's sensors with the faults applied, cycle by cycle.
 class PlayedReadings {
  public:
   /// `period` in s, `channels` an actuator.
   PlayedReadings(const std::vector<PlayedFault>& faults, double period, std::size_t actuators, std::size_t channels)
       : readings_(actuators * channels), before_(readings_.size()), sensors_(faults, period, actuators, channels) {}
 
-  /// Before the first cycle, without faults. `measure(readings)` fills in what the sensors read.
+  /// Before the first cycle, without faults. `measure(readings)` fills in the readings of the sensors.
   template <class Measure>
   void start(Measure&& measure) noexcept {
     measure(std::span(readings_));
@@ -231,7 +231,7 @@ class PlayedReadings {
   /// The cycle that is under way, from 0.
   std::uint64_t cycle() const noexcept { return cycle_; }
   std::span<const double> values() const noexcept { return readings_; }
-  /// Which of them are not sent, one bit each.
+  /// The readings that are not sent, one bit each.
   std::uint32_t missing() const noexcept { return missing_; }
 
  private:
@@ -242,7 +242,7 @@ class PlayedReadings {
   std::uint32_t missing_ = 0;
 };
 
-/// A bus that is off while its faults say so: what arrives is lost, nothing is sent (`hal::PlantBus`).
+/// A bus that is off during its faults: received frames are lost, and nothing is sent (`hal::PlantBus`).
 template <hal::PlantBus Bus>
 class PlayedBus {
  public:

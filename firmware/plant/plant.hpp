@@ -19,9 +19,9 @@
 
 namespace hotfire::firmware {
 
-/// One to `hal::kMaxActuators` equal models behind the plant's side of a bus, each with a command of its own: one period a
-/// step, split into equal steps of the model. At rest at zero first. Plays the faults and the record of disturbances it is
-/// given: a recorded torque acts on the engine of every actuator.
+/// One to `hal::kMaxActuators` equal models behind the plant's side of a bus, each with a command of its own. A step
+/// advances them by one period, in equal steps of the model. They start at rest at zero. The plant applies its declared
+/// faults and recorded disturbances: a recorded torque acts on the engine of every actuator.
 template <class Model>
 class Plant {
  public:
@@ -63,7 +63,7 @@ class Plant {
   std::size_t actuators() const noexcept { return states_.size(); }
   int steps_per_cycle() const noexcept { return steps_; }
 
-  /// What the sensors read, actuator after actuator, in the order of `Model::channels`.
+  /// Readings of the sensors, actuator after actuator, in the order of `Model::channels`.
   std::span<const double> measured() const noexcept { return readings_.values(); }
 
   /// Gives every engine its four string potentiometers, at their representative places on a structure at rest.
@@ -75,14 +75,14 @@ class Plant {
     measure_strings();
   }
 
-  /// What the string potentiometers read: the change of each length from zero angles [m], engine after engine.
+  /// Readings of the string potentiometers: the change of each length from zero angles [m], engine after engine.
   std::span<const double> strings() const noexcept { return strings_; }
 
-  /// Which of the readings of `measured` are not sent, one bit each.
+  /// The readings of `measured` that are not sent, one bit each.
   std::uint32_t missing() const noexcept { return readings_.missing(); }
 
-  /// Adds the continuous state of every actuator and what its sensors read. What an effect remembers is not in it: it acts
-  /// on the state in the next step.
+  /// Adds the continuous state of every actuator and the readings of its sensors. The memory of an effect is left out,
+  /// because it acts on the state in the next step.
   void add_to(hal::Fnv1a& hash) const noexcept {
     for (const typename Model::State& state : states_) {
       hash.add(std::span(state.y.data(), static_cast<std::size_t>(state.y.size())));
@@ -91,7 +91,7 @@ class Plant {
   }
 
  private:
-  /// The model while a fault of its actuator lasts: the state goes on in it.
+  /// The model during a fault of its actuator; it continues from the same state.
   struct Broken {
     Broken(const PlayedFault& played, double period, const Model& as_it_is)
         : fault(played), cycles(played, period), model(as_it_is) {}

@@ -14,8 +14,9 @@
 
 namespace hotfire::firmware {
 
-/// What a plant plays from a record: a `torque` [N m] on the engine towards positive angles of an axis; a `force` [N] at its
-/// gimbal's centre; a `vibration` [rad/s], added to the slip of its bearing; a `thrust` [N] in place of the declared one.
+/// Disturbances of a record that a plant applies. `torque` [N m] acts on the engine towards positive angles of an axis,
+/// `force` [N] at the centre of its gimbal. `vibration` [rad/s] adds to the slip of its bearing. `thrust` [N] replaces the
+/// declared one.
 enum class RecordedKind : std::uint8_t { torque, force, vibration, thrust };
 inline constexpr std::array<std::string_view, 4> kRecordedKinds{"torque", "force", "vibration", "thrust"};
 
@@ -41,15 +42,15 @@ inline std::optional<int> cycles_per_row(double row_period, double period) noexc
   return is_whole ? std::optional(static_cast<int>(cycles)) : std::nullopt;
 }
 
-/// Plays the disturbances of a record as `hotfire simulate` does: between rows a thrust is held, and everything else is
-/// interpolated (`model::Interpolation`), each plant step getting the mean over its own part of the row. After the last row
-/// the thrust is the declared one, and everything else is zero.
+/// Applies the disturbances of a record as `hotfire simulate` does. Between rows a thrust is held and the others are
+/// interpolated (`model::Interpolation`). A plant step gets the mean over its part of the row. After the last row the thrust
+/// is the declared one, and the others are zero.
 ///
-/// All values are in memory before the first cycle. A cycle costs the same whatever the record says.
+/// All values are in memory before the first cycle. A cycle costs the same for any record.
 class RecordedLoads {
  public:
-  /// `period` [s] of a cycle, and the plant steps in it. Plays nothing if a row does not last a whole number of cycles: such
-  /// a record is refused before (`cycles_per_row`).
+  /// `period` [s] of a cycle, and the plant steps in it. Applies nothing if a row does not last a whole number of cycles:
+  /// such a record is refused before (`cycles_per_row`).
   RecordedLoads(LoadRecord record, double period, int steps) : steps_(static_cast<std::uint64_t>(steps)) {
     const std::optional<int> cycles = cycles_per_row(record.period, period);
     cycles_ = static_cast<std::uint64_t>(cycles.value_or(1));
@@ -62,7 +63,7 @@ class RecordedLoads {
 
   bool any() const noexcept { return !signals_.empty(); }
 
-  /// What acts in a plant step of a cycle, both from 0: `act(kind, place, value)`. Real-time.
+  /// Calls `act(kind, place, value)` for each disturbance in a plant step of a cycle, both counted from 0. Real-time.
   template <class Act>
   void act_in(std::uint64_t cycle, int step, Act&& act) const noexcept {
     const std::uint64_t row = cycle / cycles_;

@@ -13,9 +13,8 @@
 
 namespace hotfire::firmware {
 
-/// What a plant can be tried with when there is nothing else: commands every actuator as a source says, one command a
-/// period of its own count. For the loop it is a plant whose command is what the pistons read, and whose reading is the
-/// command [rad].
+/// A controller to test a plant without any other: it commands every actuator by one source, one command a period of its own
+/// count. For the loop it is a plant. Its input is the position of the pistons, and its reading is the command [rad].
 class ReferenceController {
  public:
   static constexpr std::string_view topology = "reference controller";

@@ -6,8 +6,8 @@
 
 namespace hotfire::firmware {
 
-/// The reference axis with every effect active at its typical value: the most that one cycle can cost, which is what a
-/// timing check without a model file runs.
+/// The reference axis with every effect active at its typical value. A cycle of it costs most, so a timing check without a
+/// model file runs it.
 inline model::Simplex<double>::Parameters reference_plant_with_every_effect() {
   model::Simplex<double>::Parameters parameters;
   parameters.effects.active.fill(true);

@@ -21,10 +21,10 @@
 
 namespace hotfire::firmware {
 
-/// A vehicle, every engine with its two actuators on one structure, behind the plant's side of a bus: one period a step,
-/// split into equal steps of the model. Actuators in the order of the vehicle's axes: pitch and yaw of engine 1, then of
-/// engine 2 and so on. In the steady state first, under no command and the thrust of the first row of a record that has one.
-/// Plays the faults and the record of disturbances it is given.
+/// A vehicle with its engines, two actuators each, on one structure, behind the plant's side of a bus. A step advances it by
+/// one period, in equal steps of the model. The actuators are in the order of the vehicle's axes: pitch and yaw of engine 1,
+/// then of engine 2 and so on. It starts in the steady state at zero command, under the thrust of the first row of a record
+/// that has one. It applies its declared faults and recorded disturbances.
 template <class Vehicle>
 class VehiclePlant {
  public:
@@ -74,25 +74,26 @@ class VehiclePlant {
 
   static constexpr std::size_t actuators() noexcept { return Vehicle::kAxes; }
 
-  /// What the sensors read, actuator after actuator, in the order of `channels`.
+  /// Readings of the sensors, actuator after actuator, in the order of `channels`.
   std::span<const double> measured() const noexcept { return readings_.values(); }
 
-  /// Gives every engine its four string potentiometers, where the vehicle's sensors have them. Before the first step.
+  /// Adds four string potentiometers to every engine, at the places that the vehicle's sensors declare. Before the first
+  /// step.
   void string_up() noexcept {
     has_strings_ = true;
     sensors_.read_strings(*state_, period_, string_noise_);
   }
 
-  /// What the string potentiometers read: the change of each length from zero angles [m], engine after engine.
+  /// Readings of the string potentiometers: the change of each length from zero angles [m], engine after engine.
   std::span<const double> strings() const noexcept {
     return has_strings_ ? std::span<const double>(sensors_.strings()) : std::span<const double>();
   }
 
-  /// Which of the readings of `measured` are not sent, one bit each.
+  /// The readings of `measured` that are not sent, one bit each.
   std::uint32_t missing() const noexcept { return readings_.missing(); }
 
-  /// Adds the continuous state of every axis, of the modes and of the gimbals, and what the sensors read. What an effect
-  /// remembers is not in it: it acts on the state in the next step.
+  /// Adds the continuous state of every axis, of the modes and of the gimbals, and the readings of the sensors. The memory
+  /// of an effect is left out, because it acts on the state in the next step.
   void add_to(hal::Fnv1a& hash) const noexcept {
     for (const auto& axis : state_->axes) {
       hash.add(std::span(axis.y.data(), static_cast<std::size_t>(axis.y.size())));
@@ -118,7 +119,7 @@ class VehiclePlant {
  private:
   using State = typename Vehicle::State;
 
-  /// The vehicle while the same faults of its actuators last: the state goes on in it.
+  /// The vehicle during a constant set of faults; it continues from the same state.
   struct Broken {
     Broken(std::uint64_t first, std::uint64_t end, const typename Vehicle::Parameters& parameters, double h)
         : from(first), to(end), vehicle(parameters, h) {}
@@ -128,8 +129,8 @@ class VehiclePlant {
     Vehicle vehicle;
   };
 
-  /// The axes are coupled, so faults that last at the same time need one vehicle that has them all: one for every stretch of
-  /// cycles between two moments at which a fault begins or ends.
+  /// The axes are coupled. Faults that overlap in time therefore need one vehicle with all of them: one for every interval
+  /// of cycles between two times at which a fault begins or ends.
   void make_broken(const typename Vehicle::Parameters& parameters, const std::vector<PlayedFault>& faults) {
     std::vector<std::uint64_t> moments;
     for (const PlayedFault& fault : faults) {
@@ -193,7 +194,7 @@ class VehiclePlant {
     return thrust;
   }
 
-  /// What acts on the engines in a plant step of the cycle: faults add to a recorded torque, and replace a recorded thrust.
+  /// The loads on the engines in a plant step of the cycle: faults add to a recorded torque, and replace a recorded thrust.
   void put_loads(int step) noexcept {
     const std::uint64_t cycle = readings_.cycle();
     for (std::size_t axis = 0; axis < actuators(); ++axis) {

@@ -5,8 +5,8 @@
 
 namespace hotfire::firmware {
 
-/// White noise of mean 0 and variance 1: each number is the sum of twelve uniform ones, which needs no function that a C
-/// library may round its own way, so that the same seed gives the same bits. Uniform numbers by xorshift64* [Vigna 2016].
+/// White noise of mean 0 and variance 1. Each number is the sum of twelve uniform ones. This needs no function that C
+/// libraries round differently, so the same seed gives the same bits. Uniform numbers by xorshift64* [Vigna 2016].
 /// Real-time.
 class WhiteNoise {
  public:

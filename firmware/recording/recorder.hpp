@@ -16,7 +16,7 @@
 
 namespace hotfire::firmware {
 
-/// What became of the cycles that a recorder was given: offered = stored + dropped, exactly.
+/// Counts of the cycles that a recorder received: offered = stored + dropped, exactly.
 struct RecorderAccount {
   std::uint64_t offered = 0;
   std::uint64_t stored = 0;
@@ -26,14 +26,14 @@ struct RecorderAccount {
   std::uint64_t dropped() const noexcept { return offered - stored; }
 };
 
-/// Takes cycles from a real-time loop and hands them to a sink by a thread of its own, which is not real-time. Between the
-/// two is a ring: when the sink is slower than the loop for so long that the ring is full, cycles are dropped, and counted.
-/// The first refusal of the sink, to append or to make safe, ends the recording: every cycle from then on is dropped.
+/// Takes cycles from a real-time loop and gives them to a sink in a thread of its own, which is not real-time. A ring is
+/// between the two. If the sink is slower than the loop until the ring is full, cycles are dropped and counted. The first
+/// refusal of the sink, to append or to make safe, ends the recording: every cycle from then on is dropped.
 class Recorder {
  public:
-  /// How often the thread empties the ring: what is lost when the process is killed is no more than this and one write.
+  /// Interval in which the thread empties the ring. A killed process loses no more than this and one write.
   static constexpr std::int64_t kEmptyEveryNs = 50'000'000;
-  /// How often what is written is also made safe from a loss of power.
+  /// Interval in which the written data are made safe from a loss of power.
   static constexpr std::int64_t kSyncEveryNs = 1'000'000'000;
 
   /// `slots`: cycles that the ring holds.
@@ -48,17 +48,17 @@ class Recorder {
   /// Real-time, wait-free: copies the cycle into the ring, or drops it.
   void record(const hal::CycleHead& head, std::span<const double> commands, std::span<const double> readings) noexcept;
 
-  /// True once a cycle has been dropped, whether the ring was full or the sink refuses any more. Real-time.
+  /// True once a cycle has been dropped, because the ring was full or the sink refused it. Real-time.
   bool dropping() const noexcept { return dropped_ > 0; }
 
-  /// Cycles that it was given, those of them that found no room, those that wait for the thread, and the room for them: from
-  /// the loop. Real-time.
+  /// Cycles that the recorder received, those that found no room, those that wait for the thread, and the room for them.
+  /// Call it from the loop. Real-time.
   std::uint64_t offered() const noexcept { return offered_; }
   std::uint64_t dropped() const noexcept { return dropped_; }
   std::size_t waiting() const noexcept { return ring_.waiting(); }
   std::size_t room() const noexcept { return ring_.slots(); }
 
-  /// Writes what is left in the ring and the end of the recording, and ends the thread. Not real-time. To be called once.
+  /// Writes the rest of the ring and the end of the recording, and ends the thread. Not real-time. Call it once.
   RecorderAccount close();
 
  private:

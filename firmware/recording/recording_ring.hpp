@@ -10,11 +10,11 @@
 
 namespace hotfire::firmware {
 
-/// A ring of slots of equal size between one thread that fills and one that empties it. Both sides are wait-free: each call
-/// is a bounded number of instructions, whatever the other side does, and none allocates or asks the system.
+/// A ring of slots of equal size between one thread that fills it and one that empties it. Both sides are wait-free. Each
+/// call is a bounded number of instructions, whatever the other side does. It does not allocate and makes no system call.
 class RecordingRing {
  public:
-  /// Touches all its memory, so that no later use faults a page in.
+  /// Touches all its memory, so that no later use causes a page fault.
   RecordingRing(std::size_t slot_bytes, std::size_t slots)
       : slot_bytes_(slot_bytes), slots_(slots), memory_(slot_bytes * slots) {}
 

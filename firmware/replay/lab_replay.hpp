@@ -6,9 +6,9 @@
 
 namespace hotfire::firmware {
 
-/// Replays the recording of a lab: what it saw in every cycle is given to its logic again, from the recorded profile and
-/// limits. State, first fault, commands, currents and positions have to be the recorded bits. What becomes of frames and
-/// lines before the logic sees them is not replayed.
+/// Replays the recording of a lab: its logic gets the recorded inputs of every cycle again, with the recorded profile and
+/// limits. State, first fault, commands, currents and positions must equal the recorded bits. The processing of frames and
+/// lines before the logic is not replayed.
 Replay replay_lab(hal::RecordingReader& reader);
 
 }  // namespace hotfire::firmware

@@ -10,10 +10,10 @@
 
 namespace hotfire::firmware {
 
-/// What a replay found: the recorded inputs, fed to the recorded model, or to a lab's logic with the recorded profile, from
-/// the start, offline.
+/// Result of a replay: the recorded inputs run through the recorded model, or through a lab's logic with the recorded
+/// profile, from the start, offline.
 struct Replay {
-  /// The first cycle whose state or readings are not the bits that were recorded.
+  /// The first cycle whose state or readings differ from the recorded bits.
   struct Difference {
     std::uint64_t cycle = 0;
     std::string what;  ///< which reading, or the state behind the same readings
@@ -28,19 +28,20 @@ struct Replay {
   std::string error{};  ///< the recording cannot be replayed at all
 };
 
-/// Says that a recorded value is not the replayed one, bit for bit; empty if it is. Actuators count from 0.
+/// The difference between a recorded value and the replayed one, bit for bit; empty if they are equal. Actuators count from
+/// 0.
 std::string differing(const hal::RecordedChannel& channel, std::size_t actuator, double recorded, double replayed);
 
-/// Goes through a recording up to what was dropped or differs. `difference_in` replays a cycle and says what of it is not as
-/// recorded; empty if all is.
+/// Replays a recording up to a dropped cycle or a difference. `difference_in` replays a cycle and returns its difference
+/// from the recording; empty if there is none.
 void replay_cycles(hal::RecordingReader& reader, Replay& result,
                    const std::function<std::string(const hal::RecordedCycle&)>& difference_in);
 
 /// Replays a recording from a fresh reader.
 Replay replay(hal::RecordingReader& reader);
 
-/// Replays a file and prints what it found. Returns the exit status: 0 every recorded cycle has the same bits; 1 one
-/// differs, or lies behind a gap and cannot be proved; 6 the file is refused or damaged.
+/// Replays a file and prints the result. Returns the exit status. 0: every recorded cycle has the same bits. 1: a cycle
+/// differs, or follows a gap and cannot be proved. 6: the file is refused or damaged.
 int run_replay(const std::string& path, bool json);
 
 }  // namespace hotfire::firmware

@@ -51,7 +51,7 @@ std::string picture(const Histogram& histogram) {
 std::string overruns(const CycleAccount& account) {
   std::string result = text("  overruns      %llu", whole(account.overruns()));
   for (std::size_t i = 0; account.overruns() > 0 && i < kBlameNames.size(); ++i) {
-    result += text("%s %s %llu", i == 0 ? ", blamed on:" : ",", kBlameNames[i].data(),
+    result += text("%s %s %llu", i == 0 ? ", by phase:" : ",", kBlameNames[i].data(),
                    whole(account.blamed(static_cast<Blame>(i))));
   }
   return result + "\n";
@@ -63,14 +63,14 @@ std::string worst_cycle(const CycleAccount& account) {
     return text("wake-up %.1f, read %.1f, step %.1f, write %.1f, account %.1f us", us(ns[0]), us(ns[1]), us(ns[2]),
                 us(ns[3]), us(ns[4]));
   };
-  return text("  worst cycle   %llu: %s; longest: %s\n  worst phases  %s, each in a cycle of its own\n", whole(worst.cycle),
+  return text("  worst cycle   %llu: %s; longest: %s\n  worst phases  %s, each in its own cycle\n", whole(worst.cycle),
               phases(worst.phases_ns).c_str(), kBlameNames[static_cast<std::size_t>(worst.blame)].data(),
               phases(account.longest()).c_str());
 }
 
 std::string scheduling(const Session& session) {
   if (!session.real_time) {
-    return "  real time     NO: ran as far as this machine allows, what follows says nothing about a real-time machine\n";
+    return "  real time     NO: the system refused a part of it; the figures below do not describe a real-time machine\n";
   }
   const std::string scheduler =
       session.options.scheduler == Scheduler::deadline ? "SCHED_DEADLINE" : text("SCHED_FIFO %d", session.options.priority);

@@ -12,12 +12,11 @@
 
 namespace hotfire::firmware {
 
-/// Reports to the service manager what the loop's own heartbeat says: READY=1 when it first beats, WATCHDOG=1 only while it
-/// goes on beating, STOPPING=1 at the end. A loop that hangs is silent, and the manager ends it, however well this thread
-/// does.
+/// Reports the loop's own heartbeat to the service manager: READY=1 at the first beat, WATCHDOG=1 only while it continues,
+/// STOPPING=1 at the end. A loop that hangs sends no message, and the manager ends it, even if this thread still runs.
 class Watchdog {
  public:
-  /// How often to look where the manager has no watchdog.
+  /// Interval of the check if the manager has no watchdog.
   static constexpr std::uint64_t kLookEveryUs = 500'000;
 
   /// `heartbeat` is counted up by the loop.
@@ -27,11 +26,11 @@ class Watchdog {
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// Starts to look, four times in the manager's interval; nothing without a manager. Before the real-time set-up of the
-  /// calling thread.
+  /// Starts the checks, four times in the manager's interval; does nothing without a manager. Call it before the real-time
+  /// set-up of the calling thread.
   std::optional<hal::Failure> start();
 
-  /// Looks no more, and says that the loop has ended.
+  /// Ends the checks, and reports the end of the loop.
   void stop();
 
   /// How often it has looked.

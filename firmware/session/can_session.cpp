@@ -74,7 +74,7 @@ std::optional<hal::Failure> CanSession::refuse_without_take_back() {
     return std::nullopt;
   }
   return hal::Failure{
-      "a command that nobody acknowledges could not be taken back: " + options_.bus + " may not be taken down",
+      "this program may not take " + options_.bus + " down, so it could not take back a command that no node acknowledges",
       "give the program CAP_NET_ADMIN: 'setcap cap_net_admin,cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or "
       "AmbientCapabilities= of its unit"};
 }

@@ -15,7 +15,7 @@ namespace hotfire::firmware {
 /// A program's CAN interface.
 class CanSession {
  public:
-  /// `more`: what a plant sends besides its readings, which is a part of the bus's load.
+  /// `more`: the frames of a plant in addition to its readings, which are a part of the bus load.
   CanSession(const CanOptions& options, const RunOptions& run, const can::NodeIds& ids, can::MoreReadings more = {});
 
   /// The same of the options of a mode, which are both.
@@ -23,24 +23,24 @@ class CanSession {
   CanSession(const OfMode& options, const can::NodeIds& ids, can::MoreReadings more = {})
       : CanSession(options, options, ids, more) {}
 
-  /// Opens it. Refuses an interface that is not there, no CAN, not FD or down, no permission, and a schedule that takes too
-  /// much of it. Prints the refusal with its remedy to standard error and returns the exit status; kGood if there is none.
-  /// Nothing has been sent then.
+  /// Opens the bus. Refuses an interface that does not exist, is not CAN, is not FD or is down. Refuses a missing
+  /// permission, and a schedule that takes too much of the bus. Prints the refusal with its remedy to standard error and
+  /// returns the exit status; kGood if there is no refusal. No frame has been sent then.
   int open();
 
-  /// Sees to it that nothing that was handed to the bus leaves after the program: a command that nobody has acknowledged
-  /// must not move anything when somebody does. If it `may_wait`, a frame that is on its way is given the time it takes.
-  /// What is left is taken back with the interface, and the kernel asked for a second if it refuses that. False if it still
-  /// does.
+  /// Ensures that no frame leaves after the end of the program: a command that nobody has acknowledged must not move
+  /// anything later. If it `may_wait`, a frame that is being sent gets the time that it needs. Frames that remain are taken
+  /// back with the interface. If the kernel refuses this, it is asked again for a second. False if it still refuses.
   bool leave(bool may_wait = true);
   /// What there is to do then.
   hal::Failure not_left() const;
 
-  /// Whether this program may not take the interface down, which alone takes a command back: said before anything is sent.
+  /// Whether this program is not allowed to take the interface down, which is the only way to take a command back. Reported
+  /// before anything is sent.
   std::optional<hal::Failure> refuse_without_take_back();
 
   hal::SocketCan& socket() noexcept { return socket_; }
-  /// Of the key that the options name; null if they name none. Once `open` has found it good.
+  /// The key that the options name; null if they name none. Valid after `open` has accepted it.
   can::Authentication* authentication() noexcept { return authentication_ ? &*authentication_ : nullptr; }
 
   /// Its account so far, without messages.

@@ -49,7 +49,7 @@ std::optional<hal::Failure> refuse_unconfirmed(const LabOptions& options, const 
   if (options.rehearsal || options.confirm == digest) {
     return std::nullopt;
   }
-  return hal::Failure{"the digest of the profile is " + digest + "; --confirm says " + options.confirm,
+  return hal::Failure{"the digest of the profile is " + digest + "; --confirm has " + options.confirm,
                       "read the profile, and confirm the digest that 'hotfire check' prints of it"};
 }
 
@@ -70,13 +70,13 @@ std::optional<hal::Failure> refuse_slow_limit(const LabOptions& options, const F
 
 std::optional<hal::Failure> refuse_rehearsal(const LabOptions& options) {
   if (options.rehearsal && !hal::is_virtual_can(options.bus)) {
-    return hal::Failure{"--rehearsal: " + options.bus + " is no virtual CAN interface",
-                        "a vcan, or leave --rehearsal out: what moves real actuators is no rehearsal"};
+    return hal::Failure{"--rehearsal: " + options.bus + " is not a virtual CAN interface",
+                        "a vcan, or leave --rehearsal out: a rehearsal must not move real actuators"};
   }
   // A real line of a rehearsal would switch a real supply. A chip that is not there is refused later, with its remedy.
   if (options.rehearsal && !hal::is_simulated_gpio(options.gpio).value_or(true)) {
-    return hal::Failure{"--rehearsal: " + options.gpio + " is no simulated GPIO chip",
-                        "a chip of gpio-sim, or leave --rehearsal out: what switches a real supply is no rehearsal"};
+    return hal::Failure{"--rehearsal: " + options.gpio + " is not a simulated GPIO chip",
+                        "a chip of gpio-sim, or leave --rehearsal out: a rehearsal must not switch a real supply"};
   }
   return std::nullopt;
 }

@@ -15,7 +15,7 @@
 
 namespace hotfire::firmware {
 
-/// Counters of a run for its live view, each read where it is kept: what they refer to outlives the view.
+/// Counters of a run for its live view, each read at its source. The sources must outlive the view.
 class LiveCounters {
  public:
   LiveCounters& loop(const LoopResult& result);
@@ -51,8 +51,8 @@ class LiveSession {
  public:
   explicit LiveSession(const RunOptions& options) : options_(options), file_(options.live_view) {}
 
-  /// Makes the file, with these counters and those of the loop and the recorder, and has the outputs show their cycles. To
-  /// be called before the real-time set-up of the calling thread. All that is referred to outlives the loop.
+  /// Makes the file with these counters and those of the loop and the recorder, and connects the outputs to it. Call it
+  /// before the real-time set-up of the calling thread. All references must outlive the loop.
   std::optional<hal::Failure> start(const RecordedPlant& plant, LiveCounters counters, const LoopResult& result,
                                     CycleOutputs& outputs);
 

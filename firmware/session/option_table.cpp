@@ -104,13 +104,16 @@ constexpr OptionLine line(std::string_view name, std::string_view value, std::st
 constexpr OptionLine kLines[] = {
     line<[](const std::string& value, ImageOptions& o) { return o.image = value, std::string(); }>(
         "--image", "FILE",
-        "image of a model or profile, as `hotfire export --image` writes it. Without it `timing` runs the reference axis "
-        "with every effect active"),
-    line<read_bus>("--bus", "NAME", "sim (no bus, commands from --command) or a CAN interface such as can0; default sim"),
+        "image of a model or profile, as `hotfire export --image` writes it; default of timing: the reference axis with "
+        "every effect active"),
+    line<read_bus>(
+        "--bus", "NAME",
+        "CAN interface such as can0, or sim: a plant without a bus that takes the commands of --command; default sim"),
     line<[](const std::string& value, LabOptions& o) { return o.gpio = value, std::string(value.empty() ? "a chip" : ""); }>(
         "--gpio", "CHIP", "GPIO chip, by path, name or label"),
     line<[](const std::string& value, LabOptions& o) { return o.confirm = value, std::string(); }>(
-        "--confirm", "DIGEST", "digest of the profile, which `hotfire check` prints to the person who reads the profile"),
+        "--confirm", "DIGEST",
+        "digest of the profile, as `hotfire check` prints it: confirms that you have read the profile"),
     line<[](const std::string&, LabOptions& o) { return o.rehearsal = true, std::string(); }>(
         "--rehearsal", "",
         "dry run on a virtual CAN interface and a simulated GPIO chip: needs no real time, no --record and no --confirm"),
@@ -149,9 +152,9 @@ constexpr OptionLine kLines[] = {
     }>("--cycles", "N", "end after N cycles; 0: run until interrupted; default 10000 for timing, else 0"),
     line<[](const std::string& value, RunOptions& o) {
       return read_integer(value, std::uint64_t{0}, kManyCycles, o.loop.warm_up_cycles);
-    }>("--warm-up", "N", "cycles before those, counted separately; default 100"),
+    }>("--warm-up", "N", "cycles before those of --cycles; verdicts leave them out; default 100"),
     line<[](const std::string& value, RunOptions& o) { return read_name(value, kOverrunPolicies, o.loop.policy); }>(
-        "--policy", "P", "after an overrun: catch-up, skip or stop; default catch-up, a lab always skips"),
+        "--policy", "P", "reaction to an overrun: catch-up, skip or stop; default catch-up. A lab always skips"),
     line<[](const std::string& value, RunOptions& o) { return read_integer(value, 0, 99, o.priority); }>(
         "--priority", "P", "priority of the loop under SCHED_FIFO, 1 to 99; 0: an ordinary process; default 80"),
     line<[](const std::string& value, RunOptions& o) { return read_name(value, kSchedulers, o.scheduler); }>(
@@ -170,7 +173,7 @@ constexpr OptionLine kLines[] = {
       return read_integer(value, std::size_t{1}, hal::kMaxActuators, o.actuators);
     }>("--actuators", "N",
        "number of plants of a model of one axis, 1 to 8, each with its own command; default 1. A vehicle (taos, masv) has "
-       "as many as it has axes, and needs no --actuators"),
+       "one for each axis, without --actuators"),
     line<[](const std::string&, PlantOptions& o) { return o.strings = true, std::string(); }>(
         "--strings", "",
         "on a CAN bus: send the readings of string potentiometers too, four for each engine. Actuators 1 and 2 are pitch "

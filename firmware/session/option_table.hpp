@@ -9,7 +9,7 @@
 
 namespace hotfire::firmware {
 
-/// One option of hotfire-rt: what the help says, which modes take it, and how it is read.
+/// One option of hotfire-rt: its text in the help, the modes that take it, and its reader.
 struct OptionLine {
   std::string_view name;
   std::string_view value;  ///< empty: a flag
@@ -25,8 +25,8 @@ std::span<const OptionLine> option_lines();
 /// "plant, timing": the modes that take an option.
 std::string modes_of(const OptionLine& line);
 
-/// What `hotfire-rt MODE --help` prints: the options of that mode alone; of every mode, and with their names, for a word
-/// that is no mode. `hotfire MODE --help` prints the same, so that the options of `hotfire` are in it.
+/// The text of `hotfire-rt MODE --help`: the options of that mode. For a word that is no mode: the options of every mode
+/// with the names of the modes. `hotfire MODE --help` prints the same, so the text also has the options of `hotfire`.
 std::string help_of(std::string_view mode);
 
 }  // namespace hotfire::firmware

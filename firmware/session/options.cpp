@@ -162,7 +162,7 @@ std::string conflict_of_mode(const LabOptions& options) {
     return "lab needs a profile, a bus and lines: hotfire lab --profile P.toml --bus can0 --gpio CHIP";
   }
   if (options.loop.policy != OverrunPolicy::skip) {
-    return "lab leaves out what is overdue: leave --policy out";
+    return "a lab always skips overdue cycles: leave --policy out";
   }
   if (!options.rehearsal && (options.recording.empty() || options.confirm.empty() || options.priority == 0)) {
     return "lab moves real actuators: it needs --record FILE, --confirm DIGEST, which 'hotfire check' prints, and real time "

@@ -15,11 +15,11 @@
 
 namespace hotfire::firmware {
 
-/// What gives a plant its cycles: the machine's clock, syncs on the clock that replace those of a rig, or SYNC frames.
+/// The trigger of a plant's cycles: the machine's clock, simulated syncs of a rig, or SYNC frames.
 enum class PaceKind : std::uint8_t { clock, sim, can };
 inline constexpr std::array<std::string_view, 3> kPaceKinds{"clock", "sim", "can"};
 
-/// How the kernel is asked to schedule a loop: first-in first-out at a priority, or by the deadline of each cycle.
+/// Scheduling of a loop by the kernel: first-in first-out at a priority, or by the deadline of each cycle.
 enum class Scheduler : std::uint8_t { fifo, deadline };
 inline constexpr std::array<std::string_view, 2> kSchedulers{"fifo", "deadline"};
 
@@ -39,13 +39,13 @@ struct RunOptions {
   std::string command_line;
 };
 
-/// Of a run that is started with the number of its actuators and with the commands that it makes up.
+/// Of a run with a number of actuators and with commands that the program generates.
 struct CommandedRunOptions : RunOptions {
   bool actuators_given = false;  ///< else a vehicle says how many there are
   hal::sim::CommandSource source;
 };
 
-/// Of a run of an image, and the recording of which the image becomes a part.
+/// Of a run of an image, and of its recording, which contains the image.
 struct ImageOptions {
   std::string image;  ///< path of a plant image or of a lab's; empty: the reference plant with every effect (timing only)
   std::string recording;   ///< path to write to; empty: none

@@ -166,7 +166,7 @@ std::optional<hal::Failure> refuse_options(const PlantOptions& options, const Pl
   const std::size_t own = actuators_of(*image.parameters);
   if (own != 0 && options.actuators_given && options.actuators != own) {
     return hal::Failure{text("--actuators %zu: the model is a vehicle of %zu actuators", options.actuators, own),
-                        "leave --actuators out: a vehicle says itself how many it has"};
+                        "leave --actuators out: a vehicle has one for each axis"};
   }
   if (const std::string refused = refused_record(image, period_of(options)); !refused.empty()) {
     return hal::Failure{refused, "--period-us, or a record with other rows: hotfire import with [resample] period"};

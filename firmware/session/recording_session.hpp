@@ -12,7 +12,7 @@
 
 namespace hotfire::firmware {
 
-/// What a recording needs to know of the plant it is of.
+/// The properties of a plant that its recording contains.
 struct RecordedPlant {
   std::string topology;
   hal::RecordedChannel input;
@@ -37,7 +37,7 @@ struct RecordedPlant {
   }
 };
 
-/// Where a run comes from and what its numbers mean.
+/// The origin of a run and the meaning of its numbers.
 hal::RecordingHeader recording_header(const RunOptions& options, const RecordedPlant& plant);
 
 /// A file, and the recorder that writes it.

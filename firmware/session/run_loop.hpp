@@ -14,24 +14,24 @@
 
 namespace hotfire::firmware {
 
-/// Set by SIGINT, SIGTERM, SIGHUP (the terminal is gone) and SIGQUIT once `stop_on_signals` was called, which also has a
-/// reader of the output that went away, and a file that may not grow, end no process.
+/// Set by SIGINT, SIGTERM, SIGHUP (the terminal is gone) and SIGQUIT after a call of `stop_on_signals`. After that call, a
+/// closed output pipe and the limit of a file's size do not end the process either.
 extern std::atomic<bool> stop_asked;
 void stop_on_signals();
 
-/// SIGTSTP (Ctrl-Z) asks to stop too: a loop that is suspended leaves its outputs as they are.
+/// SIGTSTP (Ctrl-Z) requests a stop too, because a suspended loop would leave its outputs unchanged.
 void stop_instead_of_suspending();
 
-/// Keeps what was refused, prints it to standard error, and says whether the call was granted.
+/// Stores a refusal, prints it to standard error, and returns whether the call succeeded.
 bool granted(const std::optional<hal::Failure>& failure, std::vector<hal::Failure>& failures);
 
-/// Locks memory, binds and schedules this thread. True if all of it was granted and asked for.
+/// Locks memory, binds and schedules this thread. True if everything was requested and granted.
 bool set_up_real_time(const RunOptions& options, hal::WakefulCpus& cpus, std::vector<hal::Failure>& failures);
 
-/// Says what is going on to a person who looks on.
+/// Prints the progress for a person at the terminal.
 void announce(const RunOptions& options);
 
-/// What the thread has used, with the allocations that a linked guard counts.
+/// Resources that the thread has used, with the allocations that a linked guard counts.
 struct Usage {
   hal::ResourceUsage resources;
   std::optional<std::uint64_t> allocations;
@@ -44,7 +44,7 @@ int finish(const Session& session);
 
 /// How a run ends, in this order.
 struct RunEnd {
-  /// Makes the rig safe: before anything that may wait, for a disk say.
+  /// Makes the rig safe. Called before any call that may wait, for a disk for example.
   std::function<void()> make_safe = [] {};
   /// Closes the recording; null if there is none.
   std::function<const RecorderAccount*()> close_recording = [] { return nullptr; };
@@ -58,8 +58,8 @@ RunEnd end_with(RecordingSession* recording, LiveSession& live, std::function<vo
 /// Goes through the end of a run whose loop has ended.
 void end_run(Session& session, const RunEnd& end, Watchdog& watchdog);
 
-/// Runs a loop that is set up but for real time, and reports. `ended`: becomes true when the loop is to end, else when a
-/// signal has asked for it.
+/// Runs a loop that is completely set up except for real time, and reports. `ended` becomes true when the loop is to end;
+/// without it, a signal ends the loop.
 template <class Loop>
 int run_loop(Loop& loop, Session& session, const RunEnd& end, const std::atomic<bool>& ended = stop_asked) {
   const RunOptions& options = session.options;

@@ -38,7 +38,7 @@ std::optional<Verdict> unfinished_run(const Session& session) {
     return Verdict{false, "a piston still moved when the stopping time was over", kBadVerdict};
   }
   if (session.lab && !session.lab->completed) {
-    return Verdict{false, "asked to stop before the profile had ended", kBadVerdict};
+    return Verdict{false, "a stop was requested before the profile had ended", kBadVerdict};
   }
   if (session.bus && session.bus->state >= hal::CanState::bus_off) {
     const char* const state = hal::kCanStates[static_cast<std::size_t>(session.bus->state)];
@@ -97,7 +97,7 @@ Verdict judge(const Session& session) {
              static_cast<unsigned long long>(session.max_dropped)));
   }
   if (verdict.reason.empty()) {
-    verdict.reason = "no limit asked for";
+    verdict.reason = "no limit was set";
   }
   return verdict;
 }

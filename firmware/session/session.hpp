@@ -18,7 +18,7 @@
 
 namespace hotfire::firmware {
 
-/// What became of a lab's profile.
+/// The result of a lab's profile.
 struct LabAccount {
   RigState state = RigState::safe;  ///< when the loop ended
   bool completed = false;           ///< the profile was run to its end
@@ -57,7 +57,7 @@ struct Session {
   std::time_t ended = 0;
 };
 
-/// Whether the limits that were asked for are met, the sentence that says so, and the exit status.
+/// Whether the requested limits are met, the sentence that reports it, and the exit status.
 struct Verdict {
   bool good = true;
   std::string reason{};
@@ -69,8 +69,8 @@ Verdict judge(const Session& session);
 std::string text_report(const Session& session);
 std::string json_report(const Session& session);
 
-/// Each sets up, runs its loop, prints the report to standard output and what the machine refused to standard error, and
-/// returns the exit status.
+/// Each of these sets up, runs its loop and prints the report to standard output. Refusals of the machine go to standard
+/// error. The result is the exit status.
 int run(const PlantOptions& options);
 int run(const TimingOptions& options);
 int run(const ControllerOptions& options);

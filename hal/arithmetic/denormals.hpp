@@ -9,8 +9,9 @@
 
 namespace hotfire::hal {
 
-/// While it lives, this thread treats denormal numbers as zero (x86: FTZ and DAZ; aarch64: FZ), because one denormal in a
-/// decaying state makes a step tens of times slower. On other processors it does nothing. Restores what it found.
+/// During its life, this thread treats denormal numbers as zero (x86: FTZ and DAZ; aarch64: FZ). One denormal number in a
+/// decaying state makes a step tens of times slower. On other processors it does nothing. The destructor restores the
+/// earlier setting.
 class FlushDenormals {
  public:
   FlushDenormals() noexcept : found_(control()) { set_control(found_ | kFlush); }

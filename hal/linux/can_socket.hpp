@@ -20,7 +20,7 @@ inline canid_t kernel_id(const CanId& id) noexcept {
   return id.extended ? (id.value & CAN_EFF_MASK) | CAN_EFF_FLAG : id.value & CAN_SFF_MASK;
 }
 
-/// Lets one id through, and no remote frame.
+/// Accepts frames of one id, and no remote frame.
 inline can_filter exact_filter(const CanId& id) noexcept {
   return {kernel_id(id), (id.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG};
 }
@@ -41,8 +41,8 @@ inline std::int64_t read_clock(clockid_t clock) noexcept {
   return nanoseconds(time);
 }
 
-/// CLOCK_REALTIME less CLOCK_MONOTONIC [ns]. Another process may run between two readings of clocks, which would make every
-/// stamp of a kernel that much too old: of a few attempts the one counts whose readings lie closest together.
+/// CLOCK_REALTIME less CLOCK_MONOTONIC [ns]. If another process runs between the two readings, every stamp of the kernel is
+/// wrong by that time. Several attempts are made, and the one whose readings are closest together counts.
 inline std::int64_t realtime_offset_ns() noexcept {
   constexpr int kAttempts = 4;
   constexpr std::int64_t kCloseEnough = 20'000;

@@ -13,7 +13,7 @@
 
 namespace hotfire::hal {
 
-/// Where a chip of this path, name or label can be: the path itself, or every chip of the machine.
+/// Possible places of a chip with this path, name or label: the path itself, or every chip of the machine.
 inline std::vector<std::string> places_of_chip(const std::string& chip) {
   if (chip.starts_with('/')) {
     return {chip};

@@ -25,7 +25,7 @@ class GpiodLines {
   GpiodLines(const GpiodLines&) = delete;
   GpiodLines& operator=(const GpiodLines&) = delete;
 
-  /// Requests the lines. Nothing is driven unless the chip and every line are there and free. To be called once.
+  /// Requests the lines. Nothing is driven unless the chip and every line exist and are free. Call it once.
   std::optional<Failure> open() noexcept;
 
   bool try_read(GpioLevels& levels) noexcept;
@@ -42,11 +42,11 @@ class GpiodLines {
 
 static_assert(GpioLines<GpiodLines>);
 
-/// Whether the driver of a GPIO chip only simulates it (gpio-sim, gpio-mockup): its lines move nothing. Nothing if there is
-/// no such chip that may be opened. By path, name or label, as `GpiodLines` takes it.
+/// Whether the driver of a GPIO chip only simulates it (gpio-sim, gpio-mockup): its lines move nothing. No value if no such
+/// chip can be opened. By path, name or label, as in `GpiodLines`.
 std::optional<bool> is_simulated_gpio(const std::string& chip);
 
-/// The same of a chip's folder below /sys/bus/gpio/devices.
+/// The same for a chip's folder below /sys/bus/gpio/devices.
 bool is_simulated_device(const std::filesystem::path& device);
 
 }  // namespace hotfire::hal

@@ -30,7 +30,7 @@ class PosixClock {
 
 static_assert(Clock<PosixClock>);
 
-/// CLOCK_REALTIME [ns]: the time of day, which is set by others and which two machines can share.
+/// CLOCK_REALTIME [ns]: the time of day. Other programs set it, and two machines can share it.
 inline std::int64_t real_time_ns() noexcept {
   timespec time{};
   clock_gettime(CLOCK_REALTIME, &time);

@@ -24,8 +24,8 @@ class RecordingFile final : public RecordingSink {
       : path_(std::move(path)), most_bytes_(most_bytes), overwrite_(overwrite) {}
   ~RecordingFile() override;
 
-  /// Makes the file with its header. It has its name only once the header is on the disk, so that a file of that name can
-  /// always be opened, and takes the name only if nobody else has it.
+  /// Makes the file with its header. It gets its name only when the header is on the disk, so a file of that name can always
+  /// be opened. It takes the name only if no other program has it.
   std::optional<Failure> create(std::string_view header);
 
   std::optional<SinkRefusal> append(std::span<const std::byte> head, std::span<const std::byte> content) override;

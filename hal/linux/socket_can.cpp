@@ -118,7 +118,7 @@ std::optional<Failure> SocketCan::bind_to_interface() noexcept {
   ifreq request{};
   std::memcpy(request.ifr_name, name.c_str(), name.size());
   if (ioctl(socket_, SIOCGIFHWADDR, &request) != 0 || request.ifr_hwaddr.sa_family != ARPHRD_CAN) {
-    return Failure{name + " is no CAN interface", "see 'ip -details link show type can', and type vcan"};
+    return Failure{name + " is not a CAN interface", "see 'ip -details link show type can', and type vcan"};
   }
   if (ioctl(socket_, SIOCGIFMTU, &request) != 0) {
     return failed_call(name + "does not report its MTU", errno, "see 'ip -details link show " + name + "'");

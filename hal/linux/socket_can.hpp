@@ -15,15 +15,15 @@ namespace hotfire::hal {
 
 /// A raw SocketCAN socket (`CanBus`), classic or FD.
 ///
-/// Only subscribed ids reach the program (exact filters, remote frames out), set before the socket is bound. One `recvmmsg`
-/// a cycle empties the socket: its buffer is kept small enough for that, and what a late cycle loses is counted by
-/// SO_RXQ_OVFL. Frames carry the kernel's arrival stamp, CLOCK_REALTIME, converted to CLOCK_MONOTONIC with the offset of the
-/// same `receive`; in the first milliseconds after `open` the kernel may stamp on reading instead.
+/// Only subscribed ids reach the program (exact filters, no remote frames); the filters are set before the socket is bound.
+/// One `recvmmsg` a cycle empties the socket, whose buffer is small enough for that. SO_RXQ_OVFL counts the frames that a
+/// late cycle loses. Frames carry the kernel's arrival stamp, CLOCK_REALTIME, converted to CLOCK_MONOTONIC with the offset
+/// of the same `receive`. In the first milliseconds after `open` the kernel may stamp a frame when it is read.
 ///
-/// A frame is pending from `try_send` until the driver echoes it as sent, so that at most one frame of an id waits below the
-/// program, wherever that is: no set-point is ever sent behind an older one. A bus without a partner that acknowledges keeps
-/// one frame of an id pending; `stop` takes the interface down if that is so, which alone empties the controller's own
-/// buffers, and needs CAP_NET_ADMIN.
+/// A frame is pending from `try_send` until the driver echoes it as sent. At most one frame of an id therefore waits below
+/// the program, in kernel or controller: no set-point is ever sent behind an older one. On a bus without an acknowledging
+/// partner, one frame of an id stays pending. `stop` then takes the interface down, which is the only way to empty the
+/// controller's own buffers. It needs CAP_NET_ADMIN.
 class SocketCan : public OnCanNode {
  public:
   struct Settings {
@@ -38,7 +38,7 @@ class SocketCan : public OnCanNode {
   SocketCan(const SocketCan&) = delete;
   SocketCan& operator=(const SocketCan&) = delete;
 
-  /// Opens and binds the socket. To be called once, before the memory is locked.
+  /// Opens and binds the socket. Call it once, before the memory is locked.
   std::optional<Failure> open() noexcept;
 
   void receive(std::int64_t now_ns) noexcept;
@@ -46,12 +46,12 @@ class SocketCan : public OnCanNode {
   bool stop() noexcept;
   bool rearm() noexcept;
 
-  /// Whether `stop` may take the interface down: the kernel is asked to set the flags that are set, which changes nothing
-  /// and needs the same permission.
+  /// Whether `stop` may take the interface down. The kernel is asked to set the flags that are already set. This changes
+  /// nothing and needs the same permission.
   bool may_take_interface_down() noexcept;
 
-  /// CLOCK_REALTIME minus CLOCK_MONOTONIC at the last `receive` [ns]: what a recorder needs to match a candump log with
-  /// edges of GPIO lines.
+  /// CLOCK_REALTIME minus CLOCK_MONOTONIC at the last `receive` [ns]. With it a recorder matches a candump log with edges of
+  /// GPIO lines.
   std::int64_t realtime_offset_ns() const noexcept { return realtime_offset_ns_; }
 
  private:

@@ -10,8 +10,8 @@
 
 namespace hotfire::hal {
 
-/// Waits for the frames of one message on a SocketCAN interface, with a socket of its own: the cycle's socket keeps what
-/// comes in meanwhile.
+/// Waits for the frames of one message on a SocketCAN interface, with a socket of its own. The socket of the cycle keeps the
+/// frames that arrive meanwhile.
 class SocketCanListener {
  public:
   SocketCanListener(std::string interface, const CanSubscription& wanted)
@@ -20,12 +20,12 @@ class SocketCanListener {
   SocketCanListener(const SocketCanListener&) = delete;
   SocketCanListener& operator=(const SocketCanListener&) = delete;
 
-  /// To be called once, when a `SocketCan` on the same interface has been opened, which refuses what can be wrong with it.
+  /// Call it once, after a `SocketCan` on the same interface has been opened, which refuses unsuitable interfaces.
   std::optional<Failure> open() noexcept;
 
-  /// The oldest frame that was not given yet and its arrival on CLOCK_MONOTONIC; blocks until the absolute time
-  /// `deadline_ns` of that clock, not at all if it has passed. False if there is none. A bus that is down is waited out. A
-  /// signal does not cut it short. Without allocation, lock or exception.
+  /// The oldest frame that was not returned yet, and its arrival on CLOCK_MONOTONIC. Blocks until the absolute time
+  /// `deadline_ns` of that clock, and not at all if it has passed. False if there is no frame. It waits while a bus is down.
+  /// A signal does not interrupt it. Without allocation, lock or exception.
   bool wait_for_frame(std::int64_t deadline_ns, CanFrame& frame, std::int64_t& arrival_ns) noexcept;
 
  private:

@@ -23,7 +23,7 @@ struct LiveCounterName {
   std::string name;
 };
 
-/// What the words of a live view mean. A slot has the head of a cycle, the commands and the readings as a recording has them
+/// The meaning of the words of a live view. A slot has the head of a cycle, the commands and the readings as in a recording
 /// (hal/recording/format.hpp), then one word for each counter.
 struct LiveDescription {
   RecordingHeader header;               ///< its model is left out: it may be as long as a profile
@@ -39,7 +39,7 @@ struct LiveDescription {
 
 std::string description_text(const LiveDescription& description);
 
-/// A description, or what is wrong with its text.
+/// A description, or the error in its text.
 struct ParsedDescription {
   LiveDescription description;
   std::string error;

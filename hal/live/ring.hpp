@@ -10,13 +10,12 @@
 
 namespace hotfire::hal {
 
-/// A word of a memory that a real-time program fills and others look at.
+/// A word of a memory that a real-time program fills and others read.
 using LiveWord = std::atomic<std::uint64_t>;
 static_assert(LiveWord::is_always_lock_free && sizeof(LiveWord) == sizeof(std::uint64_t));
 
-/// Where what is in the memory of a live view (docs/interfaces/watch.md): a head, a description as text, then a ring of
-/// slots. Before the words of a slot is its mark: 2 n + 1 while the n-th cycle is being put into it, 2 n + 2 once it is
-/// there.
+/// The layout of the memory of a live view (docs/interfaces/watch.md): a head, a description as text, then a ring of slots.
+/// Each slot begins with its mark: 2 n + 1 while the n-th cycle is written into it, 2 n + 2 afterwards.
 struct LiveShape {
   static constexpr std::uint64_t kMagic = 0x31304556494c4648;  ///< the bytes "HFLIVE01"
   /// Words of the head. Those that the program changes have a cache line of their own.
@@ -40,16 +39,16 @@ struct LiveShape {
   }
 };
 
-/// The side of the real-time program. Every call is a bounded number of stores: it reads nothing that another program
-/// could have written, so nobody can make it wait.
+/// The side of the real-time program. Every call is a bounded number of stores. It reads nothing that another program could
+/// have written, so no program can make it wait.
 class LiveWriter {
  public:
   LiveWriter() noexcept = default;
   /// `memory`: zeroed, of `shape.words()` words.
   LiveWriter(std::span<LiveWord> memory, const LiveShape& shape) noexcept : memory_(memory), shape_(shape) {}
 
-  /// Opens the next slot. Each word that is put after it is stored with release order: who has read one of them also sees
-  /// the mark of an open slot.
+  /// Opens the next slot. Each word after it is stored with release order: a reader that has read one of them also sees the
+  /// mark of an open slot.
   void begin() noexcept {
     slot_ =
         memory_.subspan(shape_.first_slot() + published_ % shape_.slots * (shape_.slot_words + 1), shape_.slot_words + 1);
@@ -57,7 +56,7 @@ class LiveWriter {
     put_ = 1;
   }
 
-  /// What has no room in the slot is left out.
+  /// Words that have no room in the slot are left out.
   void put(std::uint64_t word) noexcept {
     if (put_ < slot_.size()) {
       slot_[put_++].store(word, std::memory_order_release);
@@ -86,7 +85,7 @@ class LiveWriter {
   std::uint64_t published_ = 0;
 };
 
-/// The side that looks. It only reads, at its own pace: a slot that was overwritten meanwhile is refused.
+/// The side of a reader. It only reads, at its own pace: a slot that was overwritten meanwhile is refused.
 class LiveReader {
  public:
   LiveReader() noexcept = default;
@@ -94,16 +93,16 @@ class LiveReader {
 
   /// Cycles that have been published since the program started.
   std::uint64_t published() const noexcept { return memory_[LiveShape::kPublishedAt].load(std::memory_order_acquire); }
-  /// Why the program has ended; 0: it has not said so.
+  /// The reason why the program has ended; 0: it has reported none.
   std::uint64_t ended() const noexcept { return memory_[LiveShape::kEndedAt].load(std::memory_order_acquire); }
-  /// The oldest cycle that may still be there.
+  /// The oldest cycle that can still be in the ring.
   std::uint64_t oldest() const noexcept {
     const std::uint64_t count = published();
     return count > shape_.slots ? count - shape_.slots : 0;
   }
 
-  /// Copies the n-th cycle, counted from 0. False, and `words` is not to be used, if it is not there yet, or not any more,
-  /// or was overwritten while it was copied.
+  /// Copies the n-th cycle, counted from 0. False if it does not exist yet, does not exist any more, or was overwritten
+  /// during the copy. `words` must not be used then.
   bool read(std::uint64_t n, std::span<std::uint64_t> words) const noexcept {
     const std::span<const LiveWord> slot =
         memory_.subspan(shape_.first_slot() + n % shape_.slots * (shape_.slot_words + 1), shape_.slot_words + 1);

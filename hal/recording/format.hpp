@@ -17,22 +17,22 @@ namespace hotfire::hal {
 /// A recording of a plant's cycles (docs/recording.md): a text header, then blocks of cycles. Every number is little-endian.
 static_assert(std::endian::native == std::endian::little, "cycles are written as they are in memory");
 
-/// What every cycle has, before its commands and readings: one double an actuator, then one double a sensor.
+/// The head of every cycle. Commands and readings follow: one double for each actuator, then one double for each sensor.
 struct CycleHead {
-  /// No new command had come: the one before was held.
+  /// No new command had arrived: the previous one was held.
   static constexpr std::uint64_t kHeld = 1;
-  /// It began on its release; else it was already due when the cycle before had ended.
+  /// The cycle began at its release; otherwise it was already due at the end of the previous cycle.
   static constexpr std::uint64_t kSlept = 2;
   /// The bus did not take the reading.
   static constexpr std::uint64_t kLost = 4;
   /// It is counted apart.
   static constexpr std::uint64_t kWarmUp = 8;
-  /// Of a lab: the state of its interlock, and the number of the first fault since it was armed, 8 bits each; then what it
-  /// saw that is a yes or no.
+  /// Of a lab: the state of its interlock and the number of the first fault since it was armed, 8 bits each; then its
+  /// boolean inputs.
   static constexpr unsigned kStateShift = 8;
   static constexpr unsigned kFaultShift = 16;
   static constexpr unsigned kInputsShift = 24;
-  /// How many cycles the loop left out before this one because they were overdue, at most kMostSkipped of them.
+  /// Number of overdue cycles that the loop skipped before this one, at most kMostSkipped.
   static constexpr unsigned kSkippedShift = 48;
   static constexpr std::uint64_t kMostSkipped = 0xffff;
   static constexpr std::uint64_t lab_flags(std::uint64_t state, std::uint64_t fault) noexcept {
@@ -59,7 +59,7 @@ constexpr std::size_t cycle_bytes(std::size_t actuators, std::size_t readings) n
   return sizeof(CycleHead) + sizeof(double) * (actuators + readings);
 }
 
-/// What precedes every block.
+/// The head of every block.
 struct BlockHead {
   enum Kind : std::uint32_t { kCycles = 0, kEnd = 1 };
   static constexpr std::uint64_t kMagic = 0x314b434f4c424648;  // the bytes "HFBLOCK1"
@@ -80,7 +80,7 @@ struct BlockHead {
 };
 static_assert(sizeof(BlockHead) == 32);
 
-/// No writer makes a block of more cycles, so a reader needs no more memory than this.
+/// No writer makes a block of more cycles. A reader therefore needs no more memory than this.
 inline constexpr std::uint32_t kMostCyclesOfBlock = 4096;
 
 /// A channel with its unit, SI; "1" for one without.
@@ -89,7 +89,7 @@ struct RecordedChannel {
   std::string unit;
 };
 
-/// Where a recording comes from and what its numbers mean.
+/// The origin of a recording and the meaning of its numbers.
 struct RecordingHeader {
   std::string version;  ///< of the program that wrote it
   std::string started;  ///< ISO 8601, UTC

@@ -169,7 +169,7 @@ std::string header_text(const RecordingHeader& header) {
 
 ParsedHeader parse_header(std::string_view text) {
   if (!text.starts_with(kRecordingMark)) {
-    return {{}, 0, "line 1: it does not begin with `hotfire recording 2`: it is no recording, or one of another version"};
+    return {{}, 0, "line 1: it does not begin with `hotfire recording 2`: it is not a recording, or it has another version"};
   }
   const std::size_t last = text.substr(0, kLongestHeader).find(kLastHeaderLine);
   if (last == std::string_view::npos) {
@@ -181,7 +181,7 @@ ParsedHeader parse_header(std::string_view text) {
   parsed.bytes = last + kLastHeaderLine.size();
   std::string_view lines = text.substr(kRecordingMark.size(), last + 1 - kRecordingMark.size());
   if (!take_hash(lines, text)) {
-    parsed.error = "its header is damaged: it is not what its line `header_hash` says";
+    parsed.error = "its header is damaged: it does not agree with its line `header_hash`";
     return parsed;
   }
   std::string hash;

@@ -9,17 +9,18 @@
 
 namespace hotfire::hal {
 
-/// A header, the bytes it takes, and what is wrong with it; no error: it is whole.
+/// A header, its length in bytes, and its error; no error: it is complete.
 struct ParsedHeader {
   RecordingHeader header;
   std::size_t bytes = 0;
   std::string error;
 };
 
-/// The most bytes of a header: a profile of half a million rows. A reader looks no further.
+/// The largest header [bytes]: a profile of half a million rows. A reader does not search further.
 inline constexpr std::size_t kLongestHeader = std::size_t{64} << 20;
 
-/// The most values of recorded disturbances in the image of a plant, which is part of the header: each takes up to 26 bytes.
+/// The largest number of values of recorded disturbances in the image of a plant, which is part of the header: each takes up
+/// to 26 bytes.
 inline constexpr std::size_t kMostPlayedValues = 2'000'000;
 
 /// The last line of a header, with the end of the line before it.

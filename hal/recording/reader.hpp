@@ -11,7 +11,7 @@
 
 namespace hotfire::hal {
 
-/// One cycle of a recording. The spans hold until the next one is read.
+/// One cycle of a recording. The spans are valid until the next one is read.
 struct RecordedCycle {
   CycleHead head;
   std::uint64_t dropped_before = 0;  ///< cycles that ran between the one before and this and are not in the file
@@ -20,15 +20,15 @@ struct RecordedCycle {
   std::span<const double> readings;  ///< actuator after actuator
 };
 
-/// Reads a recording from its beginning to its last whole block, a block at a time. A file whose writer was killed, or that
-/// is still being written, reads like any other: only the end is missing, and `end()` says so.
+/// Reads a recording from its beginning to its last complete block, one block at a time. A file whose writer was killed, or
+/// that is still being written, is read in the same way: only its end is missing, and `end()` reports it.
 class RecordingReader {
  public:
-  /// How a recording ends. `cut_off`: its writer did not close it. `damaged`: a block in its midst is not what was written,
-  /// what follows it is not read.
+  /// The end of a recording. `cut_off`: its writer did not close it. `damaged`: a block within the file has changed; the
+  /// blocks after it are not read.
   enum class End { closed, cut_off, damaged };
 
-  /// Opens the file and reads its header. `error()` is then empty, or says why it is refused.
+  /// Opens the file and reads its header. `error()` is then empty, or gives the reason of a refusal.
   explicit RecordingReader(const std::string& path);
 
   const std::string& error() const { return error_; }
@@ -40,7 +40,7 @@ class RecordingReader {
   /// After `next` has returned false.
   End end() const { return end_; }
   std::uint64_t cycles() const { return cycles_; }
-  /// Cycles that ran and are not in the file, those after the last one in it too if it was closed.
+  /// Cycles that ran and are not in the file, including those after its last one if it was closed.
   std::uint64_t dropped() const { return end_ == End::closed ? dropped_at_end_ : dropped_; }
 
  private:

@@ -8,14 +8,14 @@
 
 namespace hotfire::hal {
 
-/// Why a recording goes no further.
+/// The reason why a recording ends.
 struct SinkRefusal {
   std::string why;
-  /// The disk did not do what was asked, and part of what it was given may be lost. Else a limit that was asked for.
+  /// True: the disk refused a request, and a part of the data may be lost. False: a limit was reached that the options set.
   bool is_error = true;
 };
 
-/// Where a recording is written to. Called by a thread that is not real-time: both calls may block for as long as they like.
+/// The destination of a recording. A thread that is not real-time calls it: both calls may block for any time.
 class RecordingSink {
  public:
   RecordingSink() = default;
@@ -23,11 +23,11 @@ class RecordingSink {
   RecordingSink& operator=(const RecordingSink&) = delete;
   virtual ~RecordingSink() = default;
 
-  /// Appends head and content as one: both are there afterwards, or neither and the reason is returned. What has been
-  /// appended survives the death of the process.
+  /// Appends head and content together: both are in the file afterwards, or neither and the reason is returned. Appended
+  /// data survive the end of the process.
   virtual std::optional<SinkRefusal> append(std::span<const std::byte> head, std::span<const std::byte> content) = 0;
 
-  /// What has been appended survives the death of the machine, or the reason why it may not.
+  /// Makes appended data safe from a loss of power. Returns the reason if this fails.
   virtual std::optional<SinkRefusal> sync() = 0;
 };
 

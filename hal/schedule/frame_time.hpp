@@ -3,11 +3,11 @@
 
 namespace hotfire::hal {
 
-/// The greatest share of a bus that a schedule may take: the rest is for retransmission, and for what others send.
+/// The largest share of a bus that a schedule may take. The rest is for retransmission and for frames of other nodes.
 inline constexpr double kLargestBusLoad = 0.7;
 
-/// The longest a frame can occupy a bus [s], with the worst stuff bits and the space to the next frame; `bytes` as on the
-/// wire, rates in bit/s.
+/// The longest time for which a frame can occupy a bus [s], with the worst case of stuff bits and the space to the next
+/// frame. `bytes` as on the wire, rates in bit/s.
 ///
 /// Classic, base format: 47 + 8 n bits and floor((33 + 8 n) / 4) stuff bits (Davis, Burns, Bril, Lukkien 2007).
 constexpr double longest_classic_frame(unsigned bytes, double bit_rate) noexcept {

@@ -10,9 +10,9 @@
 
 namespace hotfire::hal::sim {
 
-/// A bus in the process: nodes hand frames to a wire, and every other node of it takes them at its next `receive`. A test
-/// delays confirmations, fills the queue, reports bus-off or takes the wire down. At most kMaxFrames wait for a node;
-/// what comes beyond is dropped and counted, as a kernel's buffer does. At most kMaxNodes nodes; for one thread.
+/// A bus within the process. Nodes give frames to a wire, and every other node takes them at its next `receive`. A test
+/// delays confirmations, fills the queue, reports bus-off or takes the wire down. At most kMaxFrames wait for a node.
+/// Further frames are dropped and counted, as by the buffer of a kernel. At most kMaxNodes nodes; for one thread.
 class CanWire {
  public:
   static constexpr std::size_t kMaxFrames = 64;
@@ -87,7 +87,7 @@ class CanWire {
     std::size_t number_;
   };
 
-  /// Frames handed over stay before the wire, unconfirmed, until `release`: a bus without a partner that acknowledges.
+  /// Frames stay below the program, unconfirmed, until `release`: a bus without an acknowledging partner.
   void hold() noexcept { holding_ = true; }
   void release() noexcept {
     holding_ = false;
@@ -98,10 +98,10 @@ class CanWire {
   }
 
   void set_queue_full(bool full) noexcept { full_ = full; }
-  /// What is held is not given back to `stop`.
+  /// Held frames are not returned to `stop`.
   void set_stop_refused(bool refused) noexcept { refuses_stop_ = refused; }
   void set_bus_off(bool bus_off) noexcept { bus_off_ = bus_off; }
-  /// Down loses what is held, as a network device's queue does.
+  /// A wire that goes down loses the held frames, as the queue of a network device does.
   void set_down(bool down) noexcept {
     down_ = down;
     held_.count = down ? 0 : held_.count;

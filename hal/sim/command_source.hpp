@@ -9,8 +9,8 @@
 
 namespace hotfire::hal::sim {
 
-/// A small reference controller that commands without looking, so that a plant can be tried with nothing else.
-/// `rest`: zero. `steps`: +amplitude, zero, -amplitude, zero, a quarter of the period each. `sine`: amplitude sin(2 pi f t).
+/// A small open-loop reference controller, to test a plant without any other. `rest`: zero. `steps`: +amplitude, zero,
+/// -amplitude, zero, a quarter of the period each. `sine`: amplitude sin(2 pi f t).
 struct CommandSource {
   enum class Shape : std::uint8_t { rest, steps, sine };
   static constexpr std::array<std::string_view, 3> kShapes{"rest", "steps", "sine"};

@@ -9,8 +9,8 @@
 
 namespace hotfire::hal::sim {
 
-/// Lines in the process (`GpioLines`): a test drives the inputs and looks at the outputs. Edges beyond kMaxEdges are lost
-/// and counted, as a kernel's are.
+/// Lines within the process (`GpioLines`): a test sets the inputs and reads the outputs. Edges beyond kMaxEdges are lost and
+/// counted, as those of a kernel are.
 class GpioBoard {
  public:
   static constexpr std::size_t kMaxEdges = 16;

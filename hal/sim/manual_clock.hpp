@@ -8,8 +8,8 @@
 
 namespace hotfire::hal::sim {
 
-/// A time that moves only on request (`Clock`): timing logic is tested with it, without a machine's own timing. Sleeping
-/// jumps to the time asked for, plus a lateness that a test may inject once.
+/// A clock that moves only on request (`Clock`). It tests timing logic independently of the machine's timing. A sleep jumps
+/// to its end, plus a lateness that a test may inject once.
 class ManualClock {
  public:
   std::int64_t now_ns() const noexcept { return now_ns_; }

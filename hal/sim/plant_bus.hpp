@@ -6,8 +6,9 @@
 
 namespace hotfire::hal::sim {
 
-/// The bus without a wire (`hal::PlantBus`): a reference source commands every actuator alike, one command a period of its
-/// own count, so that what the plant receives does not depend on the machine's timing. Keeps the newest reading.
+/// The bus without a wire (`hal::PlantBus`). A reference source commands every actuator in the same way, one command a
+/// period of its own count. The commands of the plant therefore do not depend on the machine's timing. Keeps the newest
+/// reading.
 class SimulatedPlantBus {
  public:
   SimulatedPlantBus(const CommandSource& source, double period) noexcept : source_(source), period_(period) {}

@@ -8,8 +8,8 @@
 
 namespace hotfire::hal::sim {
 
-/// Syncs at a steady period on any clock (`hal::SyncSource`), so that a locked loop runs without a wire. Its period need not
-/// be exactly that of the loop: a real rig's never is.
+/// Syncs at a steady period on any clock (`hal::SyncSource`), so that a locked loop runs without a wire. Their period may
+/// differ from that of the loop, as on a real rig.
 template <Clock C>
 class SimulatedSyncSource {
  public:
@@ -29,7 +29,7 @@ class SimulatedSyncSource {
     return true;
   }
 
-  /// From now on no sync comes, or they come again on their old grid.
+  /// From now on no sync comes, or the syncs come again on their old grid.
   void set_silent(bool silent) noexcept {
     silent_ = silent;
     while (!silent && next_ns_ <= clock_.now_ns()) {

@@ -14,8 +14,8 @@
 
 namespace hotfire::model {
 
-/// What an axis meets over one step beyond its own equations when it is one of several (`Vehicle`). Given by the caller who
-/// knows the other axes and the structure; means over the step.
+/// Inputs of an axis over one step from outside its own equations, if it is one of several (`Vehicle`). The caller, who
+/// knows the other axes and the structure, gives them as means over the step.
 template <class S>
 struct Coupling {
   S motion;            ///< motion of the attach point, and stroke of the geometry beyond R beta [m]
@@ -66,7 +66,7 @@ class Axis : public AxisStates {
     }
   };
 
-  /// Continuous states in the order of `Index`, then what the effects remember.
+  /// Continuous states in the order of `Index`, then the memories of the effects.
   struct State {
     Eigen::Matrix<S, 8, 1> y = Eigen::Matrix<S, 8, 1>::Zero();
     Eigen::Matrix<S, 6, 1> inputs = Eigen::Matrix<S, 6, 1>::Zero();
@@ -77,11 +77,11 @@ class Axis : public AxisStates {
     std::array<S, 3> measured{};
   };
 
-  /// What acts on them, held over a step: piston command [m], valve command [-], flow into the extend chamber [m^3/s], force
+  /// Inputs that are held over a step: piston command [m], valve command [-], flow into the extend chamber [m^3/s], force
   /// against the piston and of the load spring [N], torque against the engine [N m].
   enum Input { kCommand, kValveCommand, kFlow, kPistonForce, kSpringForce, kEngineTorque };
 
-  /// One step under way: where it starts, where it would end without inputs, and where the inputs found so far take it.
+  /// A step that is not complete: its start, its end without inputs, and its end with the inputs that are known so far.
   struct Advance {
     Eigen::Matrix<S, 8, 1> start;
     Eigen::Matrix<S, 8, 1> free;
@@ -151,14 +151,14 @@ class Axis : public AxisStates {
   /// K_T of the declared load spring [N/m].
   const S& stiffness() const noexcept { return stiffness_; }
 
-  /// What a unit of every input, held over a step, moves the continuous states by: a column for each of `Input`.
+  /// Change of the continuous states by a unit of every input, held over a step: a column for each of `Input`.
   const Eigen::Matrix<S, 8, 6>& input_response() const noexcept { return hold_.response; }
 
-  /// How much a unit of mean torque against the engine slows it over a step [rad/s/(N m)].
+  /// Change of the engine's rate over a step by a unit of mean torque against it [rad/s/(N m)].
   const S& engine_compliance() const noexcept { return engine_compliance_; }
 
-  /// The steady state under a constant command [rad]: set-up only. The valve's flow makes up for the leakage, the engine's
-  /// torques balance, friction is unloaded. Where a dead band leaves the piston free, it is at the command.
+  /// The steady state under a constant command [rad]: set-up only. The valve's flow equals the leakage, the engine's torques
+  /// balance, friction is unloaded. If a dead band leaves the piston free, it is at the command.
   template <class Around>
   State settled(const S& command, const Around& around) const {
     State state;
@@ -197,7 +197,7 @@ class Axis : public AxisStates {
     advance.free = times(hold_.transition, state.y);
   }
 
-  /// Where the inputs found so far take the step.
+  /// The end of the step with the inputs that are known so far.
   void predict(const State& state, Advance& advance) const noexcept {
     advance.end = advance.free + times(hold_.response, state.inputs);
     advance.middle = S(0.5) * (advance.start + advance.end);
@@ -279,12 +279,12 @@ class Axis : public AxisStates {
     measure(state);
   }
 
-  /// What the sensors read, in the order of `channels`.
+  /// Readings of the sensors, in the order of `channels`.
   static const std::array<S, 3>& measured(const State& state) noexcept { return state.measured; }
 
  private:
-  /// A step of several cycles of the oil's resonance may take away more flow than is added: a law that takes nearly all
-  /// compliance from the oil would have no solution.
+  /// A step of several cycles of the oil's resonance can remove more flow than is added. A law that takes nearly all
+  /// compliance from the oil would then have no solution.
   static constexpr double kMostRelief = 0.95;
 
   static Spring<S> spring_around(const Uncoupled&, const Spring<S>& own) noexcept { return own; }
@@ -313,7 +313,7 @@ class Axis : public AxisStates {
   }
   static S saturated(const S& command) noexcept { return clamp_symmetric<S>(command, S{1.0}); }
 
-  /// What the spool at a position opens, and the flow through the valve's orifices under a load pressure.
+  /// The opening of the spool at a position, and the flow through the valve's orifices under a load pressure.
   Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, const Precise<S>& time,
                            Keep keep) const noexcept {
     Signal<S> valve{spool, h_, time};

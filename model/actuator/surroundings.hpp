@@ -15,7 +15,7 @@ struct AxisStates {
   enum Index { kOpening, kOpeningRate, kPressure, kWashout, kPiston, kPistonRate, kAngle, kAngleRate };
 };
 
-/// What a term may depend on: the quantities of an axis that exist at every site.
+/// The quantities on which a term may depend: those of an axis that exist at every site.
 enum class Argument {
   command,        ///< beta_c, of the axis [rad]
   error,          ///< R beta_c - x_p, of the position loop [m]
@@ -36,7 +36,7 @@ inline constexpr std::array<std::string_view, 12> kArgumentNames{"command", "err
 inline constexpr std::array<std::string_view, 12> kArgumentUnits{"rad", "m",   "1",   "1",     "m^3/s", "Pa",
                                                                  "m",   "m/s", "rad", "rad/s", "m",     "s"};
 
-/// The axis around a site over one step. It holds references: a quantity is computed where a term asks for it.
+/// The axis around a site over one step. It holds references: a quantity is computed only if a term reads it.
 template <class S>
 struct Surroundings : AxisStates {
   const Eigen::Matrix<S, 8, 1>& y;  ///< continuous states, mean over the step, in the order of `AxisStates`

@@ -83,7 +83,7 @@ struct EffectParameters<S, EffectList<Es...>> {
   std::array<bool, sizeof...(Es)> active{};
 };
 
-/// Which effects of a list act, a bit each: a constant of a run. A site at which none does costs one test.
+/// The active effects of a list, one bit each: a constant of a run. A site without an active effect costs one test.
 template <class List>
 class ActingEffects {
  public:
@@ -125,7 +125,8 @@ struct EffectStates<S, EffectList<Es...>> {
   std::array<S, sizeof...(Es)> outputs{};
 };
 
-/// Whether an evaluation keeps the states it reaches. A step evaluates its effects more than once and keeps the last.
+/// Whether an evaluation keeps its final states. A step evaluates its effects more than once and keeps the states of the
+/// last evaluation.
 enum class Keep { no, yes };
 
 namespace detail {
@@ -153,7 +154,7 @@ void pass_on(Spring<S>& input, const Spring<S>& output) noexcept {
   input = output;
 }
 
-/// Puts in what the body does without the force that an effect gave last; other sites have no such thing.
+/// Sets the motion of the body without the force that an effect gave last; other sites have no such motion.
 template <class S>
 void take_force_out(Motion<S>& input, const S& force) noexcept {
   input.free_velocity = input.velocity + input.compliance * force;
@@ -161,7 +162,7 @@ void take_force_out(Motion<S>& input, const S& force) noexcept {
 template <class Input, class S>
 void take_force_out(const Input&, const S&) noexcept {}
 
-/// True for an effect whose state is where a solver starts and changes no result.
+/// True for an effect whose state is only the start of a solver and changes no result.
 template <class E>
 constexpr bool remembers_a_guess() noexcept {
   return requires { E::remembers_a_guess; };
@@ -181,8 +182,8 @@ template <class E, class Params, class State, class Input>
   return evaluate_in_place<E>(params, state, input, keep);
 }
 
-/// Terms of unknown law are most of the code of a step, and few plants have one: they are called, so that the rest of a step
-/// stays close together.
+/// Terms of unknown law are most of the code of a step, and few plants have one. They are not inlined, so that the rest of a
+/// step is contiguous in memory.
 template <class E, class Params, class State, class Input>
 auto evaluate(const Params& params, State& state, const Input& input, Keep keep) noexcept {
   if constexpr (requires { E::is_unlisted; }) {
@@ -307,8 +308,8 @@ S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, 
   return input.value;
 }
 
-/// Puts the states of the active sensor effects of one channel where a constant reading leaves them, each under the steady
-/// output of the one before it.
+/// Sets the states of the active sensor effects of one channel to their values under a constant reading, each under the
+/// steady output of the one before it.
 template <class S, class List>
 void settle_channel(int channel, const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
                     Signal<S> input) noexcept {
@@ -324,7 +325,7 @@ void settle_channel(int channel, const EffectParameters<S, List>& parameters, Ef
   });
 }
 
-/// Puts the states of the active effects of one site where a constant input leaves them.
+/// Sets the states of the active effects of one site to their values under a constant input.
 template <Site site, class S, class List>
 void settle(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states,
             const typename SiteInput<site, S>::type& input) noexcept {

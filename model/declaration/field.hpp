@@ -9,12 +9,12 @@
 
 namespace hotfire::model {
 
-/// The one description of a parameter: the configuration key and its check, the documentation, the report's wording and
+/// The one description of a parameter. The configuration key and its check, the documentation, the words of the report and
 /// the fit all read it, so that no number is described twice.
 ///
-/// `unit` is a UDUNITS-2 string ("1" for none, "" for a unit that follows the record's own). Bounds are inclusive.
-/// `typical` is where a search starts: inside the region where the parameter acts, because a neutral value has no
-/// gradient; 0: no search moves it. `options` has one bit for each option (law, channel) of the owner that uses the field.
+/// `unit` is a UDUNITS-2 string ("1" for none, "" for a unit that follows the record's own). Bounds are inclusive. `typical`
+/// is the start of a search, in the region where the parameter acts, because a neutral value has no gradient; 0: no search
+/// moves it. `options` has one bit for each option (law, channel) of the owner that uses the field.
 template <class Owner>
 struct Field {
   std::string_view name;
@@ -43,7 +43,7 @@ struct TableField {
   bool is_optional = false;  ///< a file may leave the curve out: it has no points then
 };
 
-/// A further choice of an effect beside its option: its key, what it may be, and where it is kept.
+/// A further choice of an effect in addition to its option: its key, its allowed values, and the member that stores it.
 template <class Owner>
 struct Choice {
   std::string_view key;

@@ -8,7 +8,7 @@
 
 namespace hotfire::model {
 
-/// Where in the equations an effect enters. `sensor` is followed by the channel's name in configuration and report.
+/// The place in the equations where an effect acts. After `sensor` comes the channel's name in configuration and report.
 enum class Site {
   command,
   valve_command,
@@ -30,7 +30,7 @@ constexpr std::string_view site_name(Site site) noexcept {
   return names[static_cast<std::size_t>(site)];
 }
 
-/// Sites at which effects are applied one after the other, in the order of the effect list; at all others they add up.
+/// Sites at which effects are applied one after the other, in the order of the effect list. At all other sites they add up.
 constexpr bool is_serial(Site site) noexcept {
   return site == Site::command || site == Site::valve_command || site == Site::valve || site == Site::load_spring ||
          site == Site::sensor;
@@ -39,8 +39,8 @@ constexpr bool is_serial(Site site) noexcept {
 template <class S>
 struct Surroundings;
 
-/// What an effect sees at the sites `command`, `valve_command`, `valve` and `sensor`, over one step of `h` [s].
-/// The effect returns what the value becomes.
+/// Input of an effect at the sites `command`, `valve_command`, `valve` and `sensor`, over one step of `h` [s]. The effect
+/// returns the new value.
 template <class S>
 struct Signal {
   using Scalar = S;
@@ -51,7 +51,7 @@ struct Signal {
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
-/// What an effect sees at the site `flow`: it returns flow added into the extend chamber [m^3/s].
+/// Input of an effect at the site `flow`. The effect returns flow added into the extend chamber [m^3/s].
 template <class S>
 struct Hydraulics {
   using Scalar = S;
@@ -64,11 +64,11 @@ struct Hydraulics {
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
-/// What an effect sees at the site `pressure`: it returns flow added to the flow that builds up pressure [m^3/s].
+/// Input of an effect at the site `pressure`. The effect returns flow added to the flow that builds up pressure [m^3/s].
 ///
-/// The piston yields to the pressure within the step: `free_flow` is the net flow without this effect, and `relief` how much
-/// of it a unit of added flow takes away, in [0, 1), so that the law can solve net = free_flow - relief * added in closed
-/// form instead of being stepped explicitly, which would be unstable at the oil's resonance.
+/// The piston yields to the pressure within the step. `free_flow` is the net flow without this effect. `relief`, in [0, 1),
+/// is the share of a unit of added flow that the piston takes away. The law can therefore solve net = free_flow - relief *
+/// added in closed form. An explicit step would be unstable at the oil's resonance.
 template <class S>
 struct Compression {
   using Scalar = S;
@@ -78,12 +78,12 @@ struct Compression {
   double h;
 };
 
-/// What an effect sees at the sites `piston`, `engine_torque` and `mass_force`: it returns the force or torque that opposes
-/// the motion, mean over the step.
+/// Input of an effect at the sites `piston`, `engine_torque` and `mass_force`. The effect returns the force or torque that
+/// opposes the motion, mean over the step.
 ///
-/// `velocity` is the mean velocity over the step as the last pass found it. `free_velocity` is what it would be without this
-/// effect and `compliance` how much a unit of mean force slows it, so that a stiff law can solve
-/// velocity = free_velocity - compliance * force in closed form instead of being stepped explicitly.
+/// `velocity` is the mean velocity over the step from the last pass. `free_velocity` is its value without this effect.
+/// `compliance` is the reduction of the velocity by a unit of mean force. A stiff law can therefore solve velocity =
+/// free_velocity - compliance * force in closed form instead of an explicit step.
 template <class S>
 struct Motion {
   using Scalar = S;
@@ -99,8 +99,8 @@ struct Motion {
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
-/// What an effect sees at the site `load_spring`, and returns with its change. The spring's force is
-/// `stiffness * deflection`, so a nonlinear spring returns the deflection that gives its force.
+/// Input of an effect at the site `load_spring`. The effect returns it with its change. The spring's force is `stiffness *
+/// deflection`, so a nonlinear spring returns the deflection that gives its force.
 template <class S>
 struct Spring {
   using Scalar = S;
@@ -116,7 +116,8 @@ struct Spring {
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
-/// What an effect sees at the site `structure`: it returns the further motion of the attach point, mean over the step [m].
+/// Input of an effect at the site `structure`. The effect returns the further motion of the attach point, mean over the step
+/// [m].
 template <class S>
 struct AttachPoint {
   using Scalar = S;

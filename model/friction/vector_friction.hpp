@@ -40,8 +40,8 @@ struct SymmetricPair {
   }
 };
 
-/// What the friction of a ball joint sees over one step: `Motion` in two directions. Its torque obeys
-/// velocity = free_velocity - compliance torque, `velocity` being what the last pass found.
+/// Input of the friction of a ball joint over one step: `Motion` in two directions. Its torque obeys velocity =
+/// free_velocity - compliance torque; `velocity` is the result of the last pass.
 template <class S>
 struct Slip {
   Pair<S> velocity;

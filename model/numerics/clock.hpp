@@ -5,8 +5,8 @@
 
 namespace hotfire::model {
 
-/// The time of a record, counted in steps. A sum of step sizes would stop growing in float after some hours, and would be
-/// off by the sum of its roundings in double. After a day a float resolves 8 ms, so the time itself is a `Precise`.
+/// The time of a record, counted in steps. A sum of step sizes would stop growing in float after some hours. In double it
+/// would be off by the sum of its rounding errors. After a day a float resolves 8 ms, so the time itself is a `Precise`.
 template <class S>
 struct Clock {
   Precise<S> start{0.0};  ///< time at no step [s]

@@ -12,7 +12,7 @@
 
 namespace hotfire::model {
 
-/// What a term of the grammar remembers of its argument s: a linear filter, a hysteresis, a limit or a loss of information.
+/// Memory of a term of the grammar for its argument s: a linear filter, a hysteresis, a limit or a loss of information.
 enum class Memory {
   none,
   delay,       ///< s(t - time)
@@ -43,7 +43,7 @@ struct MemoryParameters {
 
 inline constexpr std::size_t kMostStops = 4;
 
-/// State of a memory. Until it has started it rests under whatever the argument is: its output is the steady one.
+/// State of a memory. Before its start it is at rest under the present argument: its output is the steady one.
 template <class S>
 class MemoryState {
  public:

@@ -5,8 +5,8 @@
 
 namespace hotfire::model {
 
-/// The stop operator of a width, after its input has changed: the part of the input's changes that stays within the width.
-/// The input less its stop is a play of that half width [Krasnosel'skii and Pokrovskii 1989, Systems with Hysteresis].
+/// The stop operator of a width after a change of its input: the part of the changes that stays within the width. The input
+/// less its stop is a play of that half width [Krasnosel'skii and Pokrovskii 1989, Systems with Hysteresis].
 template <class S>
 constexpr S stop_after(const S& stop, const S& change, const S& width) noexcept {
   return clamp_symmetric<S>(stop + change, width);

@@ -16,8 +16,8 @@ using std::abs;
 using std::exp;
 using std::sqrt;
 
-/// The scalar of what 24 bits do not hold: the constants of a run, and its time. It is double for a float model, and the
-/// model's own scalar otherwise.
+/// The scalar for quantities that need more than 24 bits: the constants of a run, and its time. It is double for a float
+/// model, and the model's own scalar otherwise.
 template <class S>
 using Precise = std::conditional_t<std::is_same_v<S, float>, double, S>;
 

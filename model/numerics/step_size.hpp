@@ -7,8 +7,8 @@ namespace hotfire::model {
 /// equal parts: 0.5 ms puts 5 steps into a cycle of the reference oil mode (365 Hz).
 inline constexpr double kLongestStep = 5e-4;
 
-/// Into how many equal steps of at most `longest` [s] a period [s] is split, at least one. A period that is a multiple of
-/// the longest step up to rounding is split into that multiple.
+/// Number of equal steps of at most `longest` [s] in a period [s], at least one. A period that is a multiple of the longest
+/// step up to rounding is split into that multiple.
 constexpr int steps_per_period(double period, double longest = kLongestStep) noexcept {
   const double parts = period / longest;
   const int whole = static_cast<int>(parts);

@@ -11,8 +11,8 @@
 
 namespace hotfire::model {
 
-/// What lies between a potentiometer's motion and its reading: a first-order lag, noise, quantisation, in this order.
-///   r' = (x - r) / lag,   reading = step * round((r + noise) / step)
+/// Processing between a potentiometer's motion and its reading: a first-order lag, noise, quantisation, in this order.
+///     r' = (x - r) / lag,   reading = step * round((r + noise) / step)
 template <class S>
 struct PotentiometerReadout {
   using Scalar = S;
@@ -70,7 +70,7 @@ class StringPotentiometers {
             second.stroke[0] - dot<S>(second.direction[0], moved), second.stroke[1] - dot<S>(second.direction[1], moved)};
   }
 
-  /// What is wrong with an engine's strings; empty if nothing.
+  /// The error in an engine's strings; empty if there is none.
   static std::string_view broken_relation(const Anchors& anchors) {
     for (const AttachPoints<S>& string : anchors) {
       if (!(value_of(dot<S>(string.engine() - string.vehicle(), string.engine() - string.vehicle())) > 1e-6)) {

@@ -10,7 +10,7 @@
 
 namespace hotfire::model {
 
-/// What reads the pistons and the engines of a vehicle (`Vehicle`). Left out: pistons read ideally, strings at their
+/// The sensors of the pistons and engines of a vehicle (`Vehicle`). Default: ideal readings of the pistons; strings at their
 /// representative places, whose anchors no mode moves.
 template <class V>
 struct VehicleSensors {
@@ -23,7 +23,7 @@ struct VehicleSensors {
   PotentiometerReadout<S> piston;  ///< of every piston
   PotentiometerReadout<S> string;  ///< of every string
   std::array<typename Strings::Anchors, V::kEngines> anchors = representative_anchors();
-  /// How far each mode [kg^-0.5], and each force on a port beyond the modes, pulls the ends of a string together.
+  /// Distance by which each mode [kg^-0.5], and each force on a port beyond the modes, pulls the ends of a string together.
   Shape string_shape = Shape::Zero();
   Residual string_residual = Residual::Zero();
 
@@ -45,9 +45,8 @@ struct InstrumentedVehicle {
   VehicleSensors<V> sensors{};
 };
 
-/// What the sensors of a vehicle read of its states, one after the other. A string sees its engine's angles, the bearing
-/// give way, and the structure carry its anchor away; it cannot distinguish them. No allocation after
-/// construction.
+/// Readings of the sensors of a vehicle in its successive states. A string measures its engine's angles, the displacement of
+/// the bearing and the motion of its anchor with the structure; it cannot separate them. No allocation after construction.
 template <class V>
 class VehicleReadings {
  public:

@@ -239,9 +239,9 @@ void append_rivals(std::string& text, const Results& measured) {
       "\n## Against other solvers\n\n"
       "These solvers integrate the same equations over the same run. The equations are written for speed; the laws of\n"
       "friction and spring are the model's own. Jacobians are exact, by dual numbers. A fixed step divides the millisecond\n"
-      "over which a command is held: 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12 or 1/16 ms. The target at the rig's step of 0.5 ms "
-      "is\n"
-      "5 (one axis and TAOS) and 8 (MASV) over the best fixed-step solver, and 50 over CVODE.\n\n"
+      "over which a command is held: 1, 1/2, 1/3, 1/4, 1/6, 1/8, 1/12 or 1/16 ms. The target holds at the rig's step of "
+      "0.5 ms.\n"
+      "It is 5 (one axis and TAOS) and 8 (MASV) over the best fixed-step solver, and 50 over CVODE.\n\n"
       "An explicit solver needs no Jacobian. It is unstable beyond a step that the stiffest part sets: friction, bearing "
       "or\n"
       "oil. The model's step is stable at any step.\n");
@@ -277,8 +277,9 @@ void Collector::ReportRuns(const std::vector<Run>& runs) {
 std::string performance_page(const Results& measured) {
   std::string text =
       "# Performance\n\n"
-      "This page gives the cost of a step of the model, and compares its accuracy and cost with those of a general-purpose\n"
-      "integrator. Use it to choose a period, a step and a processor. TAOS is one engine with two axes. MASV is four "
+      "With this page you can choose a period, a step and a processor. It gives the cost of a step of the model, and "
+      "compares its\n"
+      "accuracy and cost with those of a general-purpose integrator. TAOS is one engine with two axes. MASV is four "
       "engines with\n"
       "eight axes on one structure.\n"
       "\n"

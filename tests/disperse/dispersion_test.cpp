@@ -251,7 +251,7 @@ TEST(Dispersion, ADrawWhoseCommandFailsStaysInTheTable) {
 
 TEST(Dispersion, WordsThatAreWrongInEveryDrawEndTheRun) {
   Dispersion own(plan(), scratch.path("one"), kWhole);
-  CHECK_THROWS(UsageError, own.run([&](const auto&) { return CommandOutcome{2, "", "unknown word"}; }, kSilent));
+  CHECK_THROWS(UsageError, own.run([&](const auto&) { return CommandOutcome{2, "", "unknown argument"}; }, kSilent));
   CHECK_THROWS(FileError, own.run([&](const auto&) { return CommandOutcome{6, "", "no record"}; }, kSilent));
   Plan wrong = plan();
   wrong.command = {"step", "--picture", "p.svg"};

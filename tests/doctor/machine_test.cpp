@@ -54,7 +54,7 @@ TEST(DoctorMachine, MachineThatReportsNothingIsNotCalledGood) {
 
 TEST(DoctorMachine, KernelWithoutPreemptRtIsNamedWithThePackage) {
   files.put("sys/kernel/realtime", "0");
-  expect_remedy(found("kernel"), Level::bad, "6.1.0-rt-amd64 is no PREEMPT_RT", "apt install linux-image-rt-amd64");
+  expect_remedy(found("kernel"), Level::bad, "6.1.0-rt-amd64 is not a PREEMPT_RT", "apt install linux-image-rt-amd64");
 }
 
 TEST(DoctorMachine, PreemptionIsFullChosenAtBootOrNone) {
@@ -68,9 +68,9 @@ TEST(DoctorMachine, PreemptionIsFullChosenAtBootOrNone) {
 
 TEST(DoctorMachine, CpuOfTheLoopHasToBeAmongTheIsolatedOnesAndWithoutTick) {
   patient.cpu = 3;
-  expect_remedy(found("isolation"), Level::advice, "CPU 3 is not isolated (those are 1-2)", "isolcpus=3");
+  expect_remedy(found("isolation"), Level::advice, "CPU 3 is not isolated (isolated: 1-2)", "isolcpus=3");
   files.put("sys/devices/system/cpu/isolated", "");
-  expect_remedy(found("isolation"), Level::advice, "none is", "isolcpus=3");
+  expect_remedy(found("isolation"), Level::advice, "no CPU is", "isolcpus=3");
   files.put("sys/devices/system/cpu/isolated", "3");
   expect_remedy(found("isolation"), Level::advice, "has a timer tick", "nohz_full=3");
   patient.cpu.reset();

@@ -79,9 +79,9 @@ TEST(Command, check_prints_json_on_request) {
 
 TEST(Command, a_misspelt_word_is_wrong_use_and_named_with_the_nearest_known_one) {
   LONGS_EQUAL(2, status_of("chekc x"));
-  expect_message(err, {"hotfire: unknown word \"chekc\"", "did you mean \"check\"?", "'hotfire --help'"});
+  expect_message(err, {"hotfire: unknown argument \"chekc\"", "did you mean \"check\"?", "'hotfire --help'"});
   LONGS_EQUAL(2, status_of("simulate --modl x"));
-  expect_message(err, {"unknown word \"--modl\"", "did you mean \"--model\"?", "'hotfire simulate --help'"});
+  expect_message(err, {"unknown argument \"--modl\"", "did you mean \"--model\"?", "'hotfire simulate --help'"});
   STRCMP_EQUAL("", out.c_str());
 }
 
@@ -230,11 +230,11 @@ TEST(Command, stiffness_of_a_test_is_read_again_from_its_record_with_the_model_b
   LONGS_EQUAL(2, status_of(of_bench + " --from 9 --to 5"));
   expect_message(err, {"--from 9 --to 5", "--from below --to"});
   LONGS_EQUAL(6, status_of(of_bench + " --record " + kept + " --from 12 --to 20"));
-  expect_message(err, {"sines.csv: piston has no notch from 12 to 20 Hz", "--from and --to say"});
+  expect_message(err, {"sines.csv: piston has no notch from 12 to 20 Hz", "--from and --to set"});
   LONGS_EQUAL(0, status_of("simulate --model " + bench + " --output " + kept + " --input " +
                            scratch.write("ramp.csv", ramp()).string()));
   LONGS_EQUAL(6, status_of(of_bench + " --record " + kept));
-  expect_message(err, {"sines.csv: command is no stepped sine", "hotfire sweep --profile sines"});
+  expect_message(err, {"sines.csv: command is not a stepped sine", "hotfire sweep --profile sines"});
   const std::string mass =
       scratch.write("mass.toml", "schema = 1\ntopology = \"direct\"\n[mass]\ninertia = 1\ndamping = 1\nstiffness = 9\n")
           .string();

@@ -120,9 +120,9 @@ def test_a_gradient_of_a_mass_has_the_position_of_the_record_in_its_unit():
 
 def test_gradients_are_by_all_that_acts_by_default(model, record):
     assert set(hotfire.gradients(model, record).keys) == set(model.parameters)
-    with pytest.raises(hotfire.UsageError, match="no parameter that acts"):
+    with pytest.raises(hotfire.UsageError, match="not a parameter that acts"):
         hotfire.gradients(model, record, ["effects.backlash.half_width"])
-    with pytest.raises(hotfire.UsageError, match='no parameter that acts in the model; did you mean "pitch.engine.inertia"'):
+    with pytest.raises(hotfire.UsageError, match='not a parameter that acts in the model; did you mean "pitch.engine.inertia"'):
         hotfire.gradients(hotfire.Model({"topology": "taos"}), inputs_of("taos"), ["pitch.engine.inertja"])
 
 

@@ -290,7 +290,7 @@ TEST(LabEnds, SignalsOfATerminalThatGoesAwayStopARunningProfile) {
     run_profile();
     lab->signal(signal);
     LONGS_EQUAL(1, lab->wait());
-    STRCMP_CONTAINS("asked to stop before the profile had ended", lab->output().c_str());
+    STRCMP_CONTAINS("a stop was requested before the profile had ended", lab->output().c_str());
     is_safe();
     lab.reset();
   }

@@ -334,7 +334,7 @@ TEST(SocketCan, WhatCannotWorkIsRefusedWithTheRemedy) {
   };
   STRCMP_CONTAINS("no interface can7; see 'ip -brief link'", refusal("can7", false).c_str());
   STRCMP_CONTAINS("no interface a-name-that-is-too-long", refusal("a-name-that-is-too-long", false).c_str());
-  STRCMP_CONTAINS("lo is no CAN interface", refusal("lo", false).c_str());
+  STRCMP_CONTAINS("lo is not a CAN interface", refusal("lo", false).c_str());
   shell("ip link set can0 down");
   STRCMP_CONTAINS("can0 is down; 'ip link set can0 up'", refusal("can0", false).c_str());
   shell("ip link set can0 mtu 16 up");

@@ -20,7 +20,7 @@ struct Dwell {
 /// The dwells of a stepped-sine command, found in the command itself, so that a recorded test needs no further file: at
 /// least three successive periods whose length agrees within 1 % and whose amplitude within 2 %. Where they add up to more
 /// than one frequency, each is a dwell of its own: steps of 0.25 % are separated from eight periods on. Each dwell must
-/// begin and end near zero phase. Empty for a command that is no stepped sine.
+/// begin and end near zero phase. Empty for a command that is not a stepped sine.
 std::vector<Dwell> find_dwells(std::span<const double> command, double period);
 
 /// The fundamental of a signal over rows: constant + drift t + Re(amplitude e^{i 2 pi f t}), fitted by least squares, t from

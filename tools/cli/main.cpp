@@ -82,7 +82,7 @@ std::string problem_of(const CLI::App& program, const CLI::ParseError& error) {
   }
   // A misspelt word also leaves out something that is required, which is what the parser complains of.
   const std::vector<std::string> known = known_words(command);
-  return "unknown word \"" + strangers.front() + "\"; " + suggestion(strangers.front(), {known.begin(), known.end()});
+  return "unknown argument \"" + strangers.front() + "\"; " + suggestion(strangers.front(), {known.begin(), known.end()});
 }
 
 /// The words of the command line as a shell would take them again.

@@ -21,7 +21,7 @@ Finding kernel(const Patient& patient) {
   if (text_of(patient.root / "sys/kernel/realtime") == "1") {
     return {"kernel", Level::good, "PREEMPT_RT, " + release, ""};
   }
-  return {"kernel", Level::bad, release + " is no PREEMPT_RT kernel: a driver can hold the CPU for milliseconds",
+  return {"kernel", Level::bad, release + " is not a PREEMPT_RT kernel: a driver can hold the CPU for milliseconds",
           "apt install linux-image-rt-amd64 && reboot"};
 }
 
@@ -37,7 +37,7 @@ Finding preemption(const Patient& patient) {
   }
   if (version.find("PREEMPT_DYNAMIC") != std::string::npos) {
     return {"preemption", Level::advice,
-            "the kernel is preempted at chosen points only, it was not booted with preempt=full",
+            "the kernel can be preempted at certain points only, because it was not booted with preempt=full",
             std::string("boot with preempt=full: ") + kBootOptions};
   }
   return {"preemption", Level::bad, "the kernel is not preempted while it works for another process",
@@ -53,7 +53,7 @@ Finding isolation(const Patient& patient) {
   if (patient.cpu && !list_has(isolated, *patient.cpu)) {
     return {"isolation", Level::advice,
             fmt::format("CPU {} is not isolated ({}): other processes run on it", *patient.cpu,
-                        isolated.empty() ? "none is" : "those are " + isolated),
+                        isolated.empty() ? "no CPU is" : "isolated: " + isolated),
             remedy};
   }
   if (isolated.empty()) {
@@ -142,7 +142,7 @@ Finding priority(const Patient& patient) {
     return {"priority", Level::good, "real-time priorities are allowed", ""};
   }
   return {"priority", Level::bad,
-          fmt::format("real-time priorities up to {} are allowed, the loop wants {}", limit.empty() ? "0" : limit, kWanted),
+          fmt::format("real-time priorities up to {} are allowed, the loop needs {}", limit.empty() ? "0" : limit, kWanted),
           kGroupMend};
 }
 

@@ -151,32 +151,27 @@ class Description {
   /// depends on inputs and parameters, all of them as far as the importer need know.
   void add_structure() {
     line("  <ModelStructure>");
-    const std::size_t first = 1 + plant_.inputs().size();
-    if (!is_3()) {
-      line("    <Outputs>");
-    }
-    for (std::size_t i = 0; i < plant_.outputs().size(); ++i) {
-      if (is_3()) {
-        line("    <Output valueReference=\"{}\" dependencies=\"\"/>", first + i);
-      } else {
-        line("      <Unknown index=\"{}\" dependencies=\"\"/>", first + i + 1);
-      }
-    }
-    if (!is_3()) {
-      line("    </Outputs>");
-      line("    <InitialUnknowns>");
-    }
-    for (std::size_t i = 0; i < plant_.outputs().size(); ++i) {
-      if (is_3()) {
-        line("    <InitialUnknown valueReference=\"{}\"/>", first + i);
-      } else {
-        line("      <Unknown index=\"{}\"/>", first + i + 1);
-      }
-    }
-    if (!is_3()) {
-      line("    </InitialUnknowns>");
-    }
+    add_unknowns("Outputs", "Output", " dependencies=\"\"");
+    add_unknowns("InitialUnknowns", "InitialUnknown", "");
     line("  </ModelStructure>");
+  }
+
+  /// One element for each output. FMI 3.0 names its kind in the element, FMI 2.0 in a list around the elements.
+  void add_unknowns(std::string_view list, std::string_view element, std::string_view attributes) {
+    if (!is_3()) {
+      line("    <{}>", list);
+    }
+    for (std::size_t i = 0; i < plant_.outputs().size(); ++i) {
+      const std::size_t reference = 1 + plant_.inputs().size() + i;
+      if (is_3()) {
+        line("    <{} valueReference=\"{}\"{}/>", element, reference, attributes);
+      } else {
+        line("      <Unknown index=\"{}\"{}/>", reference + 1, attributes);
+      }
+    }
+    if (!is_3()) {
+      line("    </{}>", list);
+    }
   }
 
   const plant::Plant& plant_;

@@ -6,7 +6,6 @@
 
 #include "model/effects/load/soft_stiffness.hpp"
 #include "tools/analysis/free_decay.hpp"
-#include "tools/analysis/step_response.hpp"
 #include "tools/findings/parameters.hpp"
 #include "tools/findings/rows.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -131,15 +130,10 @@ Outcome ambient_sweep(const Bench& bench) {
 }
 
 Outcome ambient_step(const Bench& bench) {
-  const std::vector<double> amplitudes{trials::radians(0.6), trials::radians(0.4), trials::radians(0.2)};
-  const Record command = trials::command_record(trials::steps(amplitudes, 2.0), "command.pitch");
+  const Record command = pitch_steps();
   const Record soft = simulate(bench.ambient(), command);
-  const auto steps = [&](const Record& record) {
-    return analysis::step_responses(command.find("command.pitch")->values, record.find("engine.pitch")->values,
-                                    record.period, 1.0);
-  };
-  const auto of_soft = steps(soft);
-  const auto of_linear = steps(simulate(linear_actuator(bench), command));
+  const auto of_soft = engine_steps(command, soft);
+  const auto of_linear = engine_steps(command, simulate(linear_actuator(bench), command));
   Outcome outcome;
   for (std::size_t k = 0; k < of_soft.size(); k += 4) {
     const std::string name = fmt::format("{:.1f} deg", trials::degrees(of_soft[k].to));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/analysis/step_response.hpp"
 #include "tools/findings/parameters.hpp"
 #include "tools/findings/rows.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -94,15 +93,10 @@ Outcome hot_fire_sweep(const Bench& bench) {
 }
 
 Outcome hot_fire_step(const Bench& bench) {
-  const Record command = trials::command_record(
-      trials::steps({trials::radians(0.6), trials::radians(0.4), trials::radians(0.2)}, 2.0), "command.pitch");
-  const auto steps = [&](const Record& record) {
-    return analysis::step_responses(command.find("command.pitch")->values, record.find("engine.pitch")->values,
-                                    record.period, 1.0);
-  };
+  const Record command = pitch_steps();
   const Record record = simulate(bench.hot_fire(), command);
-  const auto with = steps(record);
-  const auto without = steps(simulate(without_friction(bench), command));
+  const auto with = engine_steps(command, record);
+  const auto without = engine_steps(command, simulate(without_friction(bench), command));
   Outcome outcome;
   for (std::size_t k = 0; k < with.size(); k += 4) {
     const std::string name = fmt::format("{:.1f} deg", trials::degrees(with[k].to));

@@ -57,6 +57,16 @@ GreenRun green_run(const VehicleFile& model, const Record& record, const std::st
   return {trials::joined_sweep(sweeps, "piston", goal), trials::joined_sweep(sweeps, "engine", goal)};
 }
 
+Record pitch_steps() {
+  return trials::command_record(trials::steps({trials::radians(0.6), trials::radians(0.4), trials::radians(0.2)}, 2.0),
+                                "command.pitch");
+}
+
+std::vector<analysis::StepResponse> engine_steps(const Record& command, const Record& response) {
+  return analysis::step_responses(command.find("command.pitch")->values, response.find("engine.pitch")->values,
+                                  response.period, 1.0);
+}
+
 double notch_of(const trials::ChannelSweep& sweep) { return sweep.notch ? sweep.notch->frequency : kNone; }
 
 double phase_between(const trials::ChannelSweep& sweep, const trials::ChannelSweep& other, double frequency) {

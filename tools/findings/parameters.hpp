@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/keys.hpp"
+#include "tools/analysis/step_response.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/findings/finding.hpp"
 #include "tools/trials/sweep.hpp"
@@ -57,6 +58,12 @@ struct GreenRun {
   trials::ChannelSweep engine;
 };
 GreenRun green_run(const VehicleFile& model, const Record& record, const std::string& axis);
+
+/// Steps of 0.6, 0.4 and 0.2 deg on pitch, each held for 2 s.
+Record pitch_steps();
+
+/// The response of the engine to each step of `command`, which is `pitch_steps`.
+std::vector<analysis::StepResponse> engine_steps(const Record& command, const Record& response);
 
 /// A notch that decides a row [Hz].
 double notch_of(const trials::ChannelSweep& sweep);

@@ -178,7 +178,7 @@ FlightRecord fly(const plant::AnyParameters& parameters, const Stage& stage, con
                  const FlightPlan& plan) {
   if (controller.is_measured()) {
     throw UsageError(
-        "a measured frequency response is no law in time; remedy: leave out --attitudes, or give gain and filters");
+        "a measured frequency response is not a law in time; remedy: leave out --attitudes, or give gain and filters");
   }
   Flight flight(parameters, stage, controller);
   if (plan.on) {

@@ -29,8 +29,8 @@ struct FlightRecord {
 };
 
 /// Flies it from the steady state under zero commands, or from a cycle.
-/// Throws UsageError for a controller that is a measured frequency response, which is no law in time, and for a delay that
-/// is no whole number of the plant's steps.
+/// Throws UsageError for a controller that is a measured frequency response, which is not a law in time, and for a delay
+/// that is no whole number of the plant's steps.
 FlightRecord fly(const plant::AnyParameters& parameters, const Stage& stage, const Controller& controller,
                  const FlightPlan& plan);
 

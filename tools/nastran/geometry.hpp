@@ -15,8 +15,9 @@ struct Grid {
 
 /// Reads GRID and CORD2R entries: from a bulk data file (.bdf, .dat, .nas), the echo of it in the printed output (.f06) or
 /// in the punch file (.pch). Entries have small, large or free fields. Coordinate systems are rectangular (CORD2R, also one
-/// upon another). Throws FileError with file and line: an entry that is cut or has a value that is no number, a coordinate
-/// system that is missing, defined through itself, or of another kind, a grid point that is given twice, a file without any.
+/// upon another). Throws FileError with file and line: an entry that is cut or has a value that is not a number, a
+/// coordinate system that is missing, defined through itself, or of another kind, a grid point that is given twice, a file
+/// without any.
 std::map<int, Grid> load_geometry(const std::filesystem::path& path);
 
 }  // namespace hotfire::nastran

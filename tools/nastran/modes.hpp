@@ -28,8 +28,8 @@ struct NastranMode {
 
 /// Reads the eigenvalues and eigenvectors of the wanted grid points from Nastran's printed output (.f06): the last table
 /// REAL EIGENVALUES, and every REAL EIGENVECTOR, also where they run over several pages. Throws FileError with file and
-/// line: a fatal message, a row that is cut or has a value that is no number, an eigenvector without its eigenvalue or the
-/// other way round, a grid point that is given twice.
+/// line: a fatal message, a row that is cut or has a value that is not a number, an eigenvector without its eigenvalue or
+/// the other way round, a grid point that is given twice.
 std::vector<NastranMode> load_f06(const std::filesystem::path& path, const std::set<int>& grids);
 
 /// The same of the punch file (.pch) of DISPLACEMENT(PUNCH): `$EIGENVECTOR` with `$EIGENVALUE = ... MODE = n`, two lines a

@@ -252,7 +252,7 @@ class Op2Reader {
 
   void require_rows(const std::string& rows, std::size_t words, std::string_view what) const {
     if (rows.size() % (words * records_.word()) != 0) {
-      records_.refuse(fmt::format("{} of {} bytes, which are no whole rows of {} words; is the file damaged?", what,
+      records_.refuse(fmt::format("{} of {} bytes, which are not whole rows of {} words; is the file damaged?", what,
                                   rows.size(), words));
     }
   }
@@ -301,7 +301,7 @@ class Op2Reader {
       }
       if (!motion.allFinite()) {
         records_.refuse(
-            fmt::format("grid {} of mode {} has a motion that is no number; is the file damaged?", grid, number));
+            fmt::format("grid {} of mode {} has a motion that is not a number; is the file damaged?", grid, number));
       }
       mode.motion[grid] = motion;
     }

@@ -189,7 +189,7 @@ void require_acting(const Model& model, const std::vector<std::string>& keys) {
   const std::vector<std::string> acting = acting_keys(model);
   for (const std::string& key : keys) {
     if (std::find(acting.begin(), acting.end(), key) == acting.end()) {
-      throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", key,
+      throw UsageError(fmt::format("{} is not a parameter that acts in the model; {}", key,
                                    suggestion(key, std::vector<std::string_view>(acting.begin(), acting.end()))));
     }
   }

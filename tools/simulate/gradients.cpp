@@ -94,7 +94,7 @@ std::vector<ChannelSlopes> gradients(const ModelFile& model, const Record& input
       std::visit([](const auto& parameters) { return keys_of(parameters); }, model.parameters);
   for (const std::string& key : keys) {
     if (std::find(acting.begin(), acting.end(), key) == acting.end()) {
-      throw UsageError(fmt::format("{} is no parameter that acts in the model; {}", key,
+      throw UsageError(fmt::format("{} is not a parameter that acts in the model; {}", key,
                                    suggestion(key, std::vector<std::string_view>(acting.begin(), acting.end()))));
     }
   }

@@ -126,7 +126,7 @@ class Writer {
         }
       }
     }
-    text += table_text("tolerance", "  # relative one-sigma of a declared value; what is not named is exact", lines);
+    text += table_text("tolerance", "  # relative one-sigma of a declared value; a value without one is exact", lines);
   }
 
   void append_effect(std::string& text, std::size_t effect) const {

@@ -34,7 +34,13 @@ set(replaced
   "for good|permanent"
   "anew|again"
   "rooms|folders"
-  "looked for|searched for, checked")
+  "looked for|searched for, checked"
+  "be had|be available"
+  "midst|middle, within"
+  "asks of|requires of"
+  "turned round|reversed, exchanged"
+  "looks on|watches"
+  "blamed|attributed, caused by")
 
 set(pages README.md CONTRIBUTING.md CHANGELOG.md examples/README.md)
 file(GLOB_RECURSE found RELATIVE ${ROOT} ${ROOT}/docs/*.md)

@@ -5,8 +5,8 @@
 
 namespace hotfire::model {
 
-/// A mis-scaled command channel: the axis was commanded (1 + error) times what the record's unit says. No fault of the plant
-/// but of a calibration: correct the record rather than run the plant with it.
+/// A mis-scaled command channel: the axis was commanded (1 + error) times the recorded value. It is a fault of a calibration
+/// and not of the plant: correct the record instead of running the plant with it.
 struct CommandScale {
   static constexpr std::string_view name = "command_scale";
   static constexpr Site site = Site::command;

@@ -6,9 +6,9 @@
 namespace hotfire::model {
 
 /// Torque on an axis from the motion of its engine about the other axis: torque = stiffness theta + damping theta', theta
-/// the other angle. Ducts, hoses and the bearing are anchored off the axes, so that turning one way pulls the other way
-/// [physics.md section 4]. Each axis has its own: a passive coupling has the same stiffness on both, a follower force such
-/// as the thrust has not. Against positive motion if positive. An axis alone has no other axis: there it acts on nothing.
+/// the other angle. Ducts, hoses and the bearing are anchored off the axes, so a turn about one axis pulls about the other
+/// one [physics.md section 4]. Each axis has its own values: a passive coupling has the same stiffness on both, a follower
+/// force such as the thrust does not. Against positive motion if positive. Without a second axis the effect is zero.
 struct CrossAxis {
   static constexpr std::string_view name = "cross_axis";
   static constexpr Site site = Site::engine_torque;

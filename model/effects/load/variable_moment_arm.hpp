@@ -5,8 +5,8 @@
 
 namespace hotfire::model {
 
-/// Moment arm that follows the angle: R(beta) = R (1 + linear beta + quadratic beta^2), in stroke (its integral) and in
-/// torque alike, so that no energy is made. A linkage seen in a plane gives this to second order.
+/// Moment arm that follows the angle: R(beta) = R (1 + linear beta + quadratic beta^2). It applies to stroke (its integral)
+/// and torque alike, so that it creates no energy. A plane linkage has this form to second order.
 struct VariableMomentArm {
   static constexpr std::string_view name = "variable_moment_arm";
   static constexpr Site site = Site::load_spring;

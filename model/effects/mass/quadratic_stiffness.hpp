@@ -5,7 +5,7 @@
 
 namespace hotfire::model {
 
-/// Stiffness that is not the same to both sides: force = stiffness x^2, beside the declared linear stiffness.
+/// Stiffness that differs between the two directions: force = stiffness x^2, beside the declared linear stiffness.
 struct QuadraticStiffness {
   static constexpr std::string_view name = "quadratic_stiffness";
   static constexpr Site site = Site::mass_force;

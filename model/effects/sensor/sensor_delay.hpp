@@ -6,8 +6,8 @@
 
 namespace hotfire::model {
 
-/// A measured channel whose clock is late, or early where `delay` is negative: the reading is the value `delay` ago, or the
-/// one that its motion leads to (`DelayLine`).
+/// A measured channel whose clock is late, or early if `delay` is negative. The reading is the value `delay` ago, or its
+/// extrapolation (`DelayLine`).
 struct SensorDelay {
   static constexpr std::string_view name = "sensor_delay";
   static constexpr Site site = Site::sensor;

@@ -5,8 +5,8 @@
 
 namespace hotfire::model {
 
-/// A mis-scaled channel: it reads (1 + error) times what its unit says. No fault of the plant but of a calibration: correct
-/// the record rather than run the plant with it.
+/// A mis-scaled channel: it reads (1 + error) times the true value. It is a fault of a calibration and not of the plant:
+/// correct the record instead of running the plant with it.
 struct SensorScale {
   static constexpr std::string_view name = "sensor_scale";
   static constexpr Site site = Site::sensor;

@@ -24,7 +24,7 @@ inline constexpr std::array<std::string_view, kArgumentNames.size() + 1> kFactor
 enum class Order { curve_last, curve_first };
 inline constexpr std::array<std::string_view, 2> kOrderNames{"curve_last", "curve_first"};
 
-/// What a term adds at its site: name and unit.
+/// Name and unit of the quantity that a term adds at its site.
 template <Site at, int channel>
 struct Names;
 template <>
@@ -144,7 +144,7 @@ struct Term {
   }
 
  private:
-  /// A quantity as the site sees it: its own signal as it comes in, everything else from around it.
+  /// A quantity at a site: the site's own signal as it arrives, every other quantity from the axis around it.
   template <class S, class Input>
   static S quantity(Argument argument, const Input& input) noexcept {
     if constexpr (std::is_same_v<Input, Signal<S>>) {

@@ -8,9 +8,10 @@
 #include "model/numerics/scalar.hpp"
 #include "model/numerics/table.hpp"
 
-/// What no listed effect is: a term of unknown law at a known site, as a table that the plant can run. `hotfire explain`
-/// fits the table where the records ask for a term and no listed effect is it. Between its points a table is linear, beyond
-/// them constant: the points are its bounds of validity. With no points, or all of them zero, the effect is exactly nothing.
+/// An effect that is not listed: a term of unknown law at a known site, as a table that the plant can run. `hotfire explain`
+/// fits the table if the records require a term and no listed effect explains it. A table is linear between its points and
+/// constant beyond them: the points are its bounds of validity. Without points, or with zeros only, the effect is exactly
+/// zero.
 namespace hotfire::model {
 
 inline constexpr std::size_t kUnlistedPoints = 16;
@@ -70,7 +71,7 @@ constexpr Field<Params> phase_field(unsigned options) {
 
 }  // namespace unlisted
 
-/// What a configuration calls an unlisted term at a site, and in which units its tables are.
+/// Configuration name of an unlisted term at a site, and the units of its tables.
 template <Site site>
 struct UnlistedNames;
 

@@ -5,9 +5,9 @@
 
 namespace hotfire::model {
 
-/// A torque from the motion of the engine about its other axis that no `cross_axis` is, against positive motion: a table
-/// over the other angle or over its rate, or a stiffness against the own angle that is a table over the other angle. An axis
-/// alone has no other axis: there it acts on nothing.
+/// A torque from the motion of the engine about its other axis that `cross_axis` cannot represent, against positive motion.
+/// It is a table over the other angle or over its rate, or a stiffness against the own angle that is a table over the other
+/// angle. Without a second axis the effect is zero.
 struct UnlistedCrossTorque {
   static constexpr std::string_view name = "unlisted_cross_torque";
   static constexpr Site site = Site::engine_torque;

@@ -6,11 +6,14 @@
 
 namespace hotfire::model {
 
-/// Deflection added to the load spring's, as a table over its own deflection or the engine angle; a spring that creeps: a
-/// share of the deflection relaxes with a time constant (a standard linear solid); one that damps: a further spring that
-/// relaxes with a time constant beside it (a Maxwell element), which slow motion does not meet and which is a damper to what
-/// is slower than that; a joint beside it that sticks, and slips once it is stretched so far (a Jenkins element; Iwan 1966);
-/// or one whose stiffness drifts, K_T (1 + stiffness(t)).
+/// Deflection added to that of the load spring, by one of these laws:
+///
+/// - a table over its own deflection or the engine angle;
+/// - creep: a share of the deflection relaxes with a time constant (a standard linear solid);
+/// - damping: a further spring beside it that relaxes with a time constant (a Maxwell element). Slow motion does not load
+///   it, and to slower motion than its time constant it is a damper;
+/// - slip: a joint beside it that sticks, and slips beyond a stretch (a Jenkins element; Iwan 1966);
+/// - a stiffness that drifts, K_T (1 + stiffness(t)).
 struct UnlistedDeflection {
   static constexpr std::string_view name = "unlisted_deflection";
   static constexpr Site site = Site::load_spring;

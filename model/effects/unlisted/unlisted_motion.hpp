@@ -8,10 +8,12 @@
 
 namespace hotfire::model {
 
-/// A force or torque against the motion at `piston`, `engine_torque` or `mass_force`: a table over the position, over the
-/// rate, or over time; dry friction or viscous damping whose level is a table over the position, over its distance from
-/// zero, or over time; dry friction whose level is a table over the size of the load, where there is one; or a sinusoid of
-/// time.
+/// A force or torque against the motion at `piston`, `engine_torque` or `mass_force`, by one of these laws:
+///
+/// - a table over the position, over the rate, or over time;
+/// - dry friction or viscous damping whose level is a table over the position, over its distance from zero, or over time;
+/// - dry friction whose level is a table over the size of the load, where there is one;
+/// - a sinusoid of time.
 template <Site at>
 struct UnlistedMotion {
   using Names = UnlistedNames<at>;

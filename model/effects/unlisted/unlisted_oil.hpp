@@ -6,9 +6,9 @@
 
 namespace hotfire::model {
 
-/// Flow into the extend chamber [m^3/s] as a table over load pressure, spool position or time; or a share of the valve's
-/// flow as a table over how much has flowed of late, whichever way, remembered with a time constant (a supply that sags, oil
-/// that warms up).
+/// Flow into the extend chamber [m^3/s], by one of two kinds of law. The first is a table over load pressure, spool position
+/// or time. The second is a share of the valve's flow, as a table over the recent flow in either direction, which has a
+/// memory with a time constant (a supply that sags, oil that warms up).
 struct UnlistedFlow {
   static constexpr std::string_view name = "unlisted_flow";
   static constexpr Site site = Site::flow;
@@ -64,8 +64,8 @@ struct UnlistedFlow {
   }
 };
 
-/// Oil whose compressibility depends on the load pressure: that of the declared bulk modulus, and of it a further share that
-/// is a table over the pressure (aerated oil, a hose that stiffens): dP/dt = (4 beta_e / V_T) net flow / (1 + share(P)).
+/// Oil whose compressibility depends on the load pressure (aerated oil, a hose that stiffens). To that of the declared bulk
+/// modulus it adds a share that is a table over the pressure: dP/dt = (4 beta_e / V_T) net flow / (1 + share(P)).
 struct UnlistedPressure {
   static constexpr std::string_view name = "unlisted_pressure";
   static constexpr Site site = Site::pressure;

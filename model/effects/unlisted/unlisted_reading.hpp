@@ -5,7 +5,7 @@
 
 namespace hotfire::model {
 
-/// What a sensor adds to its reading, as a table over what it measures: a worn track, a local bump.
+/// Error of a sensor as a table over the measured quantity: a worn track, a local bump.
 struct UnlistedReading {
   static constexpr std::string_view name = "unlisted_reading";
   static constexpr Site site = Site::sensor;
@@ -38,7 +38,7 @@ struct UnlistedReading {
   }
 };
 
-/// What a sensor adds to its reading over the time of the record: a zero that drifts.
+/// Error of a sensor as a table over the time of the record: a zero that drifts.
 struct UnlistedDrift {
   static constexpr std::string_view name = "unlisted_drift";
   static constexpr Site site = Site::sensor;

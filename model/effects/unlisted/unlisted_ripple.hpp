@@ -5,7 +5,7 @@
 
 namespace hotfire::model {
 
-/// A sinusoid of time that a sensor's reading has and the motion has not: mains hum, a supply that ripples.
+/// A sinusoid of time in a sensor's reading that is not in the motion: mains hum, a supply that ripples.
 struct UnlistedRipple {
   static constexpr std::string_view name = "unlisted_ripple";
   static constexpr Site site = Site::sensor;

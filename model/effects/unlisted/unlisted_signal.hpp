@@ -10,8 +10,8 @@
 
 namespace hotfire::model {
 
-/// Command or valve command with a term added: a table over the signal's own value or over time, or a sinusoid of time; or
-/// a command that comes late by a table over its distance from zero, or through a first-order lag.
+/// Command or valve command with an added term: a table over the signal's own value or over time, or a sinusoid of time. Or
+/// a command with a delay that is a table over its distance from zero, or with a first-order lag.
 template <Site at>
 struct UnlistedSignal {
   using Names = UnlistedNames<at>;
@@ -124,9 +124,9 @@ struct UnlistedSignal {
   }
 };
 
-/// What the spool opens: a table over the spool position added to it, a gain that drifts, 1 + gain(t), or a spool that can
-/// only go so fast (the limit of `rate_limit`, elsewhere). A term added over time is the valve command's: the spool follows
-/// it too fast to be seen.
+/// The opening of the spool, by one of three laws: a table over the spool position that is added to it, a gain that drifts,
+/// 1 + gain(t), or a limited speed of the spool (the law of `rate_limit`). A term over time belongs to the valve command,
+/// because the spool follows it too fast for the records to show.
 struct UnlistedOpening {
   static constexpr std::string_view name = "unlisted_valve";
   static constexpr Site site = Site::valve;

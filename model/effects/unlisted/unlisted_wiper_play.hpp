@@ -6,8 +6,8 @@
 
 namespace hotfire::model {
 
-/// A reading that stays where it is until the motion has gone on by a play, and follows at that distance: a wiper that
-/// sticks, slack in the linkage that moves it. The stop operator of Krasnosel'skii, as `valve_hysteresis` is.
+/// A reading that stays constant until the motion exceeds a play, and then follows at that distance: a wiper that sticks,
+/// slack in the linkage that moves it. The stop operator of Krasnosel'skii, as in `valve_hysteresis`.
 struct UnlistedWiperPlay {
   static constexpr std::string_view name = "unlisted_wiper_play";
   static constexpr Site site = Site::sensor;

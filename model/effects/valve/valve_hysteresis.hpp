@@ -6,8 +6,8 @@
 
 namespace hotfire::model {
 
-/// Play between the valve's command and its spool (friction in torque motor and spool): the output stays where it is until
-/// the command has moved by `half_width`, then follows at that distance. The stop operator of Krasnosel'skii.
+/// Play between the valve's command and its spool (friction in torque motor and spool). The output stays constant until the
+/// command has moved by `half_width`, then follows at that distance. The stop operator of Krasnosel'skii.
 struct ValveHysteresis {
   static constexpr std::string_view name = "valve_hysteresis";
   static constexpr Site site = Site::valve_command;

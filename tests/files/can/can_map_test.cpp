@@ -91,7 +91,7 @@ TEST(CanMap, what_is_wrong_is_refused_with_file_and_line) {
                  {"rig.dbc:4: x: floating-point"});
   expect_message(refused("BO_ 256 A: 8 X\n" + kProtection + " SG_ x : 16|33@1- (1,0) [0|1] \"\" Plant\n"),
                  {"rig.dbc:4: x: 33 bits; allowed: up to 32"});
-  expect_message(refused_signal("x : 16|8@1- (1,y) [0|1] \"\" Plant"), {"rig.dbc:4: \"y\" is no number"});
+  expect_message(refused_signal("x : 16|8@1- (1,y) [0|1] \"\" Plant"), {"rig.dbc:4: \"y\" is not a number"});
   expect_message(refused("BO_ 2147484000 A: 8 X\n"), {"rig.dbc:1: A: id 352 of 29 bits; allowed: 0 to 2047"});
   expect_message(refused("BO_ 256 COMMAND: 6 Controller\n SG_ x : 0|8@1+ (1,0) [0|255] \"\" Plant\n"),
                  {"COMMAND: not protected", "crc8 : 0|8@1+ and counter"});

@@ -106,7 +106,7 @@ TEST(Dbc, what_is_wrong_is_refused_with_file_and_line) {
   expect_message(refused_signal("s : 56|16@0+ (1,0) [0|0] \"\" X"), {"rig.dbc:2: s: bits 63 to 78 of a frame of 64"});
   expect_message(refused_signal("s : 0|8@1+ (0,0) [0|0] \"\" X"), {"rig.dbc:2: s: factor 0"});
   expect_message(refused_signal("s : 0|8@1+ (1,0) [5|0] \"\" X"), {"rig.dbc:2: s: range 5 to 0"});
-  expect_message(refused_signal("s : 0|8@1+ (one,0) [0|0] \"\" X"), {"rig.dbc:2: \"one\" is no number"});
+  expect_message(refused_signal("s : 0|8@1+ (one,0) [0|0] \"\" X"), {"rig.dbc:2: \"one\" is not a number"});
   expect_message(refused_signal("s"), {"rig.dbc:2: not a signal"});
   expect_message(refused_signal("s : 0|8@1+ (1,0) [0|0] \"\" X", "SIG_VALTYPE_ 256 s : 1;\n"),
                  {"rig.dbc:3: s: 8 bits; allowed: 32 for single"});

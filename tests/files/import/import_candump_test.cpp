@@ -191,12 +191,12 @@ TEST(ImportCandump, unit_is_that_of_the_dbc_file_or_agrees_with_it) {
   const Record scaled = imported(with(with(kMap, "unit = \"mm\"", "unit = \"m\""), "factor = -1", "factor = 0.001"), log());
   DOUBLES_EQUAL(3e-3, scaled.find("piston")->values[3], 1e-12);
   expect_message(refused(with(with(kMap, "FEEDBACK.POSITION", "TEMPERATURE"), "unit = \"mm\"\n", ""), log()),
-                 {"map.toml:6: channels.piston: unit: missing", "\"Schritte\", which is no known unit"});
+                 {"map.toml:6: channels.piston: unit: missing", "\"Schritte\", which is not a known unit"});
 }
 
 TEST(ImportCandump, what_is_no_line_of_a_log_or_no_frame_of_its_message_is_refused_with_its_line) {
   expect_message(refused(kMap, log() + "  can0  100   [2]  11 22\n"), {"rig.log:12", "no frame of a candump log"});
-  expect_message(refused(kMap, log() + "(50.009) can0 100#0000\n"), {"rig.log:12: COMMAND: 2 bytes", "rig.dbc:2 says 4"});
+  expect_message(refused(kMap, log() + "(50.009) can0 100#0000\n"), {"rig.log:12: COMMAND: 2 bytes", "rig.dbc:2 has 4"});
   expect_message(refused(kMap, log() + "(50.009) can1 100#00000000\n"), {"rig.log:12: COMMAND: interface can1 after can0"});
   expect_message(refused(kMap, log() + command(50.009, 10.1)),
                  {"rig.log:12: COMMAND.BETA_CMD = 10.1 deg", "rig.dbc:3 allows -10 to 10"});

@@ -139,7 +139,8 @@ TEST(ImportMatlab, AMatlabVariableThatIsNotThereIsRefusedWithThoseThatAre) {
   expect_message(refused_column("data.gamma"), {"no field \"gamma\""});
   const auto text = scratch.write("text.mat", "time,piston\n");
   const ImportMap map = map_of("X");
-  expect_message(refusal([&] { import_record(text, map, scratch.path("run.csv")); }), {"text.mat", "no MATLAB file"});
+  expect_message(refusal([&] { import_record(text, map, scratch.path("run.csv")); }),
+                 {"text.mat", "not a readable MATLAB file"});
 }
 
 // matio 1.5.23 crashes on some of these: a struct whose tags say what is not so.
@@ -225,5 +226,5 @@ TEST(ImportMatlab, variable_of_version_4_that_goes_beyond_its_file_is_refused_wi
 
 TEST(ImportMatlab, what_is_no_file_is_refused) {
   const ImportMap map = map_of("X");
-  expect_message(refusal([&] { read_matlab_columns("/dev/zero", map); }), {"/dev/zero: is no file"});
+  expect_message(refusal([&] { read_matlab_columns("/dev/zero", map); }), {"/dev/zero: is not a file"});
 }

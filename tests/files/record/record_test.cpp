@@ -171,7 +171,7 @@ TEST(Record, with_a_wrong_unit_is_refused_with_the_units_allowed) {
 TEST(Record, without_time_or_with_a_channel_named_twice_is_refused) {
   expect_message(refused("command[rad],piston[m]\n0,0\n"), {"r.csv:1:", "no time column"});
   expect_message(refused("time[s],piston[m],piston[mm]\n0,0,0\n"), {"r.csv:1:", "column 3", "piston", "named twice"});
-  expect_message(refused("time[s]\n0\n"), {"r.csv:1:", "no channel beside time"});
+  expect_message(refused("time[s]\n0\n"), {"r.csv:1:", "no channel except time"});
 }
 
 TEST(Record, with_a_ragged_row_is_refused_with_both_counts) {

@@ -147,11 +147,12 @@ std::string line_of(const Json& result) {
                        joined(result["effects"].get<std::vector<std::string>>()), result["tolerances"].get<std::size_t>());
   }
   if (result["kind"] == "profile") {
+    const auto actuators = result["actuators"].get<unsigned>();
     return fmt::format(
-        "profile of {} actuators, {:g} s long, digest {}; to run it: hotfire lab --profile {} --bus can0 --gpio CHIP "
+        "profile of {} {}, {:g} s long, digest {}; to run it: hotfire lab --profile {} --bus can0 --gpio CHIP "
         "--record run.hfr --confirm {}",
-        result["actuators"].get<unsigned>(), result["duration"].get<double>(), result["digest"].get<std::string>(),
-        result["file"].get<std::string>(), result["digest"].get<std::string>());
+        actuators, actuators == 1 ? "actuator" : "actuators", result["duration"].get<double>(),
+        result["digest"].get<std::string>(), result["file"].get<std::string>(), result["digest"].get<std::string>());
   }
   if (result["kind"] == "schedule") {
     return fmt::format("CAN schedule, {} frames, worst-case bus load {:.1f} % of {:g} Mbit/s, allowed {:.0f} %",
@@ -203,7 +204,7 @@ void add_check(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "check",
-      "Check model files, profiles, CAN schedules, records and recordings; each problem has its place and a remedy");
+      "Check model files, profiles, CAN schedules, records and recordings; print the place and the remedy of each problem");
   command
       ->add_option("FILE", options->files,
                    "model files, profiles and CAN schedules (.toml), records (.csv, candump .log, .mf4, .h5, .mat) and "

@@ -35,7 +35,7 @@ void require_identifier(const std::string& name) {
   }
 }
 
-/// An entry of `model::ImageEntry` for a line `key value` of a plant image. A value that is no number is a word.
+/// An entry of `model::ImageEntry` for a line `key value` of a plant image. A value that is not a number is a word.
 std::string entry_of(const std::string& line) {
   const std::size_t space = line.find(' ');
   const std::string key = line.substr(0, space);
@@ -85,7 +85,7 @@ void add_header(CLI::App& program) {
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
       "Example: hotfire header --model axis.toml --output axis_image.hpp --name kAxisImage\n"
-      "The header is for hotfire::model::parameters_of: docs/interfaces/small-targets.md.");
+      "The function hotfire::model::parameters_of reads the array: docs/interfaces/small-targets.md.");
   command->callback([options] { run_header(*options); });
 }
 

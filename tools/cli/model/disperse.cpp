@@ -118,8 +118,8 @@ void run_disperse(const DisperseOptions& options, const disperse::CommandRunner&
   }
   if (!dispersion.is_complete()) {
     std::cout << fmt::format(
-        "{}: share {} is done; the draws of other shares are missing. Without --share the table is "
-        "written, and what is missing is run\n",
+        "{}: share {} is done; the draws of other shares are missing. Without --share, the "
+        "command runs them and writes the table\n",
         options.out, options.share);
     return;
   }

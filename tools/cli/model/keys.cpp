@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tools/cli/shared/commands.hpp"
 #include "tools/cli/shared/model_keys.hpp"
@@ -33,15 +34,21 @@ std::string values_of(const ModelKey& key) {
   if (!key.words.empty()) {
     return fmt::format("\"{}\"", fmt::join(key.words, "\" | \""));
   }
-  std::string text = key.reference ? fmt::format("{:g} ", *key.reference) : std::string{};
-  text += key.unit == "1" ? "" : key.unit;
+  std::string value = key.points > 0 ? "[...]" : key.reference ? fmt::format("{:g}", *key.reference) : std::string{};
+  if (key.unit != "1") {
+    value += (value.empty() ? "" : " ") + key.unit;
+  }
+  std::vector<std::string> parts;
+  if (!value.empty()) {
+    parts.push_back(value);
+  }
   if (key.points > 0) {
-    text = fmt::format("[...] {}, up to {} points", key.unit == "1" ? "" : key.unit, key.points);
+    parts.push_back(fmt::format("up to {} points", key.points));
   }
   if (std::isfinite(key.lower) && std::isfinite(key.upper)) {
-    text += fmt::format(", allowed: {:g} to {:g}", key.lower, key.upper);
+    parts.push_back(fmt::format("allowed: {:g} to {:g}", key.lower, key.upper));
   }
-  return text;
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string text_of(const KeyTable& table, const std::string& only) {

@@ -136,7 +136,7 @@ void print(const linear::LinearModel& model, const std::vector<double>& without)
     print_pole(pole);
   }
   for (const linear::Delay& delay : model.delays) {
-    std::cout << fmt::format("beside the matrices: {} is late by {:.6g} s\n", delay.name, delay.seconds);
+    std::cout << fmt::format("delay that is not in the matrices: {}, {:.6g} s\n", delay.name, delay.seconds);
   }
   if (!without.empty()) {
     std::cout << fmt::format("no balance of sines at {:.4g} Hz: left out of the responses\n", fmt::join(without, ", "));

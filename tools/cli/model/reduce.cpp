@@ -82,7 +82,7 @@ void add_reduce(CLI::App& program) {
   command->add_flag("--json", options->json, "print the result as JSON");
   command->footer(
       "Example: hotfire reduce --modes vehicle.csv --output reduced.csv --lowest 1 --highest 20\nExit status: 1 if the "
-      "error is above --error with that many modes; the table is written in any case.");
+      "error is above --error with the modes that --most allows; the table is written in any case.");
   command->callback([options] { run_reduction(*options); });
 }
 

@@ -61,7 +61,7 @@ RealtimeHelp parse_realtime_help(const std::string& text) {
 RealtimeHelp realtime_help(const std::string& mode) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "hotfire-rt";
   if (!std::filesystem::exists(program)) {
-    throw UsageError(program + ": there is no such program; build or install hotfire-rt beside hotfire");
+    throw UsageError(program + ": the program does not exist; build or install hotfire-rt beside hotfire");
   }
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(("'" + program + "' " + mode + " --help").c_str(), "r"),
                                                              pclose);

@@ -83,7 +83,7 @@ void add_doctor(CLI::App& program) {
   command->add_option("--cpu", options->patient.cpu, "CPU on which the loop will run")->check(CLI::Range(0, 1023));
   command->add_option("--can", options->patient.can, "CAN interface that must exist; default: all are checked");
   command->add_option("--line", options->patient.lines, "name of a GPIO line that must exist");
-  command->add_option("--root", options->root, "folder to check in place of /, such as a mounted image")
+  command->add_option("--root", options->root, "folder to check instead of /, such as a mounted image")
       ->check(CLI::ExistingDirectory);
   command->add_flag("--json", options->json, "print the findings as JSON");
   command->footer(

@@ -124,7 +124,7 @@ void print_words(const PeriodSearch& search, const Trials& trials, const Ends& e
                                     : "a limit was exceeded: " + shorter.verdict);
   }
   if (!all_in_real_time(trials)) {
-    fmt::print("this machine refused real-time running: the figure says nothing about a real-time machine\n");
+    fmt::print("this machine refused real-time running: the figure does not describe a real-time machine\n");
   }
 }
 

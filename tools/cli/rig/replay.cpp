@@ -20,11 +20,10 @@ void add_replay(CLI::App& program) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
-      "replay",
-      "Check that a recording's model, or a lab's logic, gives the recorded bits, or write the recording as a record");
+      "replay", "Repeat a recording and compare every bit with the recorded one, or write the recording as a record");
   command
       ->add_option("RECORDING", options->recording,
-                   "file that `hotfire plant --record` or `hotfire lab --record` has written")
+                   "recording (.hfr) that `hotfire plant --record` or `hotfire lab --record` has written")
       ->required();
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "write one actuator, or all axes of a vehicle, as a record (.csv) instead");
@@ -34,7 +33,8 @@ void add_replay(CLI::App& program) {
   command->add_flag("--json", options->json, "print the result as JSON")->excludes(csv);
   command->footer(
       "Example: hotfire replay run.hfr\n         hotfire replay run.hfr --actuator 2 --csv second.csv\n"
-      "Exit status: 0 every recorded cycle has the same bits, 1 one differs or lies behind a gap, 6 the file is refused.");
+      "The model of a plant, or the logic of a lab, runs again with the recorded inputs.\n"
+      "Exit status: 0 every cycle has the recorded bits, 1 a cycle differs or follows a gap, 6 the file is refused.");
   command->callback([options] {
     if (options->csv.empty()) {
       become_realtime_program(options->json ? std::vector<std::string>{"replay", options->recording, "--json"}

@@ -48,18 +48,18 @@ void add_watch(CLI::App& program) {
   CLI::App* command = program.add_subcommand("watch", "Show a running plant, lab or controller in a browser");
   command
       ->add_option("FILE", options->file,
-                   "live-view file, which the running program has as --watch FILE; the program may start later")
+                   "live-view file of the running program: the file of its option --watch; the program may start later")
       ->required();
   command->add_option("--port", options->port, "TCP port of the page; 0: any free port")
       ->check(CLI::Range(0U, 65535U))
       ->capture_default_str();
   command->add_option("--address", options->address,
-                      "IP address of the page; default 127.0.0.1, which only this machine reaches. Anyone who reaches "
-                      "another address can read the page");
+                      "IP address of the page; default 127.0.0.1, which only this machine reaches. With another address, "
+                      "anyone who reaches it can read the page");
   command->footer(
       "Example: hotfire plant --model explained.toml --bus sim --watch /dev/shm/plant\n         hotfire watch "
-      "/dev/shm/plant\nThe command prints the address of the page and serves the page until Ctrl-C. The page changes "
-      "nothing in the program that it shows. That program may end and start again.");
+      "/dev/shm/plant\nThe command prints the address of the page and serves the page until Ctrl-C. The page only "
+      "displays: it changes nothing in the running program. That program may end and start again.");
   command->callback([options] { watch_until_stopped(*options); });
 }
 

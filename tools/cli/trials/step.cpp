@@ -54,7 +54,7 @@ void run_steps(const StepOptions& options) {
     }
     const auto steps = analysis::step_responses(command.values, channel->values, record.period, 0.5 * options.hold);
     if (steps.empty()) {
-      throw FileError(fmt::format("{}: its command has no step that is held for {:g} s; --hold says how long steps are",
+      throw FileError(fmt::format("{}: its command has no step that is held for {:g} s; --hold sets the length of the steps",
                                   record.path.string(), 0.5 * options.hold));
     }
     if (options.trial.json) {

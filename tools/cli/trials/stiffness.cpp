@@ -56,13 +56,13 @@ std::vector<trials::SineStiffness> stiffnesses_of(const Record& record, const st
   auto stiffnesses = trials::sine_stiffnesses(trials::analyse_sweep(record, goal), spring, bias);
   if (stiffnesses.empty()) {
     throw FileError(fmt::format(
-        "{}: {} is no stepped sine, and an equivalent stiffness is that of one amplitude; allowed: sines of three "
+        "{}: {} is not a stepped sine, and an equivalent stiffness is that of one amplitude; allowed: sines of three "
         "periods or more for most of the record, as 'hotfire sweep --profile sines' has them",
         name, trials::channel_of("command", goal.axis)));
   }
   if (std::none_of(stiffnesses.begin(), stiffnesses.end(), [](const auto& own) { return own.test.has_value(); })) {
     throw FileError(fmt::format(
-        "{}: {} has no notch from {:.3g} to {:.3g} Hz at any amplitude; --from and --to say where the load resonance is",
+        "{}: {} has no notch from {:.3g} to {:.3g} Hz at any amplitude; --from and --to set the band of the load resonance",
         name, trials::channel_of("piston", goal.axis), goal.lowest, goal.highest));
   }
   return stiffnesses;

@@ -35,7 +35,7 @@ analysis::AngleCalibration calibration_of(const StringOptions& options, std::siz
   try {
     return analysis::AngleCalibration(settled);
   } catch (const std::invalid_argument& problem) {
-    throw FileError(fmt::format("{}: {} poses are held for {:g} s; {}; --hold says for how long a pose is held",
+    throw FileError(fmt::format("{}: {} poses are held for {:g} s; {}; --hold sets the time for which a pose is held",
                                 options.settled, poses, options.hold, problem.what()));
   }
 }
@@ -93,7 +93,8 @@ void add_strings(CLI::App& program) {
       ->add_option("--output", options->output,
                    "record to write (.csv): the one of --record, with engine.pitch and engine.yaw from its strings")
       ->required();
-  command->add_option("--engine", options->engine, "number of the engine, in records of several")->check(CLI::Range(1, 9));
+  command->add_option("--engine", options->engine, "number of the engine, if a record has several engines")
+      ->check(CLI::Range(1, 9));
   command->add_option("--hold", options->hold, "shortest duration of a pose [s]; its last quarter is used")
       ->check(CLI::Range(0.1, 1e4))
       ->capture_default_str();

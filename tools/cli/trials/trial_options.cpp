@@ -51,8 +51,7 @@ std::optional<VehicleFile> vehicle_of_trial(const TrialOptions& options) {
     return {};
   }
   if (options.axis.empty()) {
-    throw UsageError(
-        "the model has several axes; --axis says which one the test is of, pitch or yaw, pitch1 of several engines");
+    throw UsageError("the model has several axes; --axis selects one: pitch or yaw, or pitch1, yaw1 ... of several engines");
   }
   VehicleFile vehicle = load_vehicle(options.model);
   return options.thrust ? with_thrust(std::move(vehicle), *options.thrust) : vehicle;

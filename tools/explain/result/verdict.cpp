@@ -2,7 +2,6 @@
 #include "tools/explain/result/verdict.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -61,7 +60,7 @@ std::vector<std::string> terms_in_words(const SearchResult& found) {
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
     terms.push_back(is_unlisted(found, candidate)
-                        ? fmt::format("a term at {} {}", fmt::join(sites_of(kept), " or "), dependence_in_words(candidate))
+                        ? fmt::format("a term at {} {}", words::listed(sites_of(kept), "or"), dependence_in_words(candidate))
                         : phrase(candidate));
   }
   return terms;
@@ -70,7 +69,7 @@ std::vector<std::string> terms_in_words(const SearchResult& found) {
 /// Where what is missing acts, as far as the records say.
 std::string place_in_words(const Located& located) {
   const std::vector<std::string> sites = located.likely_sites();
-  return located.is_single ? words::one_place(fmt::format("{}", fmt::join(sites, " or "))) : words::several_places(sites);
+  return located.is_single ? words::one_place(words::listed(sites, "or")) : words::several_places(sites);
 }
 
 }  // namespace

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/search/unlisted_stage.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
@@ -121,7 +120,7 @@ void UnlistedStage::refuse_misplaced_names() {
   const bool misplaced = std::ranges::any_of(
       result_.kept, [&](const Kept& kept) { return located().is_single && !located().allows(kept.trial.candidate.site); });
   if (misplaced) {
-    take_out_names(words::explained_by_signal(fmt::format("{}", fmt::join(located().likely_sites(), " or "))));
+    take_out_names(words::explained_by_signal(words::listed(located().likely_sites(), "or")));
   }
 }
 

@@ -127,10 +127,10 @@ std::string dependence_in_words(const Candidate& candidate) {
     return "that depends on " + quantity_of_term(candidate) + memory_of_term(candidate);
   }
   if (is_periodic(candidate)) {
-    return "of one frequency";
+    return "that is a sinusoid over time";
   }
   if (candidate.name == model::UnlistedWiperPlay::name) {
-    return "with a play";
+    return "with play";
   }
   if (candidate.name == model::UnlistedReading::name) {
     return "that depends on the reading itself";
@@ -148,8 +148,9 @@ std::string dependence_in_words(const Candidate& candidate) {
   // "friction_along_position": one quantity as a curve over another.
   constexpr std::string_view kAlong = "_along_";
   if (const auto along = candidate.option_name.find(kAlong); along != std::string::npos) {
+    const std::string quantity = words::spoken(candidate.option_name.substr(along + kAlong.size()));
     return fmt::format("whose {} depends on {}", words::spoken(candidate.option_name.substr(0, along)),
-                       words::spoken(candidate.option_name.substr(along + kAlong.size())));
+                       quantity == "distance" ? "the distance from zero" : quantity);
   }
   return "that depends on " + words::spoken(candidate.option_name);
 }

@@ -25,7 +25,7 @@ std::string in_words(const FittedTable& table);
 /// The same of a term of unknown law without a table. Empty for one that has a table.
 std::string law_in_words(const Candidate& candidate);
 
-/// What a term of unknown law depends on, as a clause: "that depends on load pressure", "of one frequency".
+/// What a term of unknown law depends on, as a clause: "that depends on load pressure", "that is a sinusoid over time".
 std::string dependence_in_words(const Candidate& candidate);
 
 }  // namespace hotfire::explain

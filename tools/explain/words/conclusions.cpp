@@ -29,10 +29,10 @@ std::string spoken(std::string_view name) {
   return text;
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string listed(const std::vector<std::string>& names, std::string_view conjunction) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+    text += (i == 0 ? "" : i + 1 == names.size() ? fmt::format(" {} ", conjunction) : ", ") + names[i];
   }
   return text;
 }
@@ -111,13 +111,13 @@ std::string no_listed_finalist() { return "No listed effect ranked high enough i
 
 std::string is_not_listed(const std::string& candidate, double share_of_error, double share_of_kept) {
   return fmt::format(
-      "It is not {}, the closest listed effect, which leaves {:.1f} % of the calibrated model's held-out "
-      "error. The term that is kept leaves {:.1f} %.",
+      "The closest listed effect, {}, leaves {:.1f} % of the calibrated model's held-out error. The term that is kept "
+      "leaves {:.1f} %.",
       candidate, 100.0 * share_of_error, 100.0 * share_of_kept);
 }
 
 std::string is_not_other(const std::string& candidate, double share_of_error) {
-  return fmt::format("It is not {}, which leaves {:.1f} %.", candidate, 100.0 * share_of_error);
+  return fmt::format("Another term, {}, leaves {:.1f} %.", candidate, 100.0 * share_of_error);
 }
 
 std::string baseline(bool is_better) {
@@ -171,8 +171,7 @@ std::string factor(const std::string& key, double share) { return fmt::format("{
 std::string hardly_separated(const std::string& key, const std::vector<std::string>& others, double share) {
   return fmt::format(
       "These estimates are strongly correlated. With {} larger by 1 %, {} gives nearly the same error. The relative "
-      "standard "
-      "deviation of {} alone is {}.",
+      "standard deviation of {} alone is {}.",
       key, fmt::join(others, ", "), key, percent(share));
 }
 

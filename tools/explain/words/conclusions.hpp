@@ -22,7 +22,7 @@ std::string fall_of(const HeldOutError& error);
 /// "load pressure" of `load_pressure`.
 std::string spoken(std::string_view name);
 /// "a, b and c".
-std::string listed(const std::vector<std::string>& names);
+std::string listed(const std::vector<std::string>& names, std::string_view conjunction = "and");
 /// "Pitch axis: TEXT".
 std::string of_axis(const std::string& axis, const std::string& text);
 

@@ -12,7 +12,7 @@ std::string_view text(Reason reason) noexcept {
       "ranked below the finalists in screening",
       "removed: the error is the same without it",
       "the model is as good without it since a later effect was added",
-      "explains little beside a term of unknown law",
+      "explains little in addition to a term of unknown law",
       ", but its signal falls where it should rise",
       ", but its friction adds energy",
       ", as much as the term that is kept at another site",
@@ -25,8 +25,8 @@ std::string_view text(Reason reason) noexcept {
 std::string text(LawChange change, const std::string& other) {
   constexpr std::array<std::string_view, kLawChanges> texts{
       "is preferred, because the data determine all its parameters, unlike",
-      "is better, with a later effect added, than",
-      "explains more, with a later effect added, than",
+      "is better, after a later effect was added, than",
+      "explains more, after a later effect was added, than",
       "with the later effects added, it explains as much as",
       "before a later effect was added, it explained as much as",
   };
@@ -59,7 +59,7 @@ std::string leaves_far_above_noise(double share_of_error) {
 }
 
 std::string replaces_listed(double share_left_by_listed) {
-  return fmt::format("; the listed effects leave {:.1f} % and are taken out", 100.0 * share_left_by_listed);
+  return fmt::format("; the listed effects leave {:.1f} % and are removed", 100.0 * share_left_by_listed);
 }
 
 std::string explained_by_signal(const std::string& sites) {

@@ -12,17 +12,15 @@ namespace hotfire::explain::words {
 std::string turned_mass(const std::string& record, double left_turned, double left) {
   return fmt::format(
       "{}: the mass moves against its force. With one sign inverted, the rms error of position on held-out data is {:.3g}; "
-      "as "
-      "recorded it is {:.3g}. Position or force is probably inverted. Invert it in the record. Nothing was fitted",
+      "as recorded it is {:.3g}. Position or force is probably inverted. Invert it in the record. Nothing was fitted",
       record, left_turned, left);
 }
 
 std::string inverted_channel(const std::string& record, const std::string& moving, double correlation,
                              const std::string& culprit) {
   return fmt::format(
-      "{}: {} runs against the declared model (correlation {:.2f}), so {} looks inverted. Turn its sign in the record, or "
-      "the "
-      "sign that the model declares. Nothing is fitted to it",
+      "{}: {} runs against the declared model (correlation {:.2f}), so {} looks inverted. Invert its sign in the "
+      "record, or the sign that the model declares. Nothing is fitted to it",
       record, moving, correlation, culprit);
 }
 
@@ -30,8 +28,7 @@ std::string mis_scaled_channel(const std::string& record, const std::string& mov
                                const std::string& culprit, const std::string& hint) {
   return fmt::format(
       "{}: {} follows the declared model at {:.4g} times its size (correlation {:.3f}), so {} looks mis-scaled{}. Correct "
-      "its "
-      "unit in the record's first line, or its calibration. Nothing is fitted to it",
+      "its unit in the record's first line, or its calibration. Nothing is fitted to it",
       record, moving, ratio, correlation, culprit, hint);
 }
 
@@ -61,7 +58,7 @@ std::string nothing_to_fit(const std::string& record) {
 }
 
 std::string missing_value(const std::string& record, const std::string& channel, double time) {
-  return fmt::format("{}: channel {} has no value at {:.6g} s, outside of what --exclude names; exclude that too", record,
+  return fmt::format("{}: channel {} has no value at {:.6g} s, and no --exclude covers that time; exclude it too", record,
                      channel, time);
 }
 
@@ -85,8 +82,7 @@ std::string unsupported(const std::string& model, Unsupported part) {
       "sensors.piston.lag: 'explain' does not simulate the pistons' potentiometers. Remove it, and declare a lag that the "
       "records have as [effects.sensor_lag] with channel = \"piston\"",
       "strings.lag: 'explain' does not simulate the strings' potentiometers. Remove it, and declare a lag that the records "
-      "have "
-      "as [effects.sensor_lag] with channel = \"engine\"",
+      "have as [effects.sensor_lag] with channel = \"engine\"",
       "tolerance of actuator.moment_arm: has no meaning with [attach], which determines the arms. Remove it, or remove "
       "[attach]"};
   return fmt::format("{}: {}", model, texts[static_cast<std::size_t>(part)]);
@@ -95,8 +91,7 @@ std::string unsupported(const std::string& model, Unsupported part) {
 std::string axis_not_measured(const std::string& record, const std::string& axis) {
   return fmt::format(
       "{}: there is no measured channel of the {} axis, which other records have. Add piston.{} or engine.{}, or explain "
-      "this "
-      "record in a run of its own",
+      "this record in a run of its own",
       record, axis, axis, axis);
 }
 

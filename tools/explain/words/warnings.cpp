@@ -13,21 +13,19 @@ std::string ended_early() {
 std::string drifts(const std::string& effect, const std::string& site) {
   return fmt::format(
       "{} at {} drifts over the time of these records. explained.toml has its mean, because it runs other records. The "
-      "report "
-      "has its table, and --keep-drift writes it.",
+      "report has its table, and --keep-drift writes it.",
       effect, site);
 }
 
 std::string fault_of_record(const std::string& effect, const std::string& channel) {
   return fmt::format(
       "{} is a fault of the record, not of the plant, so explained.toml does not have it. Correct channel {} and explain "
-      "the "
-      "records again.",
+      "the records again.",
       effect, channel);
 }
 
 std::string left_out(const std::string& key) {
-  return fmt::format("{} is not in the model file: its reference value is used and held exact.", key);
+  return fmt::format("{} is not in the model file: its reference value is used as exact.", key);
 }
 
 std::string no_tolerance() {

@@ -68,7 +68,7 @@ void write_candump(const Record& record, const std::filesystem::path& path, cons
   if (options.actuator < 1 || options.actuator > 2) {
     throw UsageError(fmt::format("actuator {}; a log is written in the classic layout, allowed: 1, 2", options.actuator));
   }
-  require_channel(record, "piston", "a CAN log carries what the plant's potentiometers read");
+  require_channel(record, "piston", "a CAN log carries the readings of the plant's potentiometers");
   const std::vector<double> current = currents(record, options);
   const std::vector<double>& piston = record.find("piston")->values;
   const Channel* const pressure = record.find("load_pressure");

@@ -325,7 +325,7 @@ class DbcReader {
     } catch (const std::exception&) {
       // said below
     }
-    refuse(fmt::format("\"{}\" is no number", text));
+    refuse(fmt::format("\"{}\" is not a number", text));
   }
 
   std::string_view text_;

@@ -12,7 +12,7 @@ struct ForeignChannel {
   std::string unit;  ///< as the file spells it; empty: it has none
   bool is_time = false;
   std::vector<double> values;
-  std::string problem;  ///< why its values cannot be had; empty: they can. Of matter only where the channel is wanted
+  std::string problem;  ///< why its values are not available; empty: they are. Used only if a map names the channel
 };
 
 /// Channels that were sampled together.

@@ -107,7 +107,7 @@ class Datasets {
     be_quiet();
     const Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file.good()) {
-      throw FileError(fmt::format("{}: is no HDF5 file that can be read", path_.string()));
+      throw FileError(fmt::format("{}: is not a readable HDF5 file", path_.string()));
     }
     add_group(file.id(), "", 0);
     return std::move(bytes_);
@@ -145,7 +145,7 @@ class Datasets {
     put_text(bytes_, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
   }
 
-  /// Why the values of a dataset cannot be had; empty: they can.
+  /// Reads the values of a dataset. Returns the reason if they are not available.
   static std::string read(hid_t dataset, std::vector<double>& values) {
     const Handle space(H5Dget_space(dataset), H5Sclose);
     const Handle type(H5Dget_type(dataset), H5Tclose);
@@ -156,7 +156,7 @@ class Datasets {
     const int rank = H5Sget_simple_extent_dims(space.id(), extents.data(), nullptr);
     const bool is_vector = rank > 0 && std::ranges::count_if(extents, [](hsize_t extent) { return extent > 1; }) <= 1;
     if (!is_vector || (kind != H5T_FLOAT && kind != H5T_INTEGER)) {
-      return "is no vector of numbers; allowed: vectors of integers or floats, one for each channel";
+      return "is not a vector of numbers; allowed: vectors of integers or floats, one for each channel";
     }
     if (rows < 0 || static_cast<std::size_t>(rows) > kMostRows) {
       return fmt::format("{} rows; allowed: up to {}", rows, kMostRows);
@@ -199,7 +199,7 @@ bool put_dataset(hid_t file, const std::string& name, const std::string& unit, c
 
 std::vector<ForeignGroup> read_hdf5(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) {
-    throw FileError(fmt::format("{}: is no file{}; allowed: an HDF5 file", path.string(), near_file(path)));
+    throw FileError(fmt::format("{}: is not a file{}; allowed: an HDF5 file", path.string(), near_file(path)));
   }
   std::string bytes;
   try {

@@ -27,7 +27,7 @@ File::File(const std::filesystem::path& path) : path_(path) {
   }
   const std::uintmax_t size = std::filesystem::is_regular_file(path, failed) ? std::filesystem::file_size(path, failed) : 0;
   if (size < kIdentification || size > kMostBytes) {
-    refuse(fmt::format("is no MDF file of {} to {} bytes", kIdentification, kMostBytes));
+    refuse(fmt::format("is not an MDF file of {} to {} bytes", kIdentification, kMostBytes));
   }
   bytes_.resize(size);
   if (!std::ifstream(path, std::ios::binary).read(bytes_.data(), static_cast<std::streamsize>(size))) {

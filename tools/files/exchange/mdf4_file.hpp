@@ -49,7 +49,7 @@ class File {
   T number(std::string_view bytes, std::size_t at) const {
     T value{};
     if (at > bytes.size() || bytes.size() - at < sizeof value) {
-      refuse("a block is too short for what it holds; the file is damaged");
+      refuse("a block is too short for its contents; the file is damaged");
     }
     std::memcpy(&value, bytes.data() + at, sizeof value);
     return value;

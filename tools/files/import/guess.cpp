@@ -186,7 +186,7 @@ std::string period_by(const std::vector<std::string>& before) {
                          csv_trimmed(line));
     }
   }
-  return "# period = \"1 ms\"             # nothing says how far rows are apart: write it\n";
+  return "# period = \"1 ms\"             # the file has no period: write it here\n";
 }
 
 std::string range_of(const Column& column) {

@@ -110,10 +110,10 @@ ImportSource import_source(const std::filesystem::path& source, const std::files
   std::ifstream(source, std::ios::binary).read(start.data(), kFrame);
   if (start.starts_with('(') && start.find_first_of("0123456789") == 1 && start.find(") ") < start.find('#') &&
       start.find('#') < start.find('\n')) {
-    throw UsageError(fmt::format(
-        "{}: is a candump log; say what its frames carry, --dbc rig.dbc (a log of Hotfire's own CAN map needs no "
-        "map: hotfire convert {} record.csv)",
-        source.string(), source.string()));
+    throw UsageError(
+        fmt::format("{}: is a candump log; describe its frames by --dbc rig.dbc (a log of Hotfire's own CAN map needs no "
+                    "map: hotfire convert {} record.csv)",
+                    source.string(), source.string()));
   }
   return ImportSource::table;
 }

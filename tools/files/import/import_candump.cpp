@@ -87,9 +87,9 @@ class SignalFinder {
       names.insert(source.message->name);
     }
     if (names.size() > 1) {
-      throw FileError(
-          fmt::format("{}: can.rows: missing; the signals are of {}: say whose frames make the rows, [can] rows = \"{}\"",
-                      map_.path.string(), fmt::join(names, ", "), *names.begin()));
+      throw FileError(fmt::format(
+          "{}: can.rows: missing; the signals are of {}: name the message whose frames make the rows, [can] rows = \"{}\"",
+          map_.path.string(), fmt::join(names, ", "), *names.begin()));
     }
     return *sources.front().message;
   }
@@ -138,9 +138,10 @@ class SignalFinder {
     const std::string& declared = source.signal->unit;
     if (!is_known(declared)) {
       if (given.empty()) {
-        refuse(source.column, fmt::format("unit: missing, and of {} the DBC file says \"{}\", which is no known unit; write "
-                                          "for example unit = \"mm\"",
-                                          source.name(), declared));
+        refuse(source.column,
+               fmt::format("unit: missing, and of {} the DBC file says \"{}\", which is not a known unit; write "
+                           "for example unit = \"mm\"",
+                           source.name(), declared));
       }
       return given;
     }
@@ -229,8 +230,8 @@ class LogColumns {
     const std::size_t length = frame.data.size();
     // FD frames have lengths in steps: what is behind the message is padding.
     if (length != message.length && !(frame.fd && length > message.length)) {
-      lines_.refuse(fmt::format("{}: {} bytes; {}:{} says {}", message.name, length, dbc_.path.string(), message.line,
-                                message.length));
+      lines_.refuse(
+          fmt::format("{}: {} bytes; {}:{} has {}", message.name, length, dbc_.path.string(), message.line, message.length));
     }
   }
 

@@ -68,8 +68,7 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
       const bool may_be_events = map.events.empty() && cells.size() + 1 >= names.size();
       lines.refuse(fmt::format(
           "{} columns; the header has {}{}", cells.size(), names.size(),
-          may_be_events ? fmt::format("; where only some rows say what happened, write [csv] events = \"{}\"", names.back())
-                        : ""));
+          may_be_events ? fmt::format("; if only some rows have an event, write [csv] events = \"{}\"", names.back()) : ""));
     }
     for (std::size_t c = 0; c < places.size(); ++c) {
       values[c].push_back(number_of(lines, cells[places[c]], map.columns[c].column));

@@ -36,7 +36,7 @@ std::vector<std::vector<double>> columns_of(std::string_view text) {
 // What matio does with a damaged file is its own affair: it has crashed on damaged structs.
 std::string read_apart(const std::filesystem::path& path, std::size_t most_bytes, const std::function<std::string()>& read) {
   if (!std::filesystem::is_regular_file(path)) {
-    throw FileError(fmt::format("{}: is no file; allowed: a MATLAB file", path.string()));
+    throw FileError(fmt::format("{}: is not a file; allowed: a MATLAB file", path.string()));
   }
   require_matlab_layout(path);
   try {

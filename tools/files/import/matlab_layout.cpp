@@ -177,7 +177,7 @@ class MatlabLayout {
   }
 
   [[noreturn]] void refuse_format() const {
-    throw FileError(fmt::format("{}: is no MATLAB file that can be read; save it with -v7", path_.string()));
+    throw FileError(fmt::format("{}: is not a readable MATLAB file; save it with -v7", path_.string()));
   }
 
   const std::filesystem::path& path_;

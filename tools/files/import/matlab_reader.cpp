@@ -38,7 +38,7 @@ class MatlabReader {
  public:
   explicit MatlabReader(const std::filesystem::path& path) : path_(path), file_(Mat_Open(path.c_str(), MAT_ACC_RDONLY)) {
     if (!file_) {
-      throw FileError(fmt::format("{}: is no MATLAB file that can be read; save it with -v7", path.string()));
+      throw FileError(fmt::format("{}: is not a readable MATLAB file; save it with -v7", path.string()));
     }
   }
 
@@ -122,7 +122,7 @@ class MatlabReader {
 
   std::vector<double> values_of(const matvar_t& variable, const Place& place, const ImportColumn& column) const {
     if (variable.rank != 2 || variable.isComplex != 0 || variable.data == nullptr) {
-      refuse(column, "is no real vector or matrix");
+      refuse(column, "is not a real vector or matrix");
     }
     const std::size_t rows = variable.dims[0];
     const std::size_t columns = variable.dims[1];

@@ -29,8 +29,8 @@ struct Resampled {
 /// on) [Kaiser 1974; Oppenheim and Schafer 1999, sec. 7.4], with the weights at the ends scaled to a sum of one.
 ///
 /// Throws std::invalid_argument, its text to follow the file's name: a time that does not rise, a gap of more than two and a
-/// half median intervals, fewer than four rows, a mean interval beyond 100 ms, a value that is no number, more rows than a
-/// record may have.
+/// half median intervals, fewer than four rows, a mean interval beyond 100 ms, a value that is not a number, more rows than
+/// a record may have.
 Resampled resampled(const std::vector<double>& times, const std::vector<std::vector<double>>& columns,
                     const std::vector<bool>& held, double period);
 

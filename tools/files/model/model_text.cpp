@@ -27,7 +27,7 @@ void append_tolerance(std::string& text, const ModelFile& model) {
   if (model.tolerance.empty()) {
     return;
   }
-  text += "\n[tolerance]  # relative one-sigma of a declared value; what is not named is exact\n";
+  text += "\n[tolerance]  # relative one-sigma of a declared value; a value without one is exact\n";
   for (const auto& [key, relative] : model.tolerance) {
     text += fmt::format("{} = {}\n", key, number_text(relative));
   }

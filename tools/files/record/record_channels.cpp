@@ -168,7 +168,7 @@ std::vector<Column> read_header(const CsvLines& lines, std::string_view header) 
         "time[s],command[rad],piston[m]");
   }
   if (columns.size() < 2) {
-    lines.refuse("no channel beside time; allowed: " + fmt::format("{}", suggestion("", known_names())));
+    lines.refuse("no channel except time; allowed: " + fmt::format("{}", suggestion("", known_names())));
   }
   return columns;
 }

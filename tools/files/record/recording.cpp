@@ -127,8 +127,8 @@ void read_rows(hal::RecordingReader& reader, const std::filesystem::path& path, 
     before.assign(cycle.readings.begin(), cycle.readings.end());
   }
   if (reader.end() == hal::RecordingReader::End::damaged) {
-    throw FileError(fmt::format("{}: damaged after {} cycles: a block in its midst is not what was written; copy it again",
-                                path.string(), reader.cycles()));
+    throw FileError(fmt::format("{}: damaged after {} cycles: a block within it has changed; copy it again", path.string(),
+                                reader.cycles()));
   }
 }
 

@@ -22,7 +22,7 @@
  *     }
  *     hotfire_close(model);
  *
- * Memory. Only hotfire_open, hotfire_open_text and hotfire_open_plant allocate, and hotfire_close gives it back.
+ * Memory. Only hotfire_open, hotfire_open_text and hotfire_open_plant allocate, and hotfire_close releases it.
  * Everything else takes no memory, no lock and no file.
  *
  * Time. hotfire_set (of inputs), hotfire_get, hotfire_step and hotfire_time take a bounded time that does not depend on the
@@ -87,7 +87,7 @@ typedef struct hotfire_variable {
   int tunable;             /* of a parameter: 1 if it may change after hotfire_start */
 } hotfire_variable;
 
-/* By how much an input or parameter moves. */
+/* The change of an input or parameter in a directional derivative. */
 typedef struct hotfire_seed {
   hotfire_kind kind; /* HOTFIRE_INPUT or HOTFIRE_PARAMETER */
   size_t index;
@@ -110,11 +110,11 @@ HOTFIRE_API hotfire_status hotfire_open_text(const char* text, const char* name,
                                              hotfire_model** model, char* message, size_t size);
 
 /* The same from a plant text, which `hotfire export` puts into an FMU as resources/plant.txt: a model file with all numbers
- * in SI, which needs neither TOML nor units to read. Options are in it. */
+ * in SI. Its reader needs neither TOML nor units. The text contains the options. */
 HOTFIRE_API hotfire_status hotfire_open_plant(const char* text, const char* name, hotfire_model** model, char* message,
                                               size_t size);
 
-/* Gives the memory back. NULL is allowed. */
+/* Releases the memory. NULL is allowed. */
 HOTFIRE_API void hotfire_close(hotfire_model* model);
 
 /* The sentence about the last call of this model that failed; "" if none has. */
@@ -153,13 +153,13 @@ HOTFIRE_API hotfire_status hotfire_step(hotfire_model* model);
 HOTFIRE_API double hotfire_time(const hotfire_model* model);
 HOTFIRE_API double hotfire_period(const hotfire_model* model);
 
-/* The directional derivative, by dual numbers: by how much each output at the end of the next period moves when inputs and
- * parameters move by the seeds, the present state given. `sensitivity` has as many places as there are outputs. A reading is
- * taken without its noise and without its steps. The model stays as it is. */
+/* The directional derivative, by dual numbers: the change of each output at the end of the next period if inputs and
+ * parameters change by the seeds, from the present state. `sensitivity` has one place for each output. Noise and
+ * quantisation of a reading are left out. The model does not change. */
 HOTFIRE_API hotfire_status hotfire_differentiate(hotfire_model* model, const hotfire_seed* seeds, size_t count,
                                                  double* sensitivity, size_t outputs);
 
-/* The state as bytes: inputs, outputs, parameters, time and all that the model remembers. They are for the same model, the
+/* The state as bytes: inputs, outputs, parameters, time and the memory of the model. They are for the same model, the
  * same version and the same kind of machine; anything else is refused. Bytes may be written to a file. */
 HOTFIRE_API size_t hotfire_state_size(const hotfire_model* model);
 HOTFIRE_API hotfire_status hotfire_save(hotfire_model* model, void* bytes, size_t size);

@@ -81,7 +81,7 @@ HOTFIRE_FMU_API fmi2Component FMI2(fmi2Instantiate)(fmi2String name, fmi2Type ty
   try {
     component = std::make_unique<Component>(Component{name != nullptr ? name : "", *callbacks, nullptr});
     if (component->name.find_first_not_of(" \t\r\n") == std::string::npos) {
-      message = "the name of the instance is empty; allowed: at least one character that is no space";
+      message = "the name of the instance is empty; allowed: at least one character that is not a space";
     } else if (type != fmi2CoSimulation) {
       message = "the FMU is for co-simulation only; allowed: fmi2CoSimulation";
     } else {

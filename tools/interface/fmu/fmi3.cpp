@@ -66,7 +66,7 @@ HOTFIRE_FMU_API fmi3Instance FMI3(fmi3InstantiateCoSimulation)(
   try {
     instance = std::make_unique<Instance>(Instance{environment, callback, nullptr});
     if (name == nullptr || std::string_view(name).find_first_not_of(" \t\r\n") == std::string_view::npos) {
-      message = "the name of the instance is empty; allowed: at least one character that is no space";
+      message = "the name of the instance is empty; allowed: at least one character that is not a space";
     } else if (event_mode) {
       message = "eventModeUsed: the FMU has no event mode; allowed: fmi3False";
     } else if (intermediate_variables > 0) {

@@ -106,7 +106,7 @@ class Slave {
   /// A step that ended early: the time is that of the last period before.
   [[gnu::cold]] Status refuse_run() noexcept;
   Status set_of_kind(hotfire_kind kind, std::span<const Reference> references, std::span<const double> values) noexcept;
-  /// A point that is no number is near to none.
+  /// A point that is not a number is near to none.
   bool is_reached(double point) const noexcept { return std::abs(point - time_) <= early_; }
   /// Where the last step ends at the latest: at the stop time, or at the last finite time.
   double latest_end() const noexcept { return stop_defined_ ? stop_ + early_ : std::numeric_limits<double>::max(); }

@@ -87,7 +87,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def _put_digests(records: Sequence[Record], reported: list[dict[str, Any]]) -> None:
-    """SHA-256 of what was a file."""
+    """Adds the SHA-256 of each record that is a file."""
     for record, own in zip(records, reported):
         if os.path.isfile(record._core.path):
             own["sha256"] = _core.sha256(record._core.path)
@@ -105,8 +105,8 @@ def explain(
 ) -> Explanation:
     """Identifies the effects that are missing in a declared model, from measured records, as ``hotfire explain`` does and with its figures.
 
-    ``hold_out`` records are judged at the end and seen by no fit. ``exclude`` names rows that are known to be wrong:
-    "steps.csv@3.0-3.5". ``progress`` is called with a sentence for every thing that is tried. Ctrl-C ends the search with
+    The model is judged on ``hold_out`` records at the end; no fit uses them. ``exclude`` names rows that are known to be wrong:
+    "steps.csv@3.0-3.5". ``progress`` is called with a sentence for each step of the search. Ctrl-C ends the search with
     Interrupted, which has what is known so far; an exception of ``progress`` ends it too, and is raised.
     """
     if not 0 <= most_effects <= 8:

@@ -14,7 +14,7 @@ from ._toml import text_of
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a model: its value in SI, what it may be, and what it means."""
+    """A parameter of a model: its value in SI, allowed range and meaning."""
 
     key: str
     value: float
@@ -63,7 +63,7 @@ class Model:
 
     @property
     def path(self) -> Optional[str]:
-        """The file; None for a model that was never one."""
+        """The file; None for a model without a file."""
         return self._core.path if os.path.exists(self._core.path) else None
 
     @property
@@ -78,7 +78,7 @@ class Model:
 
     @property
     def parameters(self) -> dict[str, Parameter]:
-        """What acts in the model, by key: ``engine.inertia``; of several axes ``pitch1.engine.inertia``."""
+        """The active parameters of the model, by key: ``engine.inertia``; of several axes ``pitch1.engine.inertia``."""
         return {row[0]: Parameter(*row) for row in self._core.parameters()}
 
     @property

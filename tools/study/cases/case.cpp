@@ -83,7 +83,7 @@ std::string model_toml(const ReferenceAxis& axis, const CaseOrder& order, const 
   for (std::size_t c = 0; c < (measures_load_pressure(order) ? 3 : 2); ++c) {
     text += fmt::format("{}_noise = {}\n", kSensorGrades[c].channel, kSensorGrades[c].noise * order.noise_factor);
   }
-  text += "\n" + effects + "# relative one-sigma tolerance of a declared value; what is not named is exact\n[tolerance]\n";
+  text += "\n" + effects + "# relative one-sigma tolerance of a declared value; a value without one is exact\n[tolerance]\n";
   for (const Scattered& entry : kScattered) {
     text += fmt::format("{}.{} = {}\n", entry.section, entry.key, entry.tolerance);
   }

@@ -86,7 +86,7 @@ const Condition& condition_of(std::string_view name) {
     }
     names += fmt::format("{}{}", names.empty() ? "" : ", ", condition.name);
   }
-  throw UsageError(fmt::format("\"{}\" is no condition of the study; these are: {}", name, names));
+  throw UsageError(fmt::format("\"{}\" is not a condition of the study; these are: {}", name, names));
 }
 
 std::vector<Profile> conditioned_profiles(const Condition& condition, const std::string& name, std::uint64_t seed) {

@@ -327,7 +327,7 @@ const StudiedEffect& studied_effect(std::string_view name) {
       names += fmt::format("{}{}", names.empty() ? "" : ", ", effect.name);
     }
   }
-  throw UsageError(fmt::format("\"{}\" is no effect of the study; these are: {}", name, names));
+  throw UsageError(fmt::format("\"{}\" is not an effect of the study; these are: {}", name, names));
 }
 
 }  // namespace hotfire::study

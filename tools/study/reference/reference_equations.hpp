@@ -77,7 +77,7 @@ struct ReferenceProblem {
 /// The command behind the rate limit.
 double command_at(const ReferenceProblem& problem, double t);
 
-/// What the torque motor asks of the spool at a command [rad], before it saturates, `elapsed` s into the record.
+/// Valve command of the torque motor at a command [rad], before saturation, `elapsed` s into the record.
 double torque_motor(const ReferenceAxis& axis, double command, double elapsed, const StateVector& y);
 
 /// The axis' equations. The states it does not have are zero in `y`, and what comes out for them is not used.
