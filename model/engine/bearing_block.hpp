@@ -64,8 +64,8 @@ ModeTable<S, 5, 6> block_modes(const GimbalParameters<S>& gimbal) {
 /// structure are (`ModalStructure`): exactly under the mean wrench of a step, with the mean of both ends as mean
 /// displacement. Without a block the spring is the whole bearing, and nothing else is evaluated.
 ///
-/// The block moves against the vehicle's side of the gimbal as if that were at rest. It belongs to the modes of the vehicle
-/// as far as they move it.
+/// The motion of the vehicle's side of the gimbal does not accelerate the block: the modes of the vehicle contain the block
+/// as a part of the mount.
 template <class S>
 class CompliantBearing {
  public:
@@ -154,8 +154,7 @@ class CompliantBearing {
   SymmetricPair<S> rate_flexibility() const noexcept { return spring_.rate_flexibility(); }
 
  private:
-  // What a block takes stands apart from the step of a vehicle, which without a block costs what it did: inlined, it would
-  // keep the compiler from inlining the rest.
+  // The functions of a block are not inlined. Inlined, they would keep the compiler from inlining the rest of a step.
 
   [[gnu::noinline]] void begin_block(const State& state, Advance& advance) const noexcept {
     block_.begin(state.block, advance);

@@ -14,8 +14,8 @@ namespace hotfire::model {
 /// translation and rotation of the engine against the block or, without one, against the vehicle. Advanced exactly under the
 /// wrench's mean over the step, held: q+ = fade q + (1 - fade) compliance wrench, fade = e^{-h / loss_time}. The wrench is
 /// the force through the bearing and the friction's torque; the engine's own inertia is carried by the engine's axes.
-/// `softness` is what the translational compliance is times that under full load (`GimbalBearing`). What seats is the joint
-/// itself: beside a block all that it gives way by without load is on the engine's side.
+/// `softness` is the translational compliance over that under full load (`GimbalBearing`). The joint itself is what seats
+/// under load. With a block the additional flexibility without load is therefore on the engine's side.
 template <class S>
 class GimbalSpring {
  public:

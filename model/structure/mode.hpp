@@ -14,7 +14,7 @@ struct ModeMotion {
   S velocity{0.0};
 };
 
-/// `advance_mode` beside critical damping, where the damped frequency and its derivatives have no finite value. Its cosine
+/// `advance_mode` beside critical damping, where the damped frequency is zero and its derivatives are infinite. Its cosine
 /// and sine are power series in the square of the frequency, which is small and of either sign.
 template <class S>
 ModeMotion<S> advance_nearly_critical_mode(const ModeMotion<S>& from, const S& w, const S& damping_ratio,

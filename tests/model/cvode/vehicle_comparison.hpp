@@ -167,7 +167,7 @@ ReferenceVehicle::Start start_of(const State& state, int modes) {
   return start;
 }
 
-/// What drives the reference over a sample, told to the model.
+/// Inputs of the model over a sample of the reference.
 template <class Vehicle>
 typename Vehicle::Inputs inputs_of(const ReferenceVehicle::Inputs& drive) {
   typename Vehicle::Inputs inputs;
