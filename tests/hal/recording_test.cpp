@@ -159,7 +159,7 @@ TEST(Recording, HeaderThatIsIncompleteOrForeignIsRefusedWithTheReason) {
     std::string text = start;
     return text.replace(text.find(before), before.size(), after);
   };
-  refused("time[s],command[rad]\n", "no recording");
+  refused("time[s],command[rad]\n", "it is not a recording");
   refused(with("recording 2", "recording 1"), "another version");
   refused(start.substr(0, start.size() - 3), "cut off");
   refused(without("period_ns 250000\n"), "period_ns, actuators, input or channel is missing");
