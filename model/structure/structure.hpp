@@ -23,7 +23,7 @@ struct ModeTable {
   static constexpr int kCapacity = Capacity;
   int modes = 0;                                                                        ///< rows in use
   std::array<S, Capacity> frequency{};                                                  ///< natural frequency [Hz], above 0
-  std::array<S, Capacity> damping_ratio{};                                              ///< in [0, 1)
+  std::array<S, Capacity> damping_ratio{};                                              ///< 0 or more
   Eigen::Matrix<S, Ports, Capacity> shape = Eigen::Matrix<S, Ports, Capacity>::Zero();  ///< a column a mode
   Eigen::Matrix<S, Ports, Ports> residual = Eigen::Matrix<S, Ports, Ports>::Zero();     ///< symmetric, no mode of its own
 };
@@ -59,10 +59,10 @@ class ModalStructure {
 
   /// One step under way: what does not depend on the forces that it will find.
   struct Advance {
-    std::array<S, Capacity> modes;  ///< eta at its end without force
-    PortVector free;                ///< Phi eta at its end without force
-    PortVector mean;                ///< mean displacement without force
-    HalfVector rate;                ///< mean rate of the rotations without force
+    Eigen::Matrix<S, Capacity, 1> modes;  ///< eta at its end without force
+    PortVector free;                      ///< Phi eta at its end without force
+    PortVector mean;                      ///< mean displacement without force
+    HalfVector rate;                      ///< mean rate of the rotations without force
   };
 
   ModalStructure(const Table& table, double h) : table_(table), h_(h) {
@@ -129,9 +129,9 @@ class ModalStructure {
     // Two modes at a time: the sum is loaded and stored half as often. Rows beyond the last are zero.
     for (int k = 0; k < table_.modes; k += 2) {
       const auto mode = static_cast<std::size_t>(k);
-      advance.modes[mode] = free_end(state, mode);
-      advance.modes[mode + 1] = free_end(state, mode + 1);
-      free += table_.shape.col(k) * advance.modes[mode] + table_.shape.col(k + 1) * advance.modes[mode + 1];
+      advance.modes(k) = free_end(state, mode);
+      advance.modes(k + 1) = free_end(state, mode + 1);
+      free += table_.shape.col(k) * advance.modes(k) + table_.shape.col(k + 1) * advance.modes(k + 1);
     }
     const HalfVector turned = (free - state.displacement).template tail<kHalf>();
     advance.free = free;
@@ -163,8 +163,8 @@ class ModalStructure {
     for (int k = 0; k < table_.modes; k += 2) {
       const Eigen::Matrix<S, 2, 1> force = modal_forces(state.forces, k);
       const auto mode = static_cast<std::size_t>(k);
-      advance_under(state, mode, advance.modes[mode], force(0));
-      advance_under(state, mode + 1, advance.modes[mode + 1], force(1));
+      advance_under(state, mode, advance.modes(k), force(0));
+      advance_under(state, mode + 1, advance.modes(k + 1), force(1));
     }
     state.displacement = advance.free;
     add_product<Ports, 0>(state.displacement, held_, state.forces);
