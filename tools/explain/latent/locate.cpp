@@ -60,6 +60,22 @@ std::vector<std::string> Located::likely_sites() const {
   return sites;
 }
 
+Located Located::opened() const {
+  Located open = *this;
+  for (Place& place : open.places) {
+    place.is_likely = place.is_possible;
+  }
+  return open;
+}
+
+Located Located::beyond(const Located& other) const {
+  Located rest = *this;
+  for (std::size_t i = 0; i < rest.places.size(); ++i) {
+    rest.places[i].is_likely = places[i].is_likely && !other.places[i].is_likely;
+  }
+  return rest;
+}
+
 Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
   const Dataset thin = thinned_to_rows(data, kMostRows);
   Located located;

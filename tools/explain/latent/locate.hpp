@@ -34,6 +34,10 @@ struct Located {
   bool refutes(const std::string& site) const;
   /// The sites of all likely places.
   std::vector<std::string> likely_sites() const;
+  /// The same with every place where a signal leaves as little as at the best, likely or not.
+  Located opened() const;
+  /// The same with only those places likely that are so here and not in `other`, place by place.
+  Located beyond(const Located& other) const;
 };
 
 /// Tries an unknown signal at every place beside a fitted model. It knows no law: which place explains most is decided by

@@ -168,18 +168,6 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
   }
 }
 
-/// Marks the terms at other sites that the records do not separate from the best.
-void mark_tied_sites(UnlistedSearch& result) {
-  const double most = std::max(policy().visible, result.left[*result.best] / policy().clearly_less);
-  for (std::size_t i = 0; i < result.trials.size(); ++i) {
-    Trial& trial = result.trials[i];
-    if (result.left[i] < most && trial.candidate.site != result.trials[*result.best].candidate.site) {
-      trial.decision = "tied";
-      trial.reason += words::text(words::Reason::tied_site);
-    }
-  }
-}
-
 /// Terms of the grammar: proposed by regression, simulated, fitted shortly, and the best of every site fitted jointly.
 void fit_terms_of_grammar(const UnlistedTask& task, const Fitted& around, const Evaluator& evaluator,
                           UnlistedSearch& result) {
@@ -225,12 +213,37 @@ void settle_best(const UnlistedTask& task, UnlistedSearch& result) {
 
 }  // namespace
 
+void UnlistedSearch::add(UnlistedSearch other) {
+  if (other.best && (!best || other.trials[*other.best].held_out_ratio < trials[*best].held_out_ratio)) {
+    best = trials.size() + *other.best;
+    model = std::move(other.model);
+  }
+  std::ranges::move(other.trials, std::back_inserter(trials));
+  left.insert(left.end(), other.left.begin(), other.left.end());
+}
+
+void UnlistedSearch::mark_tied_sites() {
+  if (!best) {
+    return;
+  }
+  const double most = std::max(policy().visible, left[*best] / policy().clearly_less);
+  // Near the noise every term leaves little: one that has less than half of the evidence is no equal.
+  const double weakest = policy().little_explained * trials[*best].delta_criterion;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    if (left[i] < most && trials[i].delta_criterion < weakest &&
+        trials[i].candidate.site != trials[*best].candidate.site) {
+      trials[i].decision = "tied";
+      trials[i].reason += words::text(words::Reason::tied_site);
+    }
+  }
+}
+
 bool UnlistedSearch::leaves_less_than(double share) const {
   return best && trials[*best].delta_criterion < -policy().strong_evidence && trials[*best].held_out_ratio < share;
 }
 
-bool UnlistedSearch::leaves_visible(const Dataset& data) const {
-  return !best || excess_over_noise(data, model.prediction) > policy().visible;
+bool UnlistedSearch::leaves_material(const Dataset& data) const {
+  return !best || excess_over_noise(data, model.prediction) > policy().immaterial;
 }
 
 bool UnlistedSearch::reaches_noise(const Dataset& data) const {
@@ -245,12 +258,11 @@ UnlistedSearch search_unlisted(const UnlistedTask& task) {
   if (is_hydraulic_axis(around.base)) {
     fit_terms_of_grammar(task, around, evaluator, result);
   }
-  // A law that somebody has named is one more hypothesis as long as something is visible of what the grammar leaves.
-  if (task.tables && result.leaves_visible(task.data)) {
+  // A law that somebody has named is one more hypothesis as long as what the grammar leaves is not immaterial.
+  if (task.tables && result.leaves_material(task.data)) {
     fit_tables(task, around, evaluator, result);
   }
   if (result.best) {
-    mark_tied_sites(result);
     settle_best(task, result);
   }
   return result;

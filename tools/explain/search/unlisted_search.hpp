@@ -17,10 +17,14 @@ struct UnlistedSearch {
   std::optional<std::size_t> best;  ///< with the least held-out error of those that nothing speaks against
   Assessed model;                   ///< with the best
 
+  /// Adds what a search at other places reached; the best of both is the best.
+  void add(UnlistedSearch other);
+  /// Marks the terms at other sites that the records do not separate from the best.
+  void mark_tied_sites();
   /// True if the best is supported and leaves less than this share of that model's held-out error.
   bool leaves_less_than(double share) const;
-  /// True if what the best leaves is larger than the noise.
-  bool leaves_visible(const Dataset& data) const;
+  /// True if what the best leaves is not immaterial.
+  bool leaves_material(const Dataset& data) const;
   /// True if the best leaves no more than noise.
   bool reaches_noise(const Dataset& data) const;
 };

@@ -49,7 +49,7 @@ void UnlistedStage::finish() {
     drop_light_names();
     drop_names_that_explain_little();
   }
-  if (!options_.watch.interrupted() && excess_over_noise(data_, result_.explained.prediction) > policy().visible) {
+  if (!options_.watch.interrupted() && excess_over_noise(data_, result_.explained.prediction) > policy().immaterial) {
     result_.located = locate_explained();
   }
 }
@@ -57,7 +57,7 @@ void UnlistedStage::finish() {
 /// True if more than noise is left, or less by declared parameters far from their declaration.
 bool UnlistedStage::is_worth_a_table() const {
   return data_.knows_unlisted() && !reaches_noise(data_, result_.explained) &&
-         (excess_over_noise(data_, result_.explained.prediction) > policy().visible ||
+         (excess_over_noise(data_, result_.explained.prediction) > policy().immaterial ||
           !is_within_tolerances(result_.explained.model));
 }
 
@@ -65,7 +65,7 @@ bool UnlistedStage::is_worth_a_table() const {
 /// near it the whole error hardly falls.
 bool UnlistedStage::leaves_clearly_less(const Assessed& model, double share) const {
   const double left = excess_over_noise(data_, result_.explained.prediction);
-  return left > policy().visible && excess_over_noise(data_, model.prediction) < share * left &&
+  return left > policy().immaterial && excess_over_noise(data_, model.prediction) < share * left &&
          held_out_ratio(model, result_.explained) < policy().held_out_less;
 }
 
@@ -140,19 +140,47 @@ UnlistedTask UnlistedStage::task_beside(const Assessed& model, const Located& lo
 void UnlistedStage::look_instead() {
   if (!instead_) {
     instead_ = search_unlisted(task_beside(result_.calibrated, located()));
+    look_elsewhere();
+    instead_->mark_tied_sites();
     instead_trials_ = result_.trials.size();
     result_.trials.insert(result_.trials.end(), instead_->trials.begin(), instead_->trials.end());
+  }
+}
+
+/// True if a term of unknown law leaves clearly less than the listed effects do. Where these leave less than the noise, the
+/// held-out error hardly falls, whatever is added: the evidence decides, and held-out data must agree.
+bool UnlistedStage::is_better(const UnlistedSearch& found) const {
+  const bool is_near_noise = excess_over_noise(data_, result_.explained.prediction) <= policy().visible;
+  if (is_near_noise && result_.kept.empty() && found.best && is_supported(found.trials[*found.best])) {
+    return true;
+  }
+  const bool is_same = found.best && is_curve_of_the_same(found.trials[*found.best].candidate, result_.kept);
+  const double share = is_same ? policy().little_explained : advantage();
+  return found.leaves_less_than(share * left_by_listed()) ||
+         (found.leaves_less_than(1.0) && leaves_clearly_less(found.model, share));
+}
+
+/// A signal at a place may explain the records by its prior alone: what acts for moments only is at odds with that of its own
+/// place. Where no law is found at the likely places, every place is searched whose signal leaves as little.
+void UnlistedStage::look_elsewhere() {
+  if (!located().is_single || is_better(*instead_) || !result_.kept.empty() || options_.watch.interrupted()) {
+    return;
+  }
+  const Located open = located().opened();
+  const Located rest = open.beyond(located());
+  if (rest.likely_sites().empty()) {
+    return;
+  }
+  instead_->add(search_unlisted(task_beside(result_.calibrated, rest)));
+  if (!is_better(*instead_)) {
+    located_ = open;
   }
 }
 
 /// A term of unknown law takes the place of the listed effects where it leaves clearly less on held-out data: listed effects
 /// that imitate it would be wrong names.
 void UnlistedStage::take_instead_if_better() {
-  const double listed = left_by_listed();
-  const bool is_same = instead_->best && is_curve_of_the_same(instead_->trials[*instead_->best].candidate, result_.kept);
-  const double share = is_same ? policy().little_explained : advantage();
-  if (!instead_->leaves_less_than(share * listed) &&
-      !(instead_->leaves_less_than(1.0) && leaves_clearly_less(instead_->model, share))) {
+  if (!is_better(*instead_)) {
     return;
   }
   if (const std::string harm = harm_of(data_, instead_->model.prediction, result_.calibrated.prediction); !harm.empty()) {
@@ -160,7 +188,7 @@ void UnlistedStage::take_instead_if_better() {
     return;
   }
   if (!result_.kept.empty()) {
-    result_.trials[instead_trials_ + *instead_->best].reason += words::replaces_listed(listed);
+    result_.trials[instead_trials_ + *instead_->best].reason += words::replaces_listed(left_by_listed());
   }
   result_.kept.clear();
   result_.rival.reset();
@@ -192,10 +220,11 @@ bool UnlistedStage::has_unlisted() const {
 void UnlistedStage::add_beside() {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
-         excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted()) {
+         excess_over_noise(data_, result_.explained.prediction) > policy().immaterial && !options_.watch.interrupted()) {
     UnlistedTask task = task_beside(result_.explained, locate_explained());
     task.tables = !has_unlisted();
-    const UnlistedSearch beside = search_unlisted(task);
+    UnlistedSearch beside = search_unlisted(task);
+    beside.mark_tied_sites();
     const std::size_t first = result_.trials.size();
     result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
     if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||

@@ -47,6 +47,8 @@ class UnlistedStage {
   void take_out_names(const std::string& why);
   void refuse_misplaced_names();
   void look_instead();
+  void look_elsewhere();
+  bool is_better(const UnlistedSearch& found) const;
   void take_instead_if_better();
   void add_beside();
   void drop_light_names();

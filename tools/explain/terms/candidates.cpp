@@ -15,6 +15,9 @@ constexpr double kLeastOfDeclared = 1e-6;
 constexpr double kStartSpan = 4.0;
 /// ... and of the two further starts for a small effect.
 constexpr double kWhisper = 16.0;
+/// Starts of a law of one parameter, from one whisper to the other: a limit has no derivative above what it limits and
+/// overshoots far below, and the valley between is narrower than a factor of two.
+constexpr std::size_t kStartsOfOne = 12;
 
 /// Standard deviation of the logarithm of an effect's parameter about its typical value before any data: a factor of ten.
 /// Worth less than one effective sample; it keeps a parameter that the data do not determine from wandering off to a bound.
@@ -75,6 +78,11 @@ void append_ordinates(const ModelParameters& base, const Candidate& candidate, c
 
 bool is_frequency(const FreeParameter& parameter) { return parameter.unit == "Hz"; }
 
+/// Coordinate of a multiple of a parameter's typical value, within its bounds.
+double clamped_coordinate(const FreeParameter& parameter, double factor) {
+  return parameter.coordinate(std::clamp(parameter.unit_size * factor, parameter.lower, parameter.upper));
+}
+
 /// Coordinate of parameter k at point n of the cover, with frequencies at `frequency`. The first point is the typical value
 /// itself; ordinates start at zero.
 double start_coordinate(const FreeParameter& parameter, std::size_t k, std::size_t n, double frequency) {
@@ -90,7 +98,16 @@ double start_coordinate(const FreeParameter& parameter, std::size_t k, std::size
   if (parameter.scale == FreeParameter::Scale::linear) {
     return n % 2 == 0 ? factor : -factor;
   }
-  return parameter.coordinate(std::clamp(parameter.unit_size * factor, parameter.lower, parameter.upper));
+  return clamped_coordinate(parameter, factor);
+}
+
+std::vector<std::vector<double>> starts_of_one(const FreeParameter& parameter) {
+  std::vector<std::vector<double>> starts;
+  for (std::size_t n = 0; n < kStartsOfOne; ++n) {
+    const double place = static_cast<double>(n) / (kStartsOfOne - 1);
+    starts.push_back({clamped_coordinate(parameter, std::pow(kWhisper, 2.0 * place - 1.0))});
+  }
+  return starts;
 }
 
 }  // namespace
@@ -237,6 +254,9 @@ std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& sca
 
 std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& own,
                                               const std::vector<double>& frequencies) {
+  if (own.size() == 1 && own.front().scale == FreeParameter::Scale::logarithmic && !is_frequency(own.front())) {
+    return starts_of_one(own.front());
+  }
   std::vector<double> tried{1.0};
   const bool has_frequency = std::any_of(own.begin(), own.end(), is_frequency);
   if (has_frequency) {
@@ -267,7 +287,7 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
       const FreeParameter& size = own.front();
       starts.back().front() = size.scale == FreeParameter::Scale::linear
                                   ? (factor < 1.0 ? factor : -1.0 / factor)
-                                  : size.coordinate(std::clamp(size.unit_size * factor, size.lower, size.upper));
+                                  : clamped_coordinate(size, factor);
     }
   }
   return starts;

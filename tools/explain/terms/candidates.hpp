@@ -44,7 +44,8 @@ std::vector<FreeParameter> effect_parameters(const ModelParameters& base, const 
 std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& scales, std::vector<double>& u);
 
 /// Points at which to start the fit of an effect, in coordinates: a quasi-random cover of the fields' typical values, times
-/// and over four, with both signs where a value may be negative; a frequency starts at those given.
+/// and over four, with both signs where a value may be negative; a frequency starts at those given. One positive value
+/// alone starts on a comb of its logarithm.
 std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& own, const std::vector<double>& frequencies);
 
 /// Activates a candidate's effect in parameters, with its option.

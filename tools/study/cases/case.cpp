@@ -135,6 +135,14 @@ std::string effect_toml(const StudiedEffect& effect, const Plan& alone) {
   return text + "\n";
 }
 
+/// A null bias belongs to the valve: it is in every record, also in the unseen one.
+void add_null_bias(const Condition& condition, ReferenceAxis& plain, Plan& plan) {
+  if (condition.null_bias != 0.0) {
+    plain.unlisted.null_offset = condition.null_bias;
+    plan.true_effects = fmt::format("[effects.valve_bias]\nbias = {}\n\n", condition.null_bias);
+  }
+}
+
 /// Adds an effect to the case's plan, with the first of the drawn magnitudes that shows as it should.
 void add_effect(const StudiedEffect& effect, const CaseOrder& order, const ReferenceAxis& plain, const Profile& unseen,
                 const ReferenceRows& plain_rows, StudyCase& made) {
@@ -176,7 +184,8 @@ StudyCase make_case(const CaseOrder& order) {
   }
   StudyCase made;
   made.order = order;
-  const ReferenceAxis plain = scattered_axis(order, 1);
+  ReferenceAxis plain = scattered_axis(order, 1);
+  add_null_bias(condition_of(order.condition), plain, made.plan);
   made.plan.axis = made.plan.without = plain;
 
   const Profile unseen = unseen_profile(Random(order.name, order.seed, 2));

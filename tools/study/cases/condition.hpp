@@ -27,7 +27,7 @@ struct Condition {
   double command_error = 0.0;  ///< ... and of the command's
   int drop_outs = 0;           ///< in each record, declared by the user
   double zeros = 0.0;          ///< rms of a zero of each channel of each record, in the channel's noise
-  double null_bias = 0.0;      ///< of the valve in the given records, as a share of its full command
+  double null_bias = 0.0;      ///< of the valve, as a share of its full command
   double noise_ratio = 1.0;    ///< noise of the first record over that of the others, of which nothing is declared
 
   /// The effect that a fault of a channel is to be named as; empty if it has none.

@@ -158,9 +158,7 @@ Given recorded(const CaseOrder& order, const ReferenceAxis& axis, const std::vec
     if (in_a_loop) {
       record = recorded_in_a_loop(order, axis, profile, given.records.size(), channels);
     } else {
-      ReferenceAxis biased = axis;
-      biased.unlisted.null_offset += condition.null_bias;
-      const ReferenceRows rows = rows_of(biased, profile, condition.period);
+      const ReferenceRows rows = rows_of(axis, profile, condition.period);
       record = record_of(profile.name, condition.period, profile.commands, rows, channels);
       add_fault(condition, record);
     }
