@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "tests/files/scratch.hpp"
 #include "tests/interface/cases.hpp"
 #include "tests/interface/importer.hpp"
 
@@ -88,12 +87,12 @@ std::vector<Call> calls_of(const Fmu& fmu, int version) {
 
 }  // namespace
 
-TEST_GROUP(FmuStates) { Scratch scratch; };
+TEST_GROUP(FmuStates){};
 
 TEST(FmuStates, EveryFunctionWorksInItsStatesAndIsAnErrorWithAMessageInEveryOther) {
   const Case own = case_of("simplex", 20);
   for (const int version : {2, 3}) {
-    const Fmu fmu(scratch, own, version);
+    const Fmu fmu(own, version);
     for (const Call& call : calls_of(fmu, version)) {
       for (int state = 0; state < kStates; ++state) {
         const Run run(fmu, version);
@@ -116,7 +115,7 @@ TEST(FmuStates, EveryFunctionWorksInItsStatesAndIsAnErrorWithAMessageInEveryOthe
 TEST(FmuStates, AFixedParameterIsSetBeforeTheRunOnly) {
   const Case own = case_of("direct", 20);
   for (const int version : {2, 3}) {
-    const Fmu fmu(scratch, own, version);
+    const Fmu fmu(own, version);
     const std::vector<unsigned> start = fmu.references({"start.position"});
     const Run run(fmu, version);
     LONGS_EQUAL(kOk, run.set(start, {0.5}));
@@ -132,7 +131,7 @@ TEST(FmuStates, AFixedParameterIsSetBeforeTheRunOnly) {
 }
 
 TEST(FmuStates, Version2NeedsAStartTimeBeforeInitialization) {
-  const Fmu fmu(scratch, case_of("simplex", 20), 2);
+  const Fmu fmu(case_of("simplex", 20), 2);
   const Run run(fmu, 2);
   LONGS_EQUAL(kError, run.call("EnterInitializationMode"));
   STRCMP_CONTAINS("call SetupExperiment first", last_message.data());
@@ -141,7 +140,7 @@ TEST(FmuStates, Version2NeedsAStartTimeBeforeInitialization) {
 TEST(FmuStates, EveryArgumentIsChecked) {
   const Case own = case_of("simplex", 20);
   for (const int version : {2, 3}) {
-    const Fmu fmu(scratch, own, version);
+    const Fmu fmu(own, version);
     const std::vector<unsigned> command = fmu.references({"command"});
     const std::vector<unsigned> none;
     const auto refused = [&](int expected, const char* words, const std::function<int(const Run&)>& call) {
@@ -184,7 +183,7 @@ TEST(FmuStates, EveryArgumentIsChecked) {
 }
 
 TEST(FmuStates, AnInstanceNeedsANameOfMoreThanSpaces) {
-  const Fmu fmu(scratch, case_of("simplex", 20), 2);
+  const Fmu fmu(case_of("simplex", 20), 2);
   using Instantiate = fmi2Component(fmi2String, fmi2Type, fmi2String, fmi2String, const fmi2CallbackFunctions*, int, int);
   CHECK(fmu.function<Instantiate>("fmi2Instantiate")(" \t", fmi2CoSimulation, fmu.token().c_str(),
                                                      fmu.resource_uri().c_str(), &kCallbacks, 0, 0) == nullptr);
@@ -192,7 +191,7 @@ TEST(FmuStates, AnInstanceNeedsANameOfMoreThanSpaces) {
 }
 
 TEST(FmuStates, AMessageDoublesWhatTheStandardGivesAMeaning) {
-  const Fmu fmu(scratch, case_of("simplex", 20), 2);
+  const Fmu fmu(case_of("simplex", 20), 2);
   using Instantiate = fmi2Component(fmi2String, fmi2Type, fmi2String, fmi2String, const fmi2CallbackFunctions*, int, int);
   CHECK(fmu.function<Instantiate>("fmi2Instantiate")("one", fmi2CoSimulation, "50%s#1", fmu.resource_uri().c_str(),
                                                      &kCallbacks, 0, 0) == nullptr);
@@ -204,7 +203,7 @@ TEST(FmuStates, DerivativesInStepModeAreThoseOfTheNextInternalStep) {
   for (const char* topology : kTopologies) {
     const Case own = case_of(topology, 20);
     for (const int version : {2, 3}) {
-      const Fmu fmu(scratch, own, version);
+      const Fmu fmu(own, version);
       const unsigned known = fmu.reference(own.inputs[0]);
       // Without noise, and before a delay.
       const unsigned unknown = fmu.reference(own.outputs()[own.outputs().size() > 3 ? 1 : 0]);
@@ -237,7 +236,7 @@ TEST(FmuStates, DerivativesInInitializationAreThoseOfTheStart) {
   for (const char* topology : kTopologies) {
     const Case own = case_of(topology, 20);
     for (const int version : {2, 3}) {
-      const Fmu fmu(scratch, own, version);
+      const Fmu fmu(own, version);
       const bool direct = own.topology == "direct";
       const unsigned known = fmu.reference(direct ? "start.position" : own.inputs[0]);
       const unsigned unknown = fmu.reference(direct ? "position" : own.outputs()[1]);

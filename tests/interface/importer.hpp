@@ -2,6 +2,7 @@
 #pragma once
 
 #include <dlfcn.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdarg>
@@ -9,13 +10,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <regex>
 #include <string>
 #include <vector>
 
-#include "tests/files/scratch.hpp"
 #include "tests/interface/cases.hpp"
 #include "tools/export/export_fmu.hpp"
 #include "tools/interface/fmu/fmi2_types.hpp"
@@ -33,7 +34,7 @@ inline std::string content_of(const std::filesystem::path& path) {
 /// A small importer: unpacks an FMU, reads names and references from its description, and loads its binary.
 class Fmu {
  public:
-  Fmu(const Scratch& scratch, const Case& own, int version) : Fmu(unpacked(scratch.path(""), own, version), version) {}
+  Fmu(const Case& own, int version) : Fmu(kept(own, version), version) {}
 
   /// An FMU that is unpacked in a folder of its name.
   Fmu(const std::filesystem::path& folder, int version) : version_(version), folder_(folder) {
@@ -51,6 +52,16 @@ class Fmu {
   ~Fmu() { dlclose(library_); }
   Fmu(const Fmu&) = delete;
   Fmu& operator=(const Fmu&) = delete;
+
+  /// The unpacked FMU of a case, which is exported once in a process: it is for tests that change none of its files.
+  static std::filesystem::path kept(const Case& own, int version) {
+    static const bool is_removed_at_exit = (remove_kept(), std::atexit(remove_kept) == 0);
+    CHECK(is_removed_at_exit);
+    const std::size_t model = std::hash<std::string>()(std::to_string(own.period) + own.text);
+    const std::filesystem::path folder = kept_folder() / std::to_string(model);
+    const std::filesystem::path place = folder / (own.topology + std::to_string(version));
+    return std::filesystem::exists(place) ? place : unpacked(folder, own, version);
+  }
 
   /// Exports a case, and unpacks it into a folder of its name.
   static std::filesystem::path unpacked(const std::filesystem::path& folder, const Case& own, int version) {
@@ -94,6 +105,11 @@ class Fmu {
   std::string resource_uri() const { return "file://" + (folder_ / "resources").string(); }
 
  private:
+  static std::filesystem::path kept_folder() {
+    return std::filesystem::temp_directory_path() / ("hotfire-fmus-" + std::to_string(getpid()));
+  }
+  static void remove_kept() { std::filesystem::remove_all(kept_folder()); }
+
   void load(const std::filesystem::path& binary) {
     library_ = dlopen(binary.c_str(), RTLD_NOW | RTLD_LOCAL);
     CHECK_TEXT(library_ != nullptr, dlerror());
