@@ -230,8 +230,7 @@ void UnlistedSearch::mark_tied_sites() {
   // Near the noise every term leaves little: one that has less than half of the evidence is no equal.
   const double weakest = policy().little_explained * trials[*best].delta_criterion;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    if (left[i] < most && trials[i].delta_criterion < weakest &&
-        trials[i].candidate.site != trials[*best].candidate.site) {
+    if (left[i] < most && trials[i].delta_criterion < weakest && trials[i].candidate.site != trials[*best].candidate.site) {
       trials[i].decision = "tied";
       trials[i].reason += words::text(words::Reason::tied_site);
     }

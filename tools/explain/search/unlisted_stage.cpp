@@ -160,8 +160,8 @@ bool UnlistedStage::is_better(const UnlistedSearch& found) const {
          (found.leaves_less_than(1.0) && leaves_clearly_less(found.model, share));
 }
 
-/// A signal at a place may explain the records by its prior alone: what acts for moments only is at odds with that of its own
-/// place. Where no law is found at the likely places, every place is searched whose signal leaves as little.
+/// A signal at a place may explain the records by its prior alone: what acts for moments only is at odds with that of its
+/// own place. Where no law is found at the likely places, every place is searched whose signal leaves as little.
 void UnlistedStage::look_elsewhere() {
   if (!located().is_single || is_better(*instead_) || !result_.kept.empty() || options_.watch.interrupted()) {
     return;

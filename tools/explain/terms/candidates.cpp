@@ -285,9 +285,8 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
     for (const double factor : {1.0 / kWhisper, kWhisper}) {
       starts.push_back(starts.front());
       const FreeParameter& size = own.front();
-      starts.back().front() = size.scale == FreeParameter::Scale::linear
-                                  ? (factor < 1.0 ? factor : -1.0 / factor)
-                                  : clamped_coordinate(size, factor);
+      starts.back().front() = size.scale == FreeParameter::Scale::linear ? (factor < 1.0 ? factor : -1.0 / factor)
+                                                                         : clamped_coordinate(size, factor);
     }
   }
   return starts;
