@@ -64,3 +64,18 @@ TEST(Locate, LongRecordsAreThinnedAndGiveTheSamePlace) {
   CHECK(located.allows("engine_torque"));
   CHECK(!located.allows("load_spring"));
 }
+
+TEST(Locate, OpeningAddsThePlacesThatLeaveAsLittleAndNoOthers) {
+  Located located;
+  located.is_single = true;
+  located.places.resize(3);
+  located.places[0].sites = {"sensor.piston"};
+  located.places[0].is_possible = located.places[0].is_likely = true;
+  located.places[1].sites = {"valve", "flow"};
+  located.places[1].is_possible = true;
+  located.places[2].sites = {"engine_torque"};
+  const Located open = located.opened();
+  CHECK(open.allows("sensor.piston") && open.allows("flow") && !open.allows("engine_torque"));
+  const Located rest = open.beyond(located);
+  CHECK(!rest.allows("sensor.piston") && rest.allows("valve") && !rest.allows("engine_torque"));
+}

@@ -38,9 +38,49 @@ struct Detents {
   }
 };
 
+explain::Trial trial_at(const char* site, double evidence, double held_out_ratio) {
+  explain::Trial trial;
+  trial.candidate.site = site;
+  trial.delta_criterion = -evidence;
+  trial.held_out_ratio = held_out_ratio;
+  trial.refined = true;
+  trial.decision = "dropped";
+  return trial;
+}
+
+/// A search of one term.
+explain::UnlistedSearch search_of(const explain::Trial& trial, double left) {
+  return {.trials = {trial}, .left = {left}, .best = 0, .model = {}};
+}
+
 }  // namespace
 
 TEST_GROUP(UnlistedSearch){};
+
+TEST(UnlistedSearch, OfTwoSearchesTheTermWithTheLeastHeldOutErrorIsTheBestAndAllTrialsStay) {
+  explain::UnlistedSearch first = search_of(trial_at("sensor.piston", 2872.0, 0.997), 0.5);
+  first.add(search_of(trial_at("valve", 23697.0, 0.945), 0.1));
+  CHECK_EQUAL(2U, first.trials.size());
+  CHECK_EQUAL(2U, first.left.size());
+  STRCMP_EQUAL("valve", first.trials[*first.best].candidate.site.c_str());
+  first.add(search_of(trial_at("piston", 100.0, 0.99), 0.4));
+  STRCMP_EQUAL("valve", first.trials[*first.best].candidate.site.c_str());
+  explain::UnlistedSearch nothing;
+  nothing.add({});
+  CHECK_FALSE(nothing.best.has_value());
+}
+
+TEST(UnlistedSearch, ATermAtAnotherSiteIsTiedOnlyIfItLeavesAsLittleWithHalfOfTheEvidence) {
+  explain::UnlistedSearch found = search_of(trial_at("valve", 1000.0, 0.5), 0.1);
+  found.add(search_of(trial_at("flow", 600.0, 0.6), 0.5));
+  found.add(search_of(trial_at("piston", 400.0, 0.6), 0.5));
+  found.add(search_of(trial_at("command", 600.0, 0.9), 2.0));
+  found.mark_tied_sites();
+  STRCMP_EQUAL("dropped", found.trials[0].decision.c_str());
+  STRCMP_EQUAL("tied", found.trials[1].decision.c_str());
+  STRCMP_EQUAL("dropped", found.trials[2].decision.c_str());
+  STRCMP_EQUAL("dropped", found.trials[3].decision.c_str());
+}
 
 TEST(UnlistedSearch, TermsThatLeaveMoreOfARecordThanTheCalibratedModelAreRefusedAndOthersAreFittedInTheirPlace) {
   const Detents mass;

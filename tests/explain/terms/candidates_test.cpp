@@ -61,3 +61,24 @@ TEST(Candidates, APointOfATableIsAddressedByItsNumberToo) {
   }
   FAIL("there is no such candidate");
 }
+
+TEST(Candidates, APositiveParameterAloneStartsOnACombFromASixteenthToSixteenTimesItsTypicalValue) {
+  const hotfire::SimplexParameters neutral;
+  for (const Candidate& candidate : all_candidates(neutral, every_channel())) {
+    if (candidate.name != "rate_limit") {
+      continue;
+    }
+    const std::vector<FreeParameter> own = effect_parameters(neutral, candidate, {});
+    CHECK_EQUAL(1U, own.size());
+    const std::vector<std::vector<double>> starts = start_points(own, {});
+    const auto value = [&](std::size_t i) { return own.front().value(starts[i].front()) / own.front().unit_size; };
+    DOUBLES_EQUAL(1.0 / 16.0, value(0), 1e-12);
+    DOUBLES_EQUAL(16.0, value(starts.size() - 1), 1e-9);
+    for (std::size_t i = 1; i < starts.size(); ++i) {
+      // A valley between a limit that does nothing and one that overshoots is about a factor of two wide.
+      CHECK_TRUE(value(i) > value(i - 1) && value(i) < 2.0 * value(i - 1));
+    }
+    return;
+  }
+  FAIL("no rate_limit among the candidates");
+}

@@ -110,6 +110,21 @@ TEST(StudyCases, ACaseWithAFaultOfAChannelKeepsThePlantWithoutItAndSaysIt) {
   STRCMP_EQUAL("sensor_scale", truth["effects"][0].get<std::string>().c_str());
 }
 
+TEST(StudyCases, ANullBiasOfTheValveIsInTheUnseenRecordAndInTheTrueModel) {
+  CaseOrder order{"null-bias-null-1", {}, 1};
+  order.condition = "null-bias";
+  const StudyCase made = make_case(order);
+  write_case(made, scratch.path("null-bias-null-1"));
+  const std::vector<double>& unseen = made.unseen.find("piston")->values;
+  const ModelFile plant = load_model(scratch.path("null-bias-null-1") / "kept/true.toml");
+  CHECK_COMPARE(test::rms_difference(simulate(plant, made.unseen).find("piston")->values, unseen), <,
+                kSensorGrades[0].noise);
+  const ModelFile declared = load_model(scratch.path("null-bias-null-1") / "given/declared.toml");
+  // 2 % of the full command over a position gain of 86 per metre is 0.23 mm, 29 times the noise.
+  CHECK_COMPARE(test::rms_difference(simulate(declared, made.unseen).find("piston")->values, unseen), >,
+                20.0 * kSensorGrades[0].noise);
+}
+
 TEST(StudyCases, AnUnlistedCaseSaysWhereItsEffectActs) {
   const StudyCase made = make_case({"track_wear-1", {"track_wear"}, 1});
   write_case(made, scratch.path("track_wear-1"));
