@@ -101,6 +101,17 @@ double start_coordinate(const FreeParameter& parameter, std::size_t k, std::size
   return clamped_coordinate(parameter, factor);
 }
 
+/// Frequencies where a mode may be that shows at these: in the closed loop it shows a little beside its own.
+std::vector<double> about(const std::vector<double>& frequencies) {
+  std::vector<double> tried;
+  for (const double frequency : frequencies) {
+    for (const double ratio : {0.8, 0.9, 0.96, 1.0, 1.04, 1.1, 1.2}) {
+      tried.push_back(frequency * ratio);
+    }
+  }
+  return tried;
+}
+
 std::vector<std::vector<double>> starts_of_one(const FreeParameter& parameter) {
   std::vector<std::vector<double>> starts;
   for (std::size_t n = 0; n < kStartsOfOne; ++n) {
@@ -257,17 +268,8 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
   if (own.size() == 1 && own.front().scale == FreeParameter::Scale::logarithmic && !is_frequency(own.front())) {
     return starts_of_one(own.front());
   }
-  std::vector<double> tried{1.0};
   const bool has_frequency = std::any_of(own.begin(), own.end(), is_frequency);
-  if (has_frequency) {
-    // A missing mode shows in the closed loop a little beside its own frequency.
-    tried.clear();
-    for (const double frequency : frequencies) {
-      for (const double ratio : {0.8, 0.9, 0.96, 1.0, 1.04, 1.1, 1.2}) {
-        tried.push_back(frequency * ratio);
-      }
-    }
-  }
+  const std::vector<double> tried = has_frequency ? about(frequencies) : std::vector{1.0};
   const bool all_ordinates = std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
   const std::size_t covers = all_ordinates ? 1 : has_frequency ? 2 : (own.size() == 1 ? 6 : 10);
   std::vector<std::vector<double>> starts;
