@@ -54,12 +54,7 @@ void UnlistedStage::finish() {
   }
 }
 
-/// True if more than noise is left, or less by declared parameters far from their declaration.
-bool UnlistedStage::is_worth_a_table() const {
-  return data_.knows_unlisted() && !reaches_noise(data_, result_.explained) &&
-         (excess_over_noise(data_, result_.explained.prediction) > policy().immaterial ||
-          !is_within_tolerances(result_.explained.model));
-}
+bool UnlistedStage::is_worth_a_table() const { return data_.knows_unlisted() && !reaches_noise(data_, result_.explained); }
 
 /// True if a model leaves less than `share` of what the explained one leaves beyond noise. Noise itself cannot be explained:
 /// near it the whole error hardly falls.
