@@ -12,7 +12,8 @@
 
 namespace hotfire::model {
 
-/// Memory of a term of the grammar for its argument s: a linear filter, a hysteresis, a limit or a loss of information.
+/// Memory of a term of the grammar for its argument s: a linear filter, a hysteresis, a limit, a loss of information or an
+/// oscillation.
 enum class Memory {
   none,
   delay,       ///< s(t - time)
@@ -21,16 +22,19 @@ enum class Memory {
   resonance,   ///< second-order low pass of `frequency` and `damping`
   band_pass,   ///< 2 damping / (2 pi frequency) times the rate of that
   stops,       ///< stop operators (Krasnosel'skii and Pokrovskii 1989, sec. 2), one for each of up to four widths
+  play,        ///< what follows s at a distance of up to `width` (backlash)
+  stop,        ///< s less that: one stop operator
   slew,        ///< what follows s by at most `width` a second
   hold,        ///< s as it was sampled once every `time`
   quantise,    ///< s rounded to multiples of `width`
   dead_zone,   ///< s without what lies within `width` of zero
   saturation,  ///< s limited to `width`
-  periodic     ///< s less the nearest multiple of `width`
+  periodic,    ///< s less the nearest multiple of `width`
+  oscillator   ///< sine of a phase that starts at `phase` and advances at `frequency` + s, both in hertz
 };
-inline constexpr std::array<std::string_view, 13> kMemoryNames{"none",      "delay",      "lag",     "washout", "resonance",
-                                                               "band_pass", "stops",      "slew",    "hold",    "quantise",
-                                                               "dead_zone", "saturation", "periodic"};
+inline constexpr std::array<std::string_view, 16> kMemoryNames{
+    "none", "delay", "lag",  "washout",  "resonance", "band_pass",  "stops",    "play",
+    "stop", "slew",  "hold", "quantise", "dead_zone", "saturation", "periodic", "oscillator"};
 
 template <class S>
 struct MemoryParameters {
@@ -39,6 +43,7 @@ struct MemoryParameters {
   S frequency{1.0};  ///< [Hz]
   S damping{0.5};    ///< of critical [1]
   S width{1.0};      ///< in the argument's unit
+  S phase{0.0};      ///< of an oscillator at the start [rad]
 };
 
 inline constexpr std::size_t kMostStops = 4;
@@ -54,6 +59,7 @@ class MemoryState {
       : started_(other.started_),
         value_(value_of(other.value_)),
         rate_(value_of(other.rate_)),
+        turns_(value_of(other.turns_)),
         since_(other.since_),
         newest_(other.newest_),
         age_(other.age_) {
@@ -91,6 +97,11 @@ class MemoryState {
         rate_ = 2.0 * mean_rate - rate_;
         return params.kind == Memory::resonance ? S(0.5 * (start + value_)) : S(2.0 * params.damping * mean_rate / natural);
       }
+      case Memory::play:
+      case Memory::stop:
+        stops_[0] = stop_after<S>(stops_[0], s - value_, params.width);
+        value_ = s;
+        return params.kind == Memory::stop ? stops_[0] : S(s - stops_[0]);
       case Memory::slew:
         value_ = value_ + clamp_symmetric<S>(s - value_, params.width * h);
         return value_;
@@ -109,6 +120,13 @@ class MemoryState {
         return clamp_symmetric<S>(s, params.width);
       case Memory::periodic:
         return s - params.width * std::round(value_of(s) / value_of(params.width));
+      case Memory::oscillator: {
+        using std::sin;
+        const S advance = h * (params.frequency + s);
+        const S middle = turns_ + 0.5 * advance;
+        turns_ += advance - std::floor(value_of(turns_ + advance));
+        return S(sin(2.0 * std::numbers::pi * middle + params.phase));
+      }
     }
     return s;
   }
@@ -138,6 +156,7 @@ class MemoryState {
       started_ = true;
       value_ = s;
       rate_ = S{0.0};
+      turns_ = S{0.0};
       stops_.fill(S{0.0});
       earlier_.fill(s);
       since_ = 0.0;
@@ -168,6 +187,7 @@ class MemoryState {
   bool started_ = false;
   S value_{0.0};
   S rate_{0.0};
+  S turns_{0.0};  ///< of an oscillator, without whole ones
   std::array<S, kMostStops> stops_{};
   double since_ = 0.0;  ///< the last sample of `hold` [s]
   std::array<S, kEarlier> earlier_{};

@@ -64,8 +64,8 @@ struct Names<Site::sensor, 1> {
 
 /// A term of the grammar. What is added at a site is a curve and a memory, in either order, of one quantity of the axis or
 /// of the product s of two, and `direct` times s: a signal that is replaced has -1 there. Without points the curve is a
-/// gain; of `stops` the points are the widths and what each operator counts (Prandtl and Ishlinskii). A force or torque
-/// opposes the motion.
+/// gain; of `stops` the points are the widths and what each operator counts (Prandtl and Ishlinskii); of an oscillator the
+/// curve is added to its frequency [Hz] and `gain` is its amplitude. A force or torque opposes the motion.
 template <Site at, int channel = -1>
 struct Term {
   using Names = term::Names<at, channel>;
@@ -91,6 +91,7 @@ struct Term {
     S frequency{1.0};
     S damping{0.5};
     S width{1.0};
+    S phase{0.0};
     UnlistedTable<S> table{};
     static constexpr auto choices() {
       return std::array{Choice<Params>{"argument", kArgumentNames, &Params::argument},
@@ -100,23 +101,27 @@ struct Term {
     static constexpr auto fields() {
       using enum Memory;
       return std::array{
-          Field<Params>{"gain", "", -1e18, 1e18, 1.0, "what is added for a unit of the memory's output, without points",
+          Field<Params>{"gain", "", -1e18, 1e18, 1.0,
+                        "what is added for a unit of the memory's output, without points; amplitude of an oscillator",
                         &Params::gain, ~only(stops)},
           Field<Params>{"direct", "", -1e18, 1e18, 1.0, "what is added for a unit of the argument itself", &Params::direct,
-                        ~only(none)},
+                        ~only(none, oscillator)},
           Field<Params>{"time", "s", 1e-5, 1e3, 0.02, "delay, time constant or sampling period", &Params::time,
                         only(delay, lag, washout, hold)},
           Field<Params>{"frequency", "Hz", 1e-3, 1e4, 5.0, "natural frequency", &Params::frequency,
-                        only(resonance, band_pass)},
+                        only(resonance, band_pass, oscillator)},
           Field<Params>{"damping", "1", 1e-3, 10.0, 0.5, "damping ratio", &Params::damping, only(resonance, band_pass)},
           Field<Params>{"width", "", 1e-15, 1e15, 1.0,
                         "limit, quantum, half width or pitch in the argument's unit; of slew, of its rate", &Params::width,
-                        only(slew, quantise, dead_zone, saturation, periodic)}};
+                        only(play, stop, slew, quantise, dead_zone, saturation, periodic)},
+          Field<Params>{"phase", "rad", -10.0, 10.0, 1.0, "phase of the oscillator at the start of a record", &Params::phase,
+                        only(oscillator)}};
     }
     static constexpr auto tables() {
-      return std::array{TableField<Params, UnlistedTable<S>>{"at", "", "added", Names::unit, -1e18, 1e18,
-                                                             "what is added at a value of the argument", &Params::table, ~0U,
-                                                             1.0, true}};
+      return std::array{TableField<Params, UnlistedTable<S>>{
+          "at", "", "added", Names::unit, -1e18, 1e18,
+          "what is added at a value of the argument; in hertz to the frequency of an oscillator", &Params::table, ~0U, 1.0,
+          true}};
     }
   };
 
@@ -201,7 +206,11 @@ struct Term {
       }
       return sum;
     }
-    const MemoryParameters<S> memory{kind, params.time, params.frequency, params.damping, params.width};
+    const MemoryParameters<S> memory{kind, params.time, params.frequency, params.damping, params.width, params.phase};
+    if (kind == Memory::oscillator) {
+      const S shift = has_curve ? unlisted::value_at<S>(params.table, s) : S{0.0};
+      return params.gain * state.memory.step(memory, shift, input.h);
+    }
     if (has_curve && static_cast<term::Order>(params.order) == term::Order::curve_first) {
       return state.memory.step(memory, unlisted::value_at<S>(params.table, s), input.h) + params.direct * s;
     }

@@ -10,6 +10,7 @@
 #include "tests/explain/latent/missing_effect.hpp"
 #include "tools/explain/latent/correlation.hpp"
 #include "tools/explain/latent/form_comb.hpp"
+#include "tools/explain/latent/oscillation_search.hpp"
 
 namespace {
 
@@ -34,20 +35,29 @@ Record with_reading(Law&& law) {
   return record;
 }
 
-/// The best form of the sensor's place for a record.
-struct Best {
-  explicit Best(const Record& record)
+/// The smoothed signal of the sensor's place for a record.
+struct AtSensor {
+  explicit AtSensor(const Record& record)
       : data(explain::make_dataset(declared(), {record})),
         problem(explain::latent_problem(data, about_declared(), 2)),
         input(explain::most_likely_input(problem, kPistonSensor)) {
     explain::smooth(problem, kPistonSensor, input);
-    const FormRegression regression(problem, kPistonSensor, input, FormRegression::Arguments::simulated);
-    form = explain::search_forms(regression, kPistonSensor, 1, 2).at(0);
   }
+
+  FormRegression regression() const { return {problem, kPistonSensor, input, FormRegression::Arguments::simulated}; }
 
   explain::Dataset data;
   explain::LatentProblem problem;
   explain::LatentInput input;
+};
+
+/// The best form of the sensor's place for a record.
+struct Best {
+  explicit Best(const Record& record) {
+    const AtSensor sensor(record);
+    form = explain::search_forms(sensor.regression(), kPistonSensor, 1, 2).at(0);
+  }
+
   ScoredForm form;
 };
 
@@ -72,6 +82,44 @@ TEST(FormSearch, ACurveWithWavesIsFollowedToTheNoise) {
   const Best best(with_reading([](double command) { return 12.0 * kPistonNoise * std::sin(600.0 * command); }));
   CHECK(best.form.form.argument == Argument::command);
   CHECK(best.form.score.left < 1.3);
+}
+
+// A curve that rises and falls within the motion: behind one that only rises, a play is one in front of it.
+TEST(FormSearch, APlayBehindACurveIsFoundWithItsWidth) {
+  constexpr double kHalfWidth = 3.0 * kPistonNoise;
+  double follows = 0.0;
+  const Best best(with_reading([&](double command) {
+    const double curve = 12.0 * kPistonNoise * std::sin(1500.0 * command);
+    follows = curve - std::clamp(curve - follows, -kHalfWidth, kHalfWidth);
+    return follows;
+  }));
+  const Form& form = best.form.form;
+  CHECK(form.argument == Argument::command);
+  CHECK(form.curve_first);
+  CHECK(form.memory.kind == Memory::play || form.memory.kind == Memory::stop);
+  CHECK(best.form.score.left < 1.5);
+  DOUBLES_EQUAL(kHalfWidth, form.memory.width * std::abs(best.form.score.coefficients(0)), 0.2 * kHalfWidth);
+}
+
+TEST(FormSearch, AnOscillationWhoseFrequencyMovesIsFoundWithItsCurve) {
+  constexpr double kFrequency = 7.3;
+  const auto shift = [](double command) { return 2.0 * std::tanh(300.0 * command); };
+  double turns = 0.0;
+  const AtSensor sensor(with_reading([&](double command) {
+    turns += 2e-3 * (kFrequency + shift(command));
+    return 4.0 * kPistonNoise * std::sin(2.0 * std::numbers::pi * turns);
+  }));
+  const FormRegression regression = sensor.regression();
+  const auto form = explain::find_oscillation(regression, kPistonSensor, 2);
+  CHECK(form.has_value());
+  CHECK(form->argument == Argument::command);
+  // A quarter of a cycle over the 20 s of the record is 0.01 Hz; a straight piece of the curve is off by a tenth of it.
+  for (const double command : {-5e-3, -2e-3, 0.0, 2e-3, 5e-3}) {
+    DOUBLES_EQUAL(kFrequency + shift(command), form->memory.frequency + form->entering(command), 0.25);
+  }
+  const auto score = regression.score({&*form, 1}, 1).front();
+  CHECK(score.left < 1.3);
+  CHECK(regression.left_without() > 3.0);
 }
 
 TEST_GROUP(CorrelationRatio){};

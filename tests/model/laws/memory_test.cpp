@@ -103,6 +103,36 @@ TEST(TermMemory, AStopFollowsTheArgumentWithinItsWidthAndTurnsAtOnce) {
   DOUBLES_EQUAL(0.7, back[1], 1e-15);
 }
 
+TEST(TermMemory, APlayFollowsAtItsDistanceAndAStopIsTheRest) {
+  model::MemoryState<double> play_state;
+  model::MemoryState<double> stop_state;
+  Parameters play = of(Memory::play);
+  play.width = 0.5;
+  Parameters stop = play;
+  stop.kind = Memory::stop;
+  const std::array<double, 5> arguments{0.0, 0.3, 2.0, 1.6, 0.2};
+  const std::array<double, 5> followed{0.0, 0.0, 1.5, 1.5, 0.7};
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    DOUBLES_EQUAL(followed[i], play_state.step(play, arguments[i], kMemoryStep), 1e-15);
+    DOUBLES_EQUAL(arguments[i] - followed[i], stop_state.step(stop, arguments[i], kMemoryStep), 1e-15);
+  }
+}
+
+// Two thousand turns: a phase that grew without end would lose its last digits in a float.
+TEST(TermMemory, AnOscillatorAdvancesAtItsFrequencyAndItsArgument) {
+  Parameters parameters = of(Memory::oscillator);
+  parameters.frequency = 6.0;
+  parameters.phase = 0.4;
+  model::MemoryState<double> state;
+  double turns = 0.0;
+  for (int n = 0; n < 300000; ++n) {
+    const double shift = 1.5 * std::sin(1e-4 * n);
+    const double middle = turns + 0.5 * kMemoryStep * (6.0 + shift);
+    turns += kMemoryStep * (6.0 + shift);
+    DOUBLES_EQUAL(std::sin(kTurn * middle + 0.4), state.step(parameters, shift, kMemoryStep), 1e-8);
+  }
+}
+
 TEST(TermMemory, SlewFollowsNoFasterThanItsLimit) {
   Parameters parameters = of(Memory::slew);
   parameters.width = 3.0;
@@ -137,6 +167,9 @@ TEST(TermMemory, MemorylessDistortionsAreWhatTheyAreCalled) {
 
 TEST(TermMemory, AMemoryThatHasNotStartedRestsUnderItsArgument) {
   for (std::size_t kind = 0; kind < model::kMemoryNames.size(); ++kind) {
+    if (static_cast<Memory>(kind) == Memory::oscillator) {
+      continue;  // never rests
+    }
     Parameters parameters = of(static_cast<Memory>(kind));
     parameters.time = 0.05;
     parameters.width = 100.0;

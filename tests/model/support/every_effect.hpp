@@ -75,7 +75,7 @@ template <class E>
 bool depends_on_time(int option) {
   if constexpr (is_unlisted<E>()) {
     const std::string_view law = E::options[static_cast<std::size_t>(option)];
-    return law.ends_with("time") || (law == "periodic" && !requires { E::is_term; }) ||
+    return law.ends_with("time") || law == "oscillator" || (law == "periodic" && !requires { E::is_term; }) ||
            std::is_same_v<E, model::UnlistedDrift> || std::is_same_v<E, model::UnlistedRipple>;
   }
   return false;
@@ -143,7 +143,8 @@ void set_term(ParamsOf<E, S>& params) {
                                                        : Usual{Argument::angle, 0.05, 5e-3};
   params.argument = static_cast<int>(usual.argument);
   const auto kind = static_cast<model::Memory>(params.option);
-  params.gain = S(usual.gain);
+  // The gain of an oscillator is its amplitude: what a usual argument gives otherwise.
+  params.gain = S(kind == model::Memory::oscillator ? usual.gain * usual.width : usual.gain);
   params.direct = S(kind == model::Memory::none ? 0.0 : 0.3 * usual.gain);
   params.width = S(kind == model::Memory::slew ? 20.0 * usual.width : usual.width);
   params.table.points = 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "tools/explain/words/conclusions.hpp"
@@ -12,22 +13,6 @@
 namespace hotfire::explain {
 
 namespace {
-
-/// The hat functions of a curve at a value: a curve is linear between its points and constant beyond them.
-template <class Row>
-void add_hats(const std::vector<double>& points, double value, Row&& row) {
-  const auto above = std::upper_bound(points.begin(), points.end(), value);
-  if (above == points.begin()) {
-    row(0) = 1.0;
-  } else if (above == points.end()) {
-    row(static_cast<Eigen::Index>(points.size()) - 1) = 1.0;
-  } else {
-    const Eigen::Index k = above - points.begin();
-    const double share = (value - *(above - 1)) / (*above - *(above - 1));
-    row(k - 1) = 1.0 - share;
-    row(k) = share;
-  }
-}
 
 /// Output of a memory by row. A search runs thousands of them over all rows: of a kind that the compiler knows, with all
 /// that it calls in one function, the constants of the run leave the loop.
@@ -52,8 +37,17 @@ void run_kind(const model::MemoryParameters<double>& memory, const Eigen::Vector
 
 }  // namespace
 
+double Form::entering(double value) const {
+  if (values.empty()) {
+    return is_oscillator() ? 0.0 : value;
+  }
+  return model::curve_value<double>(points, values, points.size(), value);
+}
+
 Eigen::Index Form::size() const {
-  return (points.empty() ? 1 : static_cast<Eigen::Index>(points.size())) + (has_direct() ? 1 : 0);
+  const bool is_linear_in_curve = !points.empty() && values.empty();
+  const Eigen::Index own = is_oscillator() ? 2 : is_linear_in_curve ? static_cast<Eigen::Index>(points.size()) : 1;
+  return own + (has_direct() ? 1 : 0);
 }
 
 std::string in_words(const Form& form) {
@@ -61,6 +55,9 @@ std::string in_words(const Form& form) {
   std::string of = words::spoken(model::kArgumentNames[static_cast<std::size_t>(form.argument)]);
   if (form.factor) {
     of += " x " + words::spoken(model::kArgumentNames[static_cast<std::size_t>(*form.factor)]);
+  }
+  if (form.is_oscillator()) {
+    return form.points.empty() ? std::string(memory) : fmt::format("{} tuned by {}", memory, of);
   }
   const bool remembers = form.memory.kind != model::Memory::none;
   const std::string kind = remembers ? words::spoken(memory) : "gain";
@@ -96,16 +93,16 @@ Eigen::VectorXd argument_of(const Form& form, const Eigen::MatrixXd& quantities)
                      : argument;
 }
 
-Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& argument, double period) {
-  Eigen::VectorXd output(argument.size());
+Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& entering, double period) {
+  Eigen::VectorXd output(entering.size());
   if (form.is_stops()) {
     model::MemoryState<double> state;
-    for (Eigen::Index row = 0; row < argument.size(); ++row) {
-      output(row) = state.stop(form.points, static_cast<int>(form.points.size()), argument(row))[form.points.size() - 1];
+    for (Eigen::Index row = 0; row < entering.size(); ++row) {
+      output(row) = state.stop(form.points, static_cast<int>(form.points.size()), entering(row))[form.points.size() - 1];
     }
     return output;
   }
-  run_kind(form.memory, argument, period, output, std::make_index_sequence<model::kMemoryNames.size()>());
+  run_kind(form.memory, entering, period, output, std::make_index_sequence<model::kMemoryNames.size()>());
   return output;
 }
 
@@ -116,7 +113,15 @@ Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, 
   if (form.has_direct()) {
     columns.rightCols(1) = argument;
   }
-  if (form.curve_first) {
+  if (form.is_oscillator() || !form.values.empty()) {
+    const Eigen::VectorXd entering = argument.unaryExpr([&](double value) { return form.entering(value); });
+    columns.col(0) = remembered(form, entering, period);
+    if (form.is_oscillator()) {
+      Form quadrature = form;
+      quadrature.memory.phase += 0.5 * std::numbers::pi;
+      columns.col(1) = remembered(quadrature, entering, period);
+    }
+  } else if (form.curve_first) {
     for (Eigen::Index row = 0; row < argument.size(); ++row) {
       add_hats(form.points, argument(row), columns.row(row));
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,12 +22,18 @@ struct Form {
   model::MemoryParameters<double> memory{};
   bool curve_first = false;
   std::vector<double> points{};  ///< of the curve, or the widths of the stops; none: a gain
+  /// Of a curve in front of a memory that is not linear: its values at its points, up to a common factor. Of an oscillator
+  /// what the curve adds to its frequency [Hz].
+  std::vector<double> values{};
 
+  bool is_oscillator() const { return memory.kind == model::Memory::oscillator; }
   bool is_stops() const { return memory.kind == model::Memory::stops; }
   /// The argument itself is beside its memory, as the last regressor.
-  bool has_direct() const { return memory.kind != model::Memory::none; }
+  bool has_direct() const { return memory.kind != model::Memory::none && !is_oscillator(); }
   /// Without points, and of stops with theirs, the curve is no function over its points.
   bool has_curve() const { return !points.empty() && !is_stops(); }
+  /// What enters the memory for a value of the argument.
+  double entering(double value) const;
   /// How many linear coefficients it has.
   Eigen::Index size() const;
 };
@@ -41,10 +48,26 @@ Eigen::MatrixXd quantities(const LatentProblem& problem, std::size_t experiment,
 /// What the form is a law of, by row: its argument, times its factor.
 Eigen::VectorXd argument_of(const Form& form, const Eigen::MatrixXd& quantities);
 
-/// Output of the form's memory by row, without a curve; of stops that of the widest.
-Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& argument, double period);
+/// Output of the form's memory by row for what enters it; of stops that of the widest.
+Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& entering, double period);
 
 /// The form's regressors by row, a column a coefficient: what is added at its site for a coefficient of one.
 Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, double period);
+
+/// The hat functions of a curve at a value: a curve is linear between its points and constant beyond them.
+template <class Row>
+void add_hats(const std::vector<double>& points, double value, Row&& row) {
+  const auto above = std::upper_bound(points.begin(), points.end(), value);
+  if (above == points.begin()) {
+    row(0) = 1.0;
+  } else if (above == points.end()) {
+    row(static_cast<Eigen::Index>(points.size()) - 1) = 1.0;
+  } else {
+    const Eigen::Index k = above - points.begin();
+    const double share = (value - *(above - 1)) / (*above - *(above - 1));
+    row(k - 1) = 1.0 - share;
+    row(k) = share;
+  }
+}
 
 }  // namespace hotfire::explain

@@ -36,6 +36,13 @@ constexpr double kFastestCycles = 1.77;
 constexpr double kDelayStep = 0.085;
 /// Widths of stop operators, over the 99th percentile of the argument.
 constexpr std::array kStopWidths{0.05, 0.15, 0.35, 0.7};
+/// Half widths of one play or stop, over the same: from what the noise hides to what hardly moves.
+constexpr double kNarrowestPlay = 0.04;
+constexpr double kWidestPlay = 0.7;
+constexpr int kPlays = 5;
+/// Limits of a slew, over the 99th percentile of the argument's rate.
+constexpr double kSlowestSlew = 0.03;
+constexpr int kSlews = 7;
 
 /// Sorted values of what a form is a law of.
 std::vector<double> sorted_values(const FormRegression& regression, const Form& form) {
@@ -48,21 +55,26 @@ std::vector<double> sorted_values(const FormRegression& regression, const Form& 
   return values;
 }
 
-/// The 99th percentile of the size of an argument: what its widths, quanta and pitches are measured by.
+/// What enters the form's memory, by row of an experiment.
+Eigen::VectorXd entering_of(const Form& form, const Eigen::MatrixXd& quantities) {
+  return argument_of(form, quantities).unaryExpr([&](double value) { return form.entering(value); });
+}
+
+/// The 99th percentile of the size of what enters a memory: what its widths, quanta and pitches are measured by.
 double size_of(const FormRegression& regression, const Form& form) {
   std::vector<double> sizes;
   for (const Eigen::MatrixXd& quantities : regression.quantities()) {
-    const Eigen::VectorXd own = argument_of(form, quantities).cwiseAbs();
+    const Eigen::VectorXd own = entering_of(form, quantities).cwiseAbs();
     sizes.insert(sizes.end(), own.begin(), own.end());
   }
   return quantile_of_unsorted(sizes, 0.99);
 }
 
-/// The 99th percentile of how fast an argument changes [1/s].
+/// The 99th percentile of how fast that changes [1/s].
 double rate_of(const FormRegression& regression, const Form& form) {
   std::vector<double> rates;
   for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
-    const Eigen::VectorXd own = argument_of(form, regression.quantities()[e]);
+    const Eigen::VectorXd own = entering_of(form, regression.quantities()[e]);
     const double period = regression.problem().data.experiments[e].period;
     for (Eigen::Index row = 1; row < own.size(); ++row) {
       rates.push_back(std::abs(own(row) - own(row - 1)) / period);
@@ -87,9 +99,13 @@ bool bears_curve(Memory kind, bool curve_first) {
     case Memory::quantise:
     case Memory::dead_zone:
     case Memory::saturation:
+    case Memory::oscillator:
       return false;
     case Memory::none:
     case Memory::periodic:
+    case Memory::play:
+    case Memory::stop:
+    case Memory::slew:
       return !curve_first;
     default:
       return true;
@@ -177,6 +193,27 @@ Form at_place(const LatentPlace& place, Argument argument, std::optional<Argumen
   return form;
 }
 
+namespace {
+
+/// Plays, stops and slews of what enters the memory of `plain`, of that size and rate.
+void add_plays_and_slews(const Form& plain, double size, double rate, std::vector<Form>& forms) {
+  const auto add = [&](Memory kind, double width) {
+    Form form = plain;
+    form.memory.kind = kind;
+    form.memory.width = width;
+    forms.push_back(std::move(form));
+  };
+  for (const double width : comb(kNarrowestPlay, kWidestPlay, kPlays)) {
+    add(Memory::play, width * size);
+    add(Memory::stop, width * size);
+  }
+  for (const double limit : comb(kSlowestSlew, 1.0, kSlews)) {
+    add(Memory::slew, limit * rate);
+  }
+}
+
+}  // namespace
+
 std::vector<Form> with_memories(const FormRegression& regression, const Form& plain) {
   std::vector<Form> forms;
   const double size = size_of(regression, plain);
@@ -216,8 +253,8 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   }
   for (const double width : comb(0.03, 1.0, 7)) {
     add(Memory::quantise, [&](auto& memory) { memory.width = width * size; });
-    add(Memory::slew, [&](auto& memory) { memory.width = width * rate; });
   }
+  add_plays_and_slews(plain, size, rate, forms);
   // Two periods are separated by a quarter of it at the ends of the argument's range.
   for (int quarters = 3; quarters <= 40; ++quarters) {
     add(Memory::periodic, [&](auto& memory) { memory.width = 8.0 * size / quarters; });
@@ -258,6 +295,23 @@ std::optional<Form> with_curve(const FormRegression& regression, Form form, bool
   return form.points.size() >= 3 ? std::optional(std::move(form)) : std::nullopt;
 }
 
+std::vector<Form> behind_curve(const FormRegression& regression, const Form& curve, const Eigen::VectorXd& values) {
+  std::vector<Form> forms;
+  Form front = curve;
+  // About its middle: what a play or a stop makes of a constant is that constant or nothing.
+  const double middle = 0.5 * (values.minCoeff() + values.maxCoeff());
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    front.values.push_back(values(i) - middle);
+  }
+  front.curve_first = true;
+  const double size = size_of(regression, front);
+  const double rate = rate_of(regression, front);
+  if (size > 0.0 && rate > 0.0) {
+    add_plays_and_slews(front, size, rate, forms);
+  }
+  return forms;
+}
+
 std::vector<Form> neighbours(const Form& form, double factor) {
   std::vector<Form> forms;
   const auto add = [&](auto&& change) {
@@ -269,6 +323,7 @@ std::vector<Form> neighbours(const Form& form, double factor) {
   };
   switch (form.memory.kind) {
     case Memory::none:
+    case Memory::oscillator:
       break;
     case Memory::delay:
     case Memory::lag:
@@ -287,6 +342,8 @@ std::vector<Form> neighbours(const Form& form, double factor) {
       });
       break;
     case Memory::periodic:
+    case Memory::play:
+    case Memory::stop:
     case Memory::slew:
     case Memory::quantise:
     case Memory::dead_zone:

@@ -36,6 +36,10 @@ std::vector<Form> with_kinks(const FormRegression& regression, const Form& plain
 /// has no width.
 std::optional<Form> with_curve(const FormRegression& regression, Form form, bool curve_first);
 
+/// Memories of what a curve makes of its argument, over the comb of their parameter: those of which the response to a sum of
+/// curves is not the sum of responses. `curve` is without memory, `values` are those at its points.
+std::vector<Form> behind_curve(const FormRegression& regression, const Form& curve, const Eigen::VectorXd& values);
+
 /// The form with the parameter of its memory a factor up and down.
 std::vector<Form> neighbours(const Form& form, double factor);
 

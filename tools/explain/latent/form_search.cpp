@@ -32,6 +32,8 @@ constexpr int kResponsesOfOne = 2;
 constexpr double kClearlyLess = 0.9;
 /// Forms over which curves are laid, of those with a memory and of those without.
 constexpr std::size_t kCurved = 6;
+/// Curves without a memory whose output is given one that is not linear.
+constexpr std::size_t kFollowed = 3;
 /// Arguments without a memory whose kinks are tried.
 constexpr std::size_t kKinked = 3;
 /// Steps in which a memory's parameter is refined.
@@ -189,6 +191,23 @@ std::vector<Form> screened(const FormRegression& regression, const std::vector<F
 
 }  // namespace
 
+namespace {
+
+/// Memories that are not linear, behind the curves that explain most without one.
+std::vector<ScoredForm> behind_best_curves(const FormRegression& regression, std::vector<ScoredForm> laid,
+                                           unsigned threads) {
+  std::erase_if(laid, [](const ScoredForm& scored) {
+    return !scored.form.has_curve() || scored.form.memory.kind != model::Memory::none;
+  });
+  std::vector<Form> forms;
+  for (const ScoredForm& scored : best_of_each(std::move(laid), kFollowed)) {
+    std::ranges::move(behind_curve(regression, scored.form, scored.score.coefficients), std::back_inserter(forms));
+  }
+  return scored(regression, std::move(forms), threads);
+}
+
+}  // namespace
+
 std::vector<ScoredForm> search_forms(const FormRegression& regression, const LatentPlace& place, std::size_t most,
                                      unsigned threads) {
   std::vector<Form> forms;
@@ -228,6 +247,7 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
     }
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
+  std::ranges::move(behind_best_curves(regression, laid, threads), std::back_inserter(laid));
   // Curves do not replace gains: the regression is linear, where a large effect is not, and follows with a curve what is
   // none.
   const auto curves =

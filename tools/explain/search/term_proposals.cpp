@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/explain/latent/form_search.hpp"
+#include "tools/explain/latent/oscillation_search.hpp"
 #include "tools/explain/policy/policy.hpp"
 
 namespace hotfire::explain {
@@ -60,10 +61,19 @@ void set_values(ModelParameters& parameters, const Candidate& candidate, const S
       values.width = form.memory.width;
       values.gain = form.points.empty() ? coefficients(0) : 0.0;
       values.direct = form.has_direct() ? coefficients(coefficients.size() - 1) : 0.0;
+      if (form.is_oscillator()) {
+        values.gain = std::hypot(coefficients(0), coefficients(1));
+        values.phase = std::atan2(coefficients(1), coefficients(0));
+      } else if (!form.values.empty()) {
+        // A play, a stop or a slew of a curve as many times as high is as many times as wide.
+        values.width *= std::abs(coefficients(0));
+      }
       values.table.points = static_cast<int>(form.points.size());
       for (std::size_t i = 0; i < form.points.size(); ++i) {
         values.table.x[i] = form.points[i];
-        values.table.y[i] = coefficients(static_cast<Eigen::Index>(i));
+        values.table.y[i] = form.is_oscillator()   ? form.values[i]
+                            : !form.values.empty() ? coefficients(0) * form.values[i]
+                                                   : coefficients(static_cast<Eigen::Index>(i));
       }
     }
   });
@@ -74,9 +84,11 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
                                            const Scales& scales) {
   std::vector<FreeParameter> free = effect_parameters(parameters, candidate, scales);
   std::erase_if(free, [&](const FreeParameter& p) {
-    const bool is_unused_gain = p.address.field == "gain" && !form.points.empty();
+    const bool is_unused_gain = p.address.field == "gain" && !form.points.empty() && !form.is_oscillator();
+    // The curve of an oscillator moves its frequency everywhere.
+    const bool is_of_curve = p.address.field == "frequency" && form.is_oscillator() && !form.points.empty();
     // A sampling period has no derivative.
-    return is_unused_gain || (form.memory.kind == model::Memory::hold && p.address.field == "time");
+    return is_unused_gain || is_of_curve || (form.memory.kind == model::Memory::hold && p.address.field == "time");
   });
   std::vector<double> values;
   visit_values(parameters, [&](const double& value) { values.push_back(value); });
@@ -93,7 +105,7 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
       p.lower = std::max(p.lower, value / kReach);
       p.upper = std::min(p.upper, value * kReach);
       p.prior_center = std::log(value);
-    } else if (value != 0.0) {
+    } else if (value != 0.0 && p.address.field != "phase") {
       p.unit_size = std::abs(value);
     }
   }
@@ -158,6 +170,13 @@ std::vector<Screened> propose_terms(const Dataset& data, const Fitted& around, c
       }
       if (least < policy().left_by_single) {
         break;
+      }
+      // A motion looks like an oscillation that it tunes itself: only what no other form explains is one.
+      if (arguments == FormRegression::Arguments::smoothed) {
+        if (auto oscillation = find_oscillation(regression, place.where, threads)) {
+          FormScore score = regression.score({&*oscillation, 1}, threads).front();
+          forms.push_back({std::move(*oscillation), std::move(score)});
+        }
       }
     }
   }

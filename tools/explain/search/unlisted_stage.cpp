@@ -49,7 +49,7 @@ void UnlistedStage::finish() {
     drop_light_names();
     drop_names_that_explain_little();
   }
-  if (!options_.watch.interrupted() && excess_over_noise(data_, result_.explained.prediction) > policy().immaterial) {
+  if (!options_.watch.interrupted() && !reaches_noise(data_, result_.explained)) {
     result_.located = locate_explained();
   }
 }
@@ -211,12 +211,25 @@ bool UnlistedStage::has_unlisted() const {
   return std::ranges::any_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
 }
 
+/// True if what is left acts most where a term of the grammar is: its law is not exact. A term at another site would imitate
+/// the rest of it.
+bool UnlistedStage::is_rest_of_a_term(const Located& left) const {
+  return !left.places.empty() && std::ranges::any_of(result_.kept, [&](const Kept& kept) {
+    const Candidate& candidate = kept.trial.candidate;
+    return is_unlisted(kept) && !candidate.choices.empty() && left.places.front().has(candidate.site);
+  });
+}
+
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
 void UnlistedStage::add_beside() {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().immaterial && !options_.watch.interrupted()) {
-    UnlistedTask task = task_beside(result_.explained, locate_explained());
+    const Located& left = locate_explained();
+    if (is_rest_of_a_term(left)) {
+      return;
+    }
+    UnlistedTask task = task_beside(result_.explained, left);
     task.tables = !has_unlisted();
     UnlistedSearch beside = search_unlisted(task);
     beside.mark_tied_sites();

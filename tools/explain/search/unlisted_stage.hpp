@@ -50,6 +50,7 @@ class UnlistedStage {
   void look_elsewhere();
   bool is_better(const UnlistedSearch& found) const;
   void take_instead_if_better();
+  bool is_rest_of_a_term(const Located& left) const;
   void add_beside();
   void drop_light_names();
   void drop_names_that_explain_little();

@@ -6,6 +6,7 @@
 
 #include "tools/explain/inference/zero_shift.hpp"
 #include "tools/explain/terms/table_points.hpp"
+#include "tools/explain/terms/unlisted.hpp"
 
 namespace hotfire::explain {
 
@@ -41,7 +42,7 @@ std::optional<Fitted> with_least_zeros(const Dataset& data, const Zeros& zeros, 
                                        const Candidate& candidate) {
   const ModelParameters plant = fitted.parameters();
   const double size = largest_ordinate(plant, candidate);
-  if (!(size > 0.0)) {
+  if (!(size > 0.0) || is_oscillator(candidate)) {
     return std::nullopt;
   }
   const double small = kSmallOfCurve * size;

@@ -31,6 +31,10 @@ bool is_curve_over_own_rate(const Candidate& candidate) {
 
 }  // namespace
 
+bool is_oscillator(const Candidate& candidate) {
+  return !candidate.choices.empty() && candidate.option == static_cast<int>(model::Memory::oscillator);
+}
+
 bool is_unlisted(const ModelParameters& plant, const Candidate& candidate) {
   bool result = false;
   visit_effects(plant, [&]<class E>(std::size_t index, const auto&) {
@@ -80,6 +84,10 @@ std::optional<FittedTable> table_of(const ModelParameters& parameters, const Can
                            {table.y.begin(), table.y.begin() + table.points}};
     }
   });
+  if (result && is_oscillator(candidate)) {
+    result->y_unit = "Hz";
+    result->meaning = "frequency of an oscillator";
+  }
   return result;
 }
 

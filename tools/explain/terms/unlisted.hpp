@@ -16,6 +16,9 @@ std::vector<Candidate> unlisted_candidates(const ModelParameters& plant, const D
 /// Activates an unlisted candidate in parameters that hold the effects of `current`, with its table as `lay_table` lays it.
 void activate_unlisted(ModelParameters& parameters, const Candidate& candidate, const Dataset& data, const Fitted& current);
 
+/// True if the candidate is an oscillator of the grammar: its curve is of a frequency.
+bool is_oscillator(const Candidate& candidate);
+
 /// True if the candidate's effect, of the list of `plant`, is a term of unknown law.
 bool is_unlisted(const ModelParameters& plant, const Candidate& candidate);
 

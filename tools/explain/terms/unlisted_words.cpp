@@ -40,12 +40,15 @@ std::string memory_of_term(const Candidate& candidate) {
                                                                                ", through a resonance",
                                                                                ", through a band-pass filter",
                                                                                ", with hysteresis",
+                                                                               ", through play",
+                                                                               ", through a stop operator",
                                                                                ", through a rate limit",
                                                                                ", through a sample-and-hold",
                                                                                ", through quantisation",
                                                                                ", through a dead zone",
                                                                                ", through saturation",
-                                                                               ", through a periodic function"};
+                                                                               ", through a periodic function",
+                                                                               ", through the frequency of an oscillator"};
   return std::string(kMemories[static_cast<std::size_t>(candidate.option)]);
 }
 
