@@ -84,6 +84,24 @@ TEST(FormSearch, ACurveWithWavesIsFollowedToTheNoise) {
   CHECK(best.form.score.left < 1.3);
 }
 
+// Half as wide again: the refinement goes on until the response explains most.
+TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
+  static constexpr double kWidth = 2e-3;
+  const AtSensor sensor(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }));
+  ScoredForm elsewhere;
+  elsewhere.form.site = model::Site::flow;
+  elsewhere.form.argument = Argument::command;
+  elsewhere.form.memory.kind = Memory::saturation;
+  elsewhere.form.memory.width = 1.5 * kWidth;
+  const FormRegression regression = sensor.regression();
+  const auto moved = explain::moved_forms(regression, kPistonSensor, {elsewhere}, {}, 2);
+  CHECK_EQUAL(1, moved.size());
+  CHECK(moved.front().form.site == model::Site::sensor);
+  CHECK_EQUAL(0, moved.front().form.channel);
+  DOUBLES_EQUAL(kWidth, moved.front().form.memory.width, 0.1 * kWidth);
+  CHECK(explain::moved_forms(regression, kPistonSensor, {elsewhere}, moved, 2).empty());
+}
+
 // A curve that rises and falls within the motion: behind one that only rises, a play is one in front of it.
 TEST(FormSearch, APlayBehindACurveIsFoundWithItsWidth) {
   constexpr double kHalfWidth = 3.0 * kPistonNoise;

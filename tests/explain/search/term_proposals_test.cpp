@@ -4,6 +4,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include "tests/explain/latent/missing_effect.hpp"
+#include "tools/explain/terms/assessed.hpp"
 
 namespace {
 
@@ -40,8 +41,11 @@ std::vector<Screened> proposed_for(const ModelFile& truth, explain::Fitted aroun
     std::erase_if(located.places, [&](const explain::Place& place) { return !place.has(site); });
     CHECK(!located.places.empty() && located.places.front().is_likely);
   }
-  const explain::Scales scales;
-  return explain::propose_terms(data, around, located, scales, 2, {});
+  std::vector<Screened> starts;
+  for (const explain::ScoredForm& proposed : explain::propose_terms(data, around, located, 2, {})) {
+    starts.push_back(*explain::start_of(around, proposed, explain::Scales{}));
+  }
+  return starts;
 }
 
 ModelFile with_product() {
@@ -119,4 +123,54 @@ TEST(TermProposals, ASiteThatHasATermGetsNoSecondOne) {
   for (const auto& proposal : proposed_for(with_product(), around, "flow")) {
     CHECK(proposal.candidate.name != FlowTerm::name);
   }
+}
+
+namespace {
+
+/// A gain of the piston's rate at the valve's flow, as a regression gives it.
+explain::ScoredForm gain_of_rate(double gain) {
+  explain::ScoredForm proposed;
+  proposed.form.site = Site::flow;
+  proposed.form.argument = Argument::rate;
+  proposed.score.coefficients = Eigen::VectorXd::Constant(1, gain);
+  proposed.score.move = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(about_declared().free.size()));
+  return proposed;
+}
+
+/// The start of a proposed gain for records of an axis that has `truth`.
+std::optional<Screened> start_for(double truth, double proposed) {
+  const explain::Dataset data = data_of(with_term<FlowTerm>([&](auto& term) {
+    term.argument = static_cast<int>(Argument::rate);
+    term.gain = truth;
+  }));
+  const explain::Evaluator evaluator(data, explain::Resolution::coarse);
+  const explain::Fitted around = about_declared();
+  return explain::best_start(evaluator, around, gain_of_rate(proposed), explain::Scales{},
+                             explain::left_by(evaluator, around, 2), 2);
+}
+
+}  // namespace
+
+TEST(TermProposals, ATermProposedTooLargeStartsWithTheShareThatLeavesLeast) {
+  const double truth = -0.1 * SimplexParameters{}.actuator.piston_area;
+  const auto start = start_for(truth, 8.0 * truth);
+  CHECK(start.has_value());
+  // The shares are an eighth, twice that and half of it.
+  DOUBLES_EQUAL(truth, term_of<FlowTerm>(start->fitted).gain, 0.1 * std::abs(truth));
+}
+
+TEST(TermProposals, ATermOfTheWrongSignHasNoStart) {
+  const double truth = -0.1 * SimplexParameters{}.actuator.piston_area;
+  CHECK_FALSE(start_for(truth, -truth).has_value());
+}
+
+TEST(TermProposals, TheUnitsOfATermAreThoseOfTheWholeHoweverLittleOfItAFitStartsWith) {
+  const explain::Fitted around = about_declared();
+  const auto whole = explain::start_of(around, gain_of_rate(0.01), explain::Scales{});
+  const auto part = explain::start_of(around, gain_of_rate(0.01), explain::Scales{}, 0.06);
+  DOUBLES_EQUAL(0.06 * 0.01, term_of<FlowTerm>(part->fitted).gain, 1e-12);
+  const auto size = std::ssize(around.free);
+  CHECK_EQUAL(whole->fitted.free[static_cast<std::size_t>(size)].unit_size,
+              part->fitted.free[static_cast<std::size_t>(size)].unit_size);
+  DOUBLES_EQUAL(0.06 * whole->fitted.u.back(), part->fitted.u.back(), 1e-12);
 }

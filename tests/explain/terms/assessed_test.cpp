@@ -34,6 +34,18 @@ TEST(Assessed, WhatClearsTheWorstChannelCountsByTheRmsOverAll) {
   DOUBLES_EQUAL(std::sqrt(10.0 / 901.0), held_out_ratio(leaving({3.0, 1.0}), leaving({30.0, 1.0})), 1e-12);
 }
 
+TEST(Assessed, HeldOutErrorHasToFallWhereTheRowsContainWhatIsMissing) {
+  CHECK_TRUE(held_out_rows_agree(leaving({1.0, 2.0}), leaving({1.0, 6.0})));
+  CHECK_FALSE(held_out_rows_agree(leaving({1.0, 6.0}), leaving({1.0, 6.0})));
+}
+
+TEST(Assessed, HeldOutRowsAtTheNoiseRefuteOnlyWhatMakesThemWorse) {
+  CHECK_TRUE(held_out_rows_agree(leaving({1.0, 1.02}), leaving({1.0, 1.02})));
+  CHECK_FALSE(held_out_rows_agree(leaving({1.0, 1.1}), leaving({1.0, 1.02})));
+  // At 1.42 times the noise of one channel what is missing is as large as the noise there.
+  CHECK_FALSE(held_out_rows_agree(leaving({1.0, 1.42}), leaving({1.0, 1.42})));
+}
+
 TEST(Assessed, ADeclaredParameterSixTolerancesOffReplacesSomethingAndAnEffectsOwnDoesNot) {
   Fitted model;
   model.free = declared_parameters(model.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});

@@ -261,4 +261,25 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   return best;
 }
 
+std::vector<ScoredForm> moved_forms(const FormRegression& regression, const LatentPlace& place,
+                                    const std::vector<ScoredForm>& elsewhere, const std::vector<ScoredForm>& here,
+                                    unsigned threads) {
+  std::vector<Form> forms;
+  for (const ScoredForm& other : elsewhere) {
+    if (std::ranges::none_of(here, [&](const ScoredForm& own) { return is_alike(own.form, other.form); })) {
+      Form form = other.form;
+      const Form at_site = at_place(place, form.argument, form.factor);
+      form.site = at_site.site;
+      form.channel = at_site.channel;
+      forms.push_back(std::move(form));
+    }
+  }
+  std::vector<ScoredForm> moved = scored(regression, std::move(forms), threads);
+  std::erase_if(moved, [](const ScoredForm& form) { return !std::isfinite(form.score.criterion); });
+  for (ScoredForm& form : moved) {
+    form = refined_form(regression, std::move(form), threads);
+  }
+  return moved;
+}
+
 }  // namespace hotfire::explain

@@ -20,4 +20,11 @@ struct ScoredForm {
 std::vector<ScoredForm> search_forms(const FormRegression& regression, const LatentPlace& place, std::size_t most,
                                      unsigned threads);
 
+/// Forms that were found at other places, scored at this one. The screening at one place may miss a law that it finds at a
+/// place which the records hardly separate from it. Each memory's parameter is refined here. Forms that `here` already has
+/// are left out.
+std::vector<ScoredForm> moved_forms(const FormRegression& regression, const LatentPlace& place,
+                                    const std::vector<ScoredForm>& elsewhere, const std::vector<ScoredForm>& here,
+                                    unsigned threads);
+
 }  // namespace hotfire::explain

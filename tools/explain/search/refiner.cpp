@@ -87,11 +87,7 @@ Assessed Refiner::of_screened(const Fitted& screened, std::span<const double> fr
   Fitted best = screened;
   double least = std::numeric_limits<double>::infinity();
   for (Fitted& start : starts) {
-    Prediction prediction;
-    if (!coarse_.predict(start.base, start.free, start.u, threads_, prediction)) {
-      continue;
-    }
-    const double left = Goodness::combined(goodness(coarse_.data(), prediction).fitted);
+    const double left = left_by(coarse_, start, threads_);
     if (left < least) {
       least = &start == &starts.front() ? left / kMovedTooFar : left;
       best = std::move(start);

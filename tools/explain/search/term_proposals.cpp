@@ -4,11 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <memory>
 
-#include "tools/explain/latent/form_search.hpp"
 #include "tools/explain/latent/oscillation_search.hpp"
 #include "tools/explain/policy/policy.hpp"
+#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/terms/assessed.hpp"
 
 namespace hotfire::explain {
 
@@ -20,6 +24,10 @@ constexpr double kMostRows = 25e3;
 constexpr std::size_t kFormsOfPlace = 6;
 /// How far a parameter of a memory may go from where the regression puts it, as a factor.
 constexpr double kReach = 100.0;
+/// Shares of a proposed term that are simulated, until less of it leaves more.
+constexpr std::array kSharesOfTerm{1.0, 0.5, 0.25, 0.12, 0.06, 0.03};
+/// Forms of a place that are tried at the others.
+constexpr std::ptrdiff_t kExchanged = 2;
 
 /// The effect of the model that is a term at the form's site.
 std::optional<Candidate> candidate_of(const Form& form) {
@@ -46,10 +54,10 @@ std::optional<Candidate> candidate_of(const Form& form) {
   return candidate;
 }
 
-/// Puts a form's values into the term's parameters.
-void set_values(ModelParameters& parameters, const Candidate& candidate, const ScoredForm& scored) {
+/// Puts a form's values into the term's parameters, with a share of its coefficients.
+void set_values(ModelParameters& parameters, const Candidate& candidate, const ScoredForm& scored, double share) {
   const Form& form = scored.form;
-  const Eigen::VectorXd& coefficients = scored.score.coefficients;
+  const Eigen::VectorXd coefficients = share * scored.score.coefficients;
   visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
     if constexpr (requires { E::is_term; }) {
       if (index != candidate.effect) {
@@ -79,6 +87,12 @@ void set_values(ModelParameters& parameters, const Candidate& candidate, const S
   });
 }
 
+std::vector<double> values_of(const ModelParameters& parameters) {
+  std::vector<double> values;
+  visit_values(parameters, [&](const double& value) { values.push_back(value); });
+  return values;
+}
+
 /// The coordinates of a term that a fit moves, each about the value that it has in `parameters`.
 std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, const Candidate& candidate, const Form& form,
                                            const Scales& scales) {
@@ -90,8 +104,7 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
     // A sampling period has no derivative.
     return is_unused_gain || is_of_curve || (form.memory.kind == model::Memory::hold && p.address.field == "time");
   });
-  std::vector<double> values;
-  visit_values(parameters, [&](const double& value) { values.push_back(value); });
+  const std::vector<double> values = values_of(parameters);
   double largest = 0.0;
   for (const FreeParameter& p : free) {
     largest = p.is_ordinate() ? std::max(largest, std::abs(values[p.index])) : largest;
@@ -112,84 +125,147 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
   return free;
 }
 
-std::optional<Screened> start_of(const Fitted& around, const ScoredForm& scored, const Scales& scales) {
-  const std::optional<Candidate> candidate = candidate_of(scored.form);
-  if (!candidate || is_active(around.base, candidate->effect) || !scored.score.coefficients.allFinite()) {
+/// The forms of one place, with the regression that found them.
+struct FormsOfPlace {
+  LatentPlace where;
+  std::unique_ptr<FormRegression> regression;
+  std::vector<ScoredForm> forms;
+};
+
+/// The forms that explain what is left as if it acted at one place. Quantities as simulated
+/// come first. Where their forms explain too little, those of smoothed quantities are searched too.
+FormsOfPlace forms_of_place(const LatentProblem& problem, const Place& place, unsigned threads) {
+  FormsOfPlace found{place.where, {}, {}};
+  LatentInput input;
+  input.prior = place.prior;
+  input.move = place.move;
+  smooth(problem, place.where, input);
+  for (const auto arguments : {FormRegression::Arguments::simulated, FormRegression::Arguments::smoothed}) {
+    found.regression = std::make_unique<FormRegression>(problem, place.where, input, arguments);
+    double least = found.regression->left_without();
+    for (ScoredForm& form : search_forms(*found.regression, place.where, kFormsOfPlace, threads)) {
+      least = std::min(least, form.score.left);
+      found.forms.push_back(std::move(form));
+    }
+    if (least < policy().left_by_single) {
+      break;
+    }
+    // A motion looks like an oscillation that it tunes itself: only what no other form explains is one.
+    if (arguments == FormRegression::Arguments::smoothed) {
+      if (auto oscillation = find_oscillation(*found.regression, place.where, threads)) {
+        FormScore score = found.regression->score({&*oscillation, 1}, threads).front();
+        found.forms.push_back({std::move(*oscillation), std::move(score)});
+      }
+    }
+  }
+  std::ranges::stable_sort(found.forms, {}, [](const ScoredForm& s) { return s.score.criterion; });
+  return found;
+}
+
+/// Gives every place the best forms of the others.
+void exchange_best(std::vector<FormsOfPlace>& places, unsigned threads) {
+  std::vector<std::vector<ScoredForm>> moved(places.size());
+  for (std::size_t to = 0; to < places.size(); ++to) {
+    for (std::size_t from = 0; from < places.size(); ++from) {
+      if (from != to && places[from].where.port && places[to].where.port) {
+        const auto& forms = places[from].forms;
+        const std::vector<ScoredForm> best(forms.begin(), forms.begin() + std::min(kExchanged, std::ssize(forms)));
+        std::ranges::move(moved_forms(*places[to].regression, places[to].where, best, places[to].forms, threads),
+                          std::back_inserter(moved[to]));
+      }
+    }
+  }
+  for (std::size_t to = 0; to < places.size(); ++to) {
+    std::ranges::move(moved[to], std::back_inserter(places[to].forms));
+  }
+}
+
+}  // namespace
+
+std::optional<Screened> start_of(const Fitted& around, const ScoredForm& proposed, const Scales& scales, double share) {
+  const std::optional<Candidate> candidate = candidate_of(proposed.form);
+  if (!candidate || is_active(around.base, candidate->effect) || !proposed.score.coefficients.allFinite()) {
     return std::nullopt;
   }
   Screened start;
   start.candidate = *candidate;
   start.fitted = around;
   activate(start.fitted.base, *candidate);
-  set_values(start.fitted.base, *candidate, scored);
-  Eigen::Index declared = 0;
-  for (std::size_t k = 0; k < around.free.size(); ++k) {
-    if (around.free[k].is_declared()) {
-      start.fitted.u[k] += scored.score.move(declared++);
-    }
-  }
-  std::vector<double> values;
-  visit_values(start.fitted.base, [&](const double& value) { values.push_back(value); });
-  for (const FreeParameter& p : free_parameters(start.fitted.base, *candidate, scored.form, scales)) {
+  // The units of its coordinates are those of the whole term, however little of it the fit starts with.
+  set_values(start.fitted.base, *candidate, proposed, 1.0);
+  const std::vector<FreeParameter> free = free_parameters(start.fitted.base, *candidate, proposed.form, scales);
+  set_values(start.fitted.base, *candidate, proposed, share);
+  const std::vector<double> values = values_of(start.fitted.base);
+  for (const FreeParameter& p : free) {
     start.fitted.u.push_back(p.coordinate(std::clamp(values[p.index], p.lower, p.upper)));
     start.fitted.free.push_back(p);
   }
-  start.criterion = scored.score.criterion;
+  Eigen::Index declared = 0;
+  for (std::size_t k = 0; k < around.free.size(); ++k) {
+    if (around.free[k].is_declared()) {
+      start.fitted.u[k] += share * proposed.score.move(declared++);
+    }
+  }
+  start.criterion = proposed.score.criterion;
   start.good = true;
   return start;
 }
 
-}  // namespace
+std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& around, const ScoredForm& proposed,
+                                   const Scales& scales, double without, unsigned threads) {
+  const Stopwatch stopwatch;
+  std::optional<Screened> best;
+  for (const double share : kSharesOfTerm) {
+    auto start = start_of(around, proposed, scales, share);
+    if (!start) {
+      break;
+    }
+    start->criterion = left_by(evaluator, start->fitted, threads);
+    if (start->criterion < (best ? best->criterion : without)) {
+      best = std::move(start);
+    } else if (best) {
+      break;
+    }
+  }
+  if (best) {
+    best->seconds = stopwatch.seconds();
+  }
+  return best;
+}
 
-std::vector<Screened> propose_terms(const Dataset& data, const Fitted& around, const Located& located, const Scales& scales,
-                                    unsigned threads, const Watch& watch) {
+std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around, const Located& located, unsigned threads,
+                                      const Watch& watch) {
   const Dataset thin = thinned_to_rows(data, kMostRows);
-  std::vector<Screened> proposals;
   const LatentProblem problem = latent_problem(thin, around, threads);
   if (problem.flows.empty()) {
-    return proposals;
+    return {};
+  }
+  std::vector<FormsOfPlace> places;
+  for (const Place& place : located.places) {
+    if (place.is_likely && !watch.interrupted()) {
+      watch.progress({Work::unlisted, fmt::format("regressing what is left on terms at {}", place.sites.front())});
+      places.push_back(forms_of_place(problem, place, threads));
+    }
+  }
+  if (places.empty()) {
+    return {};
+  }
+  const double without = places.front().regression->left_without();
+  if (!watch.interrupted()) {
+    exchange_best(places, threads);
   }
   std::vector<ScoredForm> forms;
-  double without = 0.0;
-  for (const Place& place : located.places) {
-    if (!place.is_likely || watch.interrupted()) {
-      continue;
-    }
-    watch.progress({Work::unlisted, fmt::format("regressing what is left on terms at {}", place.sites.front())});
-    LatentInput input;
-    input.prior = place.prior;
-    input.move = place.move;
-    smooth(problem, place.where, input);
-    for (const auto arguments : {FormRegression::Arguments::simulated, FormRegression::Arguments::smoothed}) {
-      const FormRegression regression(problem, place.where, input, arguments);
-      without = regression.left_without();
-      double least = without;
-      for (ScoredForm& form : search_forms(regression, place.where, kFormsOfPlace, threads)) {
-        least = std::min(least, form.score.left);
-        forms.push_back(std::move(form));
-      }
-      if (least < policy().left_by_single) {
-        break;
-      }
-      // A motion looks like an oscillation that it tunes itself: only what no other form explains is one.
-      if (arguments == FormRegression::Arguments::smoothed) {
-        if (auto oscillation = find_oscillation(regression, place.where, threads)) {
-          FormScore score = regression.score({&*oscillation, 1}, threads).front();
-          forms.push_back({std::move(*oscillation), std::move(score)});
-        }
-      }
-    }
+  for (FormsOfPlace& place : places) {
+    std::ranges::move(place.forms, std::back_inserter(forms));
   }
   std::ranges::stable_sort(forms, {}, [](const ScoredForm& s) { return s.score.criterion; });
-  for (const ScoredForm& form : forms) {
-    if (without - form.score.left < policy().little_explained * (without - forms.front().score.left)) {
-      continue;
-    }
-    if (auto start = start_of(around, form, scales)) {
-      proposals.push_back(std::move(*start));
-    }
-  }
-  return proposals;
+  const double least = forms.empty() ? without : forms.front().score.left;
+  std::erase_if(forms, [&](const ScoredForm& form) {
+    const auto candidate = candidate_of(form.form);
+    return without - form.score.left < policy().little_explained * (without - least) || !candidate ||
+           is_active(around.base, candidate->effect);
+  });
+  return forms;
 }
 
 }  // namespace hotfire::explain

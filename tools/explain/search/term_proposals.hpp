@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "tools/explain/latent/form_search.hpp"
 #include "tools/explain/latent/locate.hpp"
 #include "tools/explain/search/screening.hpp"
 
 namespace hotfire::explain {
 
-/// Terms of the grammar that explain most of what a model leaves, at the places that `located` allows: where a fit of each
-/// starts, with its coefficients by regression. The best first. A site that has a term already gets no second one.
-std::vector<Screened> propose_terms(const Dataset& data, const Fitted& around, const Located& located, const Scales& scales,
-                                    unsigned threads, const Watch& watch);
+/// Terms of the grammar that explain most of what a model leaves, at the places that `located` allows, with their
+/// coefficients by regression. The best first. A site that has a term already gets no second one.
+std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around, const Located& located, unsigned threads,
+                                      const Watch& watch);
+
+/// Where a fit of a proposed term starts: the model with a share of the term, and of the move of what was free before. None
+/// if the model has a term there already, or has no such term.
+std::optional<Screened> start_of(const Fitted& around, const ScoredForm& proposed, const Scales& scales, double share = 1.0);
+
+/// The start with the share of a proposed term that leaves least when it is simulated, which is its criterion. None if no
+/// share leaves less than `without`. The regression takes the motion as given, and the term changes it: at its full size it
+/// may make the axis run away, where a share of it leads the fit to the law.
+std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& around, const ScoredForm& proposed,
+                                   const Scales& scales, double without, unsigned threads);
 
 }  // namespace hotfire::explain

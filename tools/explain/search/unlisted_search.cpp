@@ -67,24 +67,21 @@ void order_by_site(std::vector<Screened>& proposals) {
   });
 }
 
-/// Proposed terms in the order of what they leave as they were proposed, simulated: the order of a linear regression is
-/// often wrong near its top, and a term that it proposes may make the axis run away. Those that leave no less than the model
-/// without them are not among them.
-std::vector<Screened> by_simulation(const Evaluator& evaluator, const Fitted& around, std::vector<Screened> proposals,
-                                    unsigned threads) {
-  const auto left_by = [&](const Fitted& model) {
-    Prediction prediction;
-    return evaluator.predict(model.base, model.free, model.u, threads, prediction)
-               ? Goodness::combined(goodness(evaluator.data(), prediction).fitted)
-               : std::numeric_limits<double>::infinity();
-  };
-  const double without = left_by(around);
-  for (Screened& proposal : proposals) {
-    proposal.criterion = left_by(proposal.fitted);
+/// Proposed terms in the order of what they leave, simulated: the order of a linear regression is often wrong near its top.
+std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& evaluator, const Fitted& around,
+                                    const std::vector<ScoredForm>& proposals) {
+  const double without = left_by(evaluator, around, task.threads);
+  std::vector<Screened> starts;
+  for (const ScoredForm& proposed : proposals) {
+    if (task.watch.interrupted()) {
+      break;
+    }
+    if (auto start = best_start(evaluator, around, proposed, task.scales, without, task.threads)) {
+      starts.push_back(std::move(*start));
+    }
   }
-  std::erase_if(proposals, [&](const auto& proposal) { return !(proposal.criterion < without); });
-  order_by_site(proposals);
-  return proposals;
+  order_by_site(starts);
+  return starts;
 }
 
 /// A short fit of the best forms of every site: where the effect is large, what a form leaves before any fit says little of
@@ -171,8 +168,8 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
 /// Terms of the grammar: proposed by regression, simulated, fitted shortly, and the best of every site fitted jointly.
 void fit_terms_of_grammar(const UnlistedTask& task, const Fitted& around, const Evaluator& evaluator,
                           UnlistedSearch& result) {
-  auto proposals = propose_terms(evaluator.data(), around, task.located, task.scales, task.threads, task.watch);
-  proposals = by_simulation(evaluator, around, std::move(proposals), task.threads);
+  auto proposals = by_simulation(task, evaluator, around,
+                                 propose_terms(evaluator.data(), around, task.located, task.threads, task.watch));
   fit_shortly(task.refiner, around.u, proposals, task.watch);
   fit_finalists(task, around.u, proposals, terms_to_fit(proposals), kCheck, result);
 }
@@ -237,9 +234,9 @@ void UnlistedSearch::mark_tied_sites() {
   }
 }
 
-bool UnlistedSearch::leaves_less_than(double share) const {
-  return best && trials[*best].delta_criterion < -policy().strong_evidence && trials[*best].held_out_ratio < share;
-}
+bool UnlistedSearch::has_evidence() const { return best && trials[*best].delta_criterion < -policy().strong_evidence; }
+
+bool UnlistedSearch::leaves_less_than(double share) const { return has_evidence() && trials[*best].held_out_ratio < share; }
 
 bool UnlistedSearch::leaves_material(const Dataset& data) const {
   return !best || excess_over_noise(data, model.prediction) > policy().immaterial;

@@ -21,7 +21,9 @@ struct UnlistedSearch {
   void add(UnlistedSearch other);
   /// Marks the terms at other sites that the records do not separate from the best.
   void mark_tied_sites();
-  /// True if the best is supported and leaves less than this share of that model's held-out error.
+  /// True if the fitted rows speak for the best.
+  bool has_evidence() const;
+  /// True if they do, and the best leaves less than this share of that model's held-out error.
   bool leaves_less_than(double share) const;
   /// True if what the best leaves is not immaterial.
   bool leaves_material(const Dataset& data) const;

@@ -61,7 +61,7 @@ bool UnlistedStage::is_worth_a_table() const { return data_.knows_unlisted() && 
 bool UnlistedStage::leaves_clearly_less(const Assessed& model, double share) const {
   const double left = excess_over_noise(data_, result_.explained.prediction);
   return left > policy().immaterial && excess_over_noise(data_, model.prediction) < share * left &&
-         held_out_ratio(model, result_.explained) < policy().held_out_less;
+         held_out_rows_agree(model, result_.explained);
 }
 
 /// The share of what the listed effects leave that a term of unknown law has to stay below.
@@ -152,7 +152,7 @@ bool UnlistedStage::is_better(const UnlistedSearch& found) const {
   const bool is_same = found.best && is_curve_of_the_same(found.trials[*found.best].candidate, result_.kept);
   const double share = is_same ? policy().little_explained : advantage();
   return found.leaves_less_than(share * left_by_listed()) ||
-         (found.leaves_less_than(1.0) && leaves_clearly_less(found.model, share));
+         (found.has_evidence() && leaves_clearly_less(found.model, share));
 }
 
 /// A signal at a place may explain the records by its prior alone: what acts for moments only is at odds with that of its
@@ -235,7 +235,7 @@ void UnlistedStage::add_beside() {
     beside.mark_tied_sites();
     const std::size_t first = result_.trials.size();
     result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
-    if (!beside.leaves_less_than(1.0) || !leaves_clearly_less(beside.model, policy().clearly_less) ||
+    if (!beside.has_evidence() || !leaves_clearly_less(beside.model, policy().clearly_less) ||
         !harm_of(data_, beside.model.prediction, result_.calibrated.prediction).empty()) {
       return;
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "tools/explain/policy/policy.hpp"
@@ -17,6 +18,13 @@ constexpr double kTemperStands = 0.2;
 constexpr double kStillFalling = 0.95;
 
 }  // namespace
+
+double left_by(const Evaluator& evaluator, const Fitted& model, unsigned threads) {
+  Prediction prediction;
+  return evaluator.predict(model.base, model.free, model.u, threads, prediction)
+             ? Goodness::combined(goodness(evaluator.data(), prediction).fitted)
+             : std::numeric_limits<double>::infinity();
+}
 
 Assessed assess(const Evaluator& fine, unsigned threads, const Fitted& fitted) {
   Assessed assessed{fitted, {}, {}};
@@ -124,6 +132,13 @@ double criterion_change(const Assessed& with, const Assessed& without, const std
 
 double held_out_ratio(const Assessed& with, const Assessed& without) {
   return error_ratio(with.goodness.held_out, without.goodness.held_out);
+}
+
+bool held_out_rows_agree(const Assessed& with, const Assessed& without) {
+  const bool they_contain_it = std::ranges::any_of(without.goodness.held_out, [](const ChannelFit& channel) {
+    return channel.mean_square - 1.0 > policy().visible * policy().visible;
+  });
+  return held_out_ratio(with, without) < (they_contain_it ? policy().held_out_less : 1.0 + policy().least_held_out_drop);
 }
 
 }  // namespace hotfire::explain

@@ -34,6 +34,9 @@ inline constexpr Effort kOverRipples{16, 2, 1e-4, Slopes::wide};  ///< out of a 
 inline constexpr Effort kFinal{30, 3, 1e-5};                      ///< what the report says
 inline constexpr Effort kAllRows{16, 1, 1e-5};                    ///< a small move: to the rows that were held out
 
+/// What a model leaves of the rows that a fit uses: Goodness::combined. Infinite if it could not be simulated.
+double left_by(const Evaluator& evaluator, const Fitted& model, unsigned threads);
+
 /// A model with what it predicts under fine steps.
 Assessed assess(const Evaluator& fine, unsigned threads, const Fitted& fitted);
 
@@ -88,5 +91,9 @@ double criterion_change(const Assessed& with, const Assessed& without, const std
 
 /// Held-out error of one model over that of another, as `error_ratio` counts it.
 double held_out_ratio(const Assessed& with, const Assessed& without);
+
+/// True if held-out rows confirm a model that explains more of the fitted ones. Held-out rows may contain nothing of what is
+/// missing, such as a limit that only the fastest motion reaches. Such rows can only refute it.
+bool held_out_rows_agree(const Assessed& with, const Assessed& without);
 
 }  // namespace hotfire::explain
