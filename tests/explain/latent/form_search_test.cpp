@@ -84,6 +84,18 @@ TEST(FormSearch, ACurveWithWavesIsFollowedToTheNoise) {
   CHECK(best.form.score.left < 1.3);
 }
 
+// At any other period the samples are soon out of step.
+TEST(FormSearch, AHeldSignalIsFoundAtItsOwnNumberOfRows) {
+  static constexpr int kRows = 5;
+  const Best best(with_reading([row = 0, held = 0.0](double command) mutable {
+    held = row++ % kRows == 0 ? command : held;
+    return 0.5 * (held - command);
+  }));
+  CHECK(best.form.form.memory.kind == Memory::hold);
+  CHECK(best.form.form.argument == Argument::command);
+  DOUBLES_EQUAL(kRows * 2e-3, best.form.form.memory.time, 1e-9);
+}
+
 // Half as wide again: the refinement goes on until the response explains most.
 TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
   static constexpr double kWidth = 2e-3;

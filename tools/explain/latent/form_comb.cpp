@@ -40,6 +40,8 @@ constexpr std::array kStopWidths{0.05, 0.15, 0.35, 0.7};
 constexpr double kNarrowestPlay = 0.04;
 constexpr double kWidestPlay = 0.7;
 constexpr int kPlays = 5;
+/// The longest time for which a signal is held, in rows: of 500 Hz a tenth of a second.
+constexpr int kMostRowsHeld = 50;
 /// Limits of a slew, over the 99th percentile of the argument's rate.
 constexpr double kSlowestSlew = 0.03;
 constexpr int kSlews = 7;
@@ -259,7 +261,9 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   for (int quarters = 3; quarters <= 40; ++quarters) {
     add(Memory::periodic, [&](auto& memory) { memory.width = 8.0 * size / quarters; });
   }
-  for (int rows = 3; rows <= 48; rows = rows + 1 + rows / 4) {
+  // At any other period than its own a held signal is soon out of step, and no fit moves it there. A logger that is
+  // synchronous with it has a whole number of rows. A product of two is held more rarely: its comb is coarser.
+  for (int rows = 2; rows <= kMostRowsHeld; rows += plain.factor ? 1 + rows / 4 : 1) {
     add(Memory::hold, [&](auto& memory) { memory.time = rows * period; });
   }
   Form stops = plain;
