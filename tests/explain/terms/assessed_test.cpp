@@ -46,6 +46,15 @@ TEST(Assessed, HeldOutRowsAtTheNoiseRefuteOnlyWhatMakesThemWorse) {
   CHECK_FALSE(held_out_rows_agree(leaving({1.0, 1.42}), leaving({1.0, 1.42})));
 }
 
+TEST(Assessed, BesideACalibrationBeyondItsTolerancesHeldOutRowsHaveToConfirm) {
+  Assessed calibrated = leaving({1.0, 1.02});
+  calibrated.model.free = declared_parameters(calibrated.model.base, {{"engine.inertia", 0.02}});
+  calibrated.model.u = {1.0};
+  CHECK_TRUE(held_out_rows_agree(leaving({1.0, 1.02}), calibrated));
+  calibrated.model.u = {7.0};
+  CHECK_FALSE(held_out_rows_agree(leaving({1.0, 1.02}), calibrated));
+}
+
 TEST(Assessed, ADeclaredParameterSixTolerancesOffReplacesSomethingAndAnEffectsOwnDoesNot) {
   Fitted model;
   model.free = declared_parameters(model.base, {{"engine.inertia", 0.02}, {"structure.stiffness", 0.05}});

@@ -138,7 +138,8 @@ bool held_out_rows_agree(const Assessed& with, const Assessed& without) {
   const bool they_contain_it = std::ranges::any_of(without.goodness.held_out, [](const ChannelFit& channel) {
     return channel.mean_square - 1.0 > policy().visible * policy().visible;
   });
-  return held_out_ratio(with, without) < (they_contain_it ? policy().held_out_less : 1.0 + policy().least_held_out_drop);
+  const bool must_confirm = they_contain_it || !is_within_tolerances(without.model);
+  return held_out_ratio(with, without) < (must_confirm ? policy().held_out_less : 1.0 + policy().least_held_out_drop);
 }
 
 }  // namespace hotfire::explain

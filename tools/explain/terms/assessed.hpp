@@ -94,6 +94,7 @@ double held_out_ratio(const Assessed& with, const Assessed& without);
 
 /// True if held-out rows confirm a model that explains more of the fitted ones. Held-out rows may contain nothing of what is
 /// missing, such as a limit that only the fastest motion reaches. Such rows can only refute it.
+/// Beside a calibration beyond its tolerances they have to confirm: that calibration may be what is wrong.
 bool held_out_rows_agree(const Assessed& with, const Assessed& without);
 
 }  // namespace hotfire::explain
