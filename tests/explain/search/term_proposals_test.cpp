@@ -43,7 +43,9 @@ std::vector<Screened> proposed_for(const ModelFile& truth, explain::Fitted aroun
   }
   std::vector<Screened> starts;
   for (const explain::ScoredForm& proposed : explain::propose_terms(data, around, located, 2, {})) {
-    starts.push_back(*explain::start_of(around, proposed, explain::Scales{}));
+    if (auto start = explain::start_of(around, proposed, explain::Scales{})) {
+      starts.push_back(std::move(*start));
+    }
   }
   return starts;
 }

@@ -189,10 +189,6 @@ std::vector<Form> screened(const FormRegression& regression, const std::vector<F
   return best;
 }
 
-}  // namespace
-
-namespace {
-
 /// Memories that are not linear, behind the curves that explain most without one.
 std::vector<ScoredForm> behind_best_curves(const FormRegression& regression, std::vector<ScoredForm> laid,
                                            unsigned threads) {

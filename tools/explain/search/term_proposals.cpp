@@ -132,8 +132,8 @@ struct FormsOfPlace {
   std::vector<ScoredForm> forms;
 };
 
-/// The forms that explain what is left as if it acted at one place. Quantities as simulated
-/// come first. Where their forms explain too little, those of smoothed quantities are searched too.
+/// The forms that explain what is left as if it acted at one place. Quantities as simulated come first. Where their forms
+/// explain too little, those of smoothed quantities are searched too.
 FormsOfPlace forms_of_place(const LatentProblem& problem, const Place& place, unsigned threads) {
   FormsOfPlace found{place.where, {}, {}};
   LatentInput input;
@@ -261,9 +261,7 @@ std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around,
   std::ranges::stable_sort(forms, {}, [](const ScoredForm& s) { return s.score.criterion; });
   const double least = forms.empty() ? without : forms.front().score.left;
   std::erase_if(forms, [&](const ScoredForm& form) {
-    const auto candidate = candidate_of(form.form);
-    return without - form.score.left < policy().little_explained * (without - least) || !candidate ||
-           is_active(around.base, candidate->effect);
+    return without - form.score.left < policy().little_explained * (without - least);
   });
   return forms;
 }

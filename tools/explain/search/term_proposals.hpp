@@ -11,12 +11,12 @@
 namespace hotfire::explain {
 
 /// Terms of the grammar that explain most of what a model leaves, at the places that `located` allows, with their
-/// coefficients by regression. The best first. A site that has a term already gets no second one.
+/// coefficients by regression. The best first.
 std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around, const Located& located, unsigned threads,
                                       const Watch& watch);
 
 /// Where a fit of a proposed term starts: the model with a share of the term, and of the move of what was free before. None
-/// if the model has a term there already, or has no such term.
+/// if the model has no such term, or has a term at that site already: no site gets a second one.
 std::optional<Screened> start_of(const Fitted& around, const ScoredForm& proposed, const Scales& scales, double share = 1.0);
 
 /// The start with the share of a proposed term that leaves least when it is simulated, which is its criterion. None if no
