@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <numeric>
 
 #include "tools/explain/latent/form_comb.hpp"
 
@@ -14,6 +16,27 @@ constexpr std::size_t kBins = 32;
 /// Rows between those that are looked at, and values that the bins are laid by.
 constexpr Eigen::Index kEvery = 4;
 constexpr std::size_t kSampled = 500;
+
+/// The rows of a column that are looked at.
+Eigen::VectorXd some_of(const Eigen::VectorXd& column) { return column(Eigen::seq(0, Eigen::last, Eigen::fix<kEvery>)); }
+
+void append(const Eigen::VectorXd& column, std::vector<double>& values) {
+  values.insert(values.end(), column.begin(), column.end());
+}
+
+/// True if the output of a row depends on that row alone.
+bool keeps_nothing(model::Memory kind) {
+  switch (kind) {
+    case model::Memory::none:
+    case model::Memory::quantise:
+    case model::Memory::dead_zone:
+    case model::Memory::saturation:
+    case model::Memory::periodic:
+      return true;
+    default:
+      return false;
+  }
+}
 
 }  // namespace
 
@@ -46,44 +69,53 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
 }
 
 SignalCorrelation::SignalCorrelation(const FormRegression& regression) : regression_(regression) {
-  double sum = 0.0;
   for (const Eigen::VectorXd& signal : regression.signal()) {
-    for (Eigen::Index row = 0; row < signal.size(); row += kEvery) {
-      signal_.push_back(signal(row));
-      sum += signal(row);
-    }
+    append(some_of(signal), signal_);
   }
-  const double mean = sum / static_cast<double>(signal_.size());
+  const double mean = std::accumulate(signal_.begin(), signal_.end(), 0.0) / static_cast<double>(signal_.size());
   std::ranges::transform(signal_, signal_.begin(), [&](double value) { return value - mean; });
 }
 
-std::vector<double> SignalCorrelation::output(const Form& form) const {
+std::vector<double> SignalCorrelation::output(const Form& form) const { return output(form, arguments_of(form)); }
+
+std::vector<Eigen::VectorXd> SignalCorrelation::arguments_of(const Form& form) const {
+  std::vector<Eigen::VectorXd> arguments;
+  for (const Eigen::MatrixXd& quantities : regression_.quantities()) {
+    arguments.push_back(argument_of(form, quantities));
+  }
+  return arguments;
+}
+
+std::vector<double> SignalCorrelation::output(const Form& form, const std::vector<Eigen::VectorXd>& arguments) const {
   std::vector<double> values;
   values.reserve(signal_.size());
-  for (std::size_t e = 0; e < regression_.quantities().size(); ++e) {
-    const Eigen::VectorXd argument = argument_of(form, regression_.quantities()[e]);
-    const Eigen::VectorXd own = remembered(form, argument, regression_.problem().data.experiments[e].period);
-    for (Eigen::Index row = 0; row < own.size(); row += kEvery) {
-      values.push_back(own(row));
+  for (std::size_t e = 0; e < arguments.size(); ++e) {
+    const double period = regression_.problem().data.experiments[e].period;
+    if (keeps_nothing(form.memory.kind)) {
+      append(remembered(form, some_of(arguments[e]), period), values);
+    } else {
+      append(some_of(remembered(form, arguments[e], period)), values);
     }
   }
   return values;
 }
 
-double SignalCorrelation::explained_share(const Form& form) const {
-  std::vector<double> values = output(form);
-  const double share = correlation_ratio(values, signal_);
-  if (!form.has_direct()) {
-    return share;
+std::vector<double> SignalCorrelation::explained_shares(std::span<const Form> forms) const {
+  const std::vector<Eigen::VectorXd> arguments = arguments_of(forms.front());
+  std::vector<double> argument;
+  for (const Eigen::VectorXd& whole : arguments) {
+    append(some_of(whole), argument);
   }
-  std::size_t i = 0;
-  for (const Eigen::MatrixXd& quantities : regression_.quantities()) {
-    const Eigen::VectorXd argument = argument_of(form, quantities);
-    for (Eigen::Index row = 0; row < argument.size(); row += kEvery) {
-      values[i++] -= argument(row);
+  std::vector<double> shares;
+  for (const Form& form : forms) {
+    std::vector<double> values = output(form, arguments);
+    shares.push_back(correlation_ratio(values, signal_));
+    if (form.has_direct()) {
+      std::ranges::transform(values, argument, values.begin(), std::minus<>());
+      shares.back() = std::max(shares.back(), correlation_ratio(values, signal_));
     }
   }
-  return std::max(share, correlation_ratio(values, signal_));
+  return shares;
 }
 
 }  // namespace hotfire::explain

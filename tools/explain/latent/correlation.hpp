@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -22,11 +23,15 @@ class SignalCorrelation {
   const std::vector<double>& signal() const { return signal_; }
   /// Output of a form without its curve, row by row as the signal.
   std::vector<double> output(const Form& form) const;
-  /// Share of the signal's variance that a function of the form's output explains, or of its output less its argument,
-  /// whichever is more.
-  double explained_share(const Form& form) const;
+  /// For each of several forms of one argument: the share of the signal's variance that a function of the form's output
+  /// explains, or of its output less its argument, whichever is more.
+  std::vector<double> explained_shares(std::span<const Form> forms) const;
 
  private:
+  /// What the form is a law of, by experiment.
+  std::vector<Eigen::VectorXd> arguments_of(const Form& form) const;
+  std::vector<double> output(const Form& form, const std::vector<Eigen::VectorXd>& arguments) const;
+
   const FormRegression& regression_;
   std::vector<double> signal_;
 };

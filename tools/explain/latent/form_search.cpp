@@ -2,9 +2,9 @@
 #include "tools/explain/latent/form_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "tools/explain/fit/parallel.hpp"
@@ -80,20 +80,29 @@ std::vector<ScoredForm> scored(const FormRegression& regression, std::vector<For
   return all;
 }
 
-/// Moves the parameter of a form's memory to where its response explains most.
-ScoredForm refined_form(const FormRegression& regression, ScoredForm best, unsigned threads) {
-  double factor = 1.25;
+/// Moves the parameters of forms' memories to where their responses explain most. The regression is nearly as fast with
+/// the neighbours of all of them as with those of one.
+void refine(const FormRegression& regression, std::vector<ScoredForm>& forms, unsigned threads) {
+  std::vector<double> factors(forms.size(), 1.25);
   for (int i = 0; i < kFormRefinements; ++i) {
-    bool moved = false;
-    for (ScoredForm& other : scored(regression, neighbours(best.form, factor), threads)) {
-      if (other.score.criterion < best.score.criterion) {
-        best = std::move(other);
-        moved = true;
+    std::vector<Form> beside;
+    std::vector<std::size_t> of;
+    for (std::size_t f = 0; f < forms.size(); ++f) {
+      std::ranges::move(neighbours(forms[f].form, factors[f]), std::back_inserter(beside));
+      of.resize(beside.size(), f);
+    }
+    std::vector<bool> moved(forms.size());
+    std::vector<ScoredForm> all = scored(regression, std::move(beside), threads);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      if (all[n].score.criterion < forms[of[n]].score.criterion) {
+        forms[of[n]] = std::move(all[n]);
+        moved[of[n]] = true;
       }
     }
-    factor = moved ? factor : std::sqrt(factor);
+    for (std::size_t f = 0; f < forms.size(); ++f) {
+      factors[f] = moved[f] ? factors[f] : std::sqrt(factors[f]);
+    }
   }
-  return best;
 }
 
 /// Moves the parameter of a form's memory to where a function of its output explains most of the signal: a curve that bends
@@ -101,26 +110,39 @@ ScoredForm refined_form(const FormRegression& regression, ScoredForm best, unsig
 void tune(const SignalCorrelation& correlation, ScoredForm& scored) {
   double factor = 1.2;
   for (int i = 0; i < kTunings; ++i) {
-    bool moved = false;
-    for (Form& form : neighbours(scored.form, factor)) {
-      const double left = 1.0 - correlation.explained_share(form);
-      if (left < scored.score.criterion) {
-        scored.form = std::move(form);
-        scored.score.criterion = left;
-        moved = true;
-      }
+    std::vector<Form> beside = neighbours(scored.form, factor);
+    if (beside.empty()) {
+      return;
     }
-    factor = moved ? factor : std::sqrt(factor);
+    const std::vector<double> shares = correlation.explained_shares(beside);
+    const auto best = std::ranges::max_element(shares);
+    if (1.0 - *best < scored.score.criterion) {
+      scored.form = std::move(beside[static_cast<std::size_t>(best - shares.begin())]);
+      scored.score.criterion = 1.0 - *best;
+    } else {
+      factor = std::sqrt(factor);
+    }
   }
 }
 
-/// How much of the smoothed signal a function of each form's output leaves.
+/// How much of the smoothed signal a function of each form's output leaves. Forms of one argument stand together.
 std::vector<ScoredForm> scored_by_signal(const SignalCorrelation& correlation, const std::vector<Form>& forms,
                                          unsigned threads) {
+  std::vector<std::span<const Form>> of_one_argument;
+  for (auto first = forms.begin(); first != forms.end();) {
+    const auto last = std::find_if_not(first, forms.end(), [&](const Form& form) { return is_of_same(form, *first); });
+    of_one_argument.emplace_back(first, last);
+    first = last;
+  }
   std::vector<ScoredForm> all(forms.size());
-  parallel_for(forms.size(), threads, [&](std::size_t i) {
-    all[i] = {forms[i], {}};
-    all[i].score.criterion = 1.0 - correlation.explained_share(forms[i]);
+  parallel_for(of_one_argument.size(), threads, [&](std::size_t g) {
+    const std::span<const Form> group = of_one_argument[g];
+    const std::vector<double> shares = correlation.explained_shares(group);
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      ScoredForm& scored = all[static_cast<std::size_t>(group.data() - forms.data()) + i];
+      scored.form = group[i];
+      scored.score.criterion = 1.0 - shares[i];
+    }
   });
   return all;
 }
@@ -162,17 +184,21 @@ std::vector<Form> screened_by_response(const FormRegression& regression, const s
   }
   std::vector<ScoredForm> all = scored(regression, std::move(forms), threads);
   keep_best(all, all.size());
-  std::vector<Form> best;
+  std::vector<ScoredForm> best;
   for (ScoredForm& scored : all) {
-    const auto of_same = std::ranges::count_if(best, [&](const Form& form) { return is_of_same(scored.form, form); });
+    const auto of_same =
+        std::ranges::count_if(best, [&](const ScoredForm& other) { return is_of_same(scored.form, other.form); });
     if (best.size() == kScreenedByResponse) {
       break;
     }
     if (of_same < kResponsesOfOne) {
-      best.push_back(refined_form(regression, std::move(scored), threads).form);
+      best.push_back(std::move(scored));
     }
   }
-  return best;
+  refine(regression, best, threads);
+  forms.clear();
+  std::ranges::transform(best, std::back_inserter(forms), &ScoredForm::form);
+  return forms;
 }
 
 /// The forms that go on: by the signal, then by the response those that are not among them.
@@ -250,9 +276,7 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
       std::stable_partition(laid.begin(), laid.end(), [](const ScoredForm& s) { return !s.form.has_curve(); });
   std::vector<ScoredForm> best = best_of_each({laid.begin(), curves}, kRefined);
   std::ranges::move(best_of_each({curves, laid.end()}, kRefined), std::back_inserter(best));
-  for (ScoredForm& form : best) {
-    form = refined_form(regression, std::move(form), threads);
-  }
+  refine(regression, best, threads);
   keep_best(best, most);
   return best;
 }
@@ -272,9 +296,7 @@ std::vector<ScoredForm> moved_forms(const FormRegression& regression, const Late
   }
   std::vector<ScoredForm> moved = scored(regression, std::move(forms), threads);
   std::erase_if(moved, [](const ScoredForm& form) { return !std::isfinite(form.score.criterion); });
-  for (ScoredForm& form : moved) {
-    form = refined_form(regression, std::move(form), threads);
-  }
+  refine(regression, moved, threads);
   return moved;
 }
 
