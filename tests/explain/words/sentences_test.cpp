@@ -11,6 +11,7 @@
 #include "tools/explain/result/trace.hpp"
 #include "tools/explain/result/verdict.hpp"
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/terms/unlisted_words.hpp"
 #include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/reasons.hpp"
 #include "tools/explain/words/refusals.hpp"
@@ -288,6 +289,7 @@ class EverySentence {
     if (const std::string law = law_in_words(term); !law.empty()) {
       check_.add(law);
     }
+    check_.add(in_words(with_own_axes({"at", "", "added", "m", "torque", {-1.0, 0.0, 1.0}, {-1.0, 0.2, 1.0}}, term)));
   }
 
   /// Tables that are constant, odd with a jump, even, rising, falling, and none of it.

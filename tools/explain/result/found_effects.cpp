@@ -62,13 +62,14 @@ void describe_unlisted(const ModelParameters& parameters, const SearchResult& fo
   effect.name = "unlisted";
   effect.sites = sites_of(kept);
   effect.is_not = what_it_is_not(found);
-  const auto table = table_of(parameters, candidate);
-  if (!table) {
+  const auto found_table = table_of(parameters, candidate);
+  if (!found_table) {
     effect.looks_like = law_in_words(candidate);
     return;
   }
-  effect.looks_like = in_words(*table);
-  effect.curve = Curve{{table->x_name, table->x_unit, table->meaning, table->y_unit}, {{"as found", table->x, table->y}}};
+  const FittedTable table = with_own_axes(*found_table, candidate);
+  effect.looks_like = in_words(table);
+  effect.curve = Curve{{table.x_name, table.x_unit, table.meaning, table.y_unit}, {{"as found", table.x, table.y}}};
 }
 
 }  // namespace

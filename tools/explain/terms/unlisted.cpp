@@ -84,10 +84,6 @@ std::optional<FittedTable> table_of(const ModelParameters& parameters, const Can
                            {table.y.begin(), table.y.begin() + table.points}};
     }
   });
-  if (result && is_oscillator(candidate)) {
-    result->y_unit = "Hz";
-    result->meaning = "frequency of an oscillator";
-  }
   return result;
 }
 

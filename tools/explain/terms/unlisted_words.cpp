@@ -52,7 +52,56 @@ std::string memory_of_term(const Candidate& candidate) {
   return std::string(kMemories[static_cast<std::size_t>(candidate.option)]);
 }
 
+/// "rad", "(m/s).(rad)": the unit of that argument.
+std::string unit_of_term(const Candidate& candidate) {
+  const auto factor = static_cast<std::size_t>(candidate.choices[1]);
+  const std::string_view own = model::kArgumentUnits[static_cast<std::size_t>(candidate.choices[0])];
+  const std::string_view other = factor == 0 ? "1" : model::kArgumentUnits[factor - 1];
+  if (own == "1" || other == "1") {
+    return std::string(own == "1" ? other : own);
+  }
+  return own == other ? fmt::format("({})^2", own) : fmt::format("({}).({})", own, other);
+}
+
+/// "addition to the flow": what a term adds at its site.
+std::string added_by_term(const Candidate& candidate) {
+  using model::Site;
+  using model::term::Names;
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kAdded{
+      {{Names<Site::command, -1>::name, "addition to the command"},
+       {Names<Site::valve_command, -1>::name, "addition to the valve command"},
+       {Names<Site::flow, -1>::name, "addition to the flow"},
+       {Names<Site::piston, -1>::name, "added force against the piston"},
+       {Names<Site::load_spring, -1>::name, "addition to the deflection of the load spring"},
+       {Names<Site::engine_torque, -1>::name, "added torque against the engine"},
+       {Names<Site::sensor, 0>::name, "addition to the reading of the piston"},
+       {Names<Site::sensor, 1>::name, "addition to the reading of the engine"}}};
+  return std::string(std::ranges::find(kAdded, candidate.name, &decltype(kAdded)::value_type::first)->second);
+}
+
 }  // namespace
+
+FittedTable with_own_axes(FittedTable table, const Candidate& candidate) {
+  if (candidate.choices.empty()) {
+    return table;
+  }
+  const bool curve_first = candidate.choices[2] == static_cast<int>(model::term::Order::curve_first);
+  const std::string memory = memory_of_term(candidate);
+  const std::string aside = memory.empty() ? memory : fmt::format(" ({})", memory.substr(2));  // without ", "
+  table.x_name = quantity_of_term(candidate) + (curve_first ? "" : aside);
+  table.x_unit = unit_of_term(candidate);
+  if (candidate.option == static_cast<int>(model::Memory::stops)) {
+    table.x_name = "the width of a stop operator of " + quantity_of_term(candidate);
+    table.meaning = added_by_term(candidate) + " for a unit of the operator";
+    table.y_unit = fmt::format("({})/({})", table.y_unit, table.x_unit);
+  } else if (is_oscillator(candidate)) {
+    table.meaning = "frequency of an oscillator";
+    table.y_unit = "Hz";
+  } else {
+    table.meaning = added_by_term(candidate) + (curve_first ? aside : "");
+  }
+  return table;
+}
 
 std::string in_words(const FittedTable& table) {
   const auto [least, most] = std::minmax_element(table.y.begin(), table.y.end());

@@ -19,6 +19,10 @@ struct FittedTable {
   std::vector<double> y;
 };
 
+/// The table of a term of the grammar with the quantity, the unit and the meaning that the term gives its axes; any other
+/// as it is.
+FittedTable with_own_axes(FittedTable table, const Candidate& candidate);
+
 /// What a table looks like in words: its size, whether it is odd, even or constant, rises or falls, jumps about zero.
 std::string in_words(const FittedTable& table);
 
