@@ -166,6 +166,7 @@ class EverySentence {
       check_.add(words::text(static_cast<words::LawChange>(i), label));
     }
     check_.add(words::leaves_far_above_noise(0.6));
+    check_.add(words::leaves_noise(0.998));
     check_.add(words::leaves(0.123) + words::replaces_listed(0.5));
     check_.add(words::explained_by_signal("load_spring or structure"));
     for (const std::string& harm :

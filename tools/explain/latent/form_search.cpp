@@ -125,7 +125,7 @@ void tune(const SignalCorrelation& correlation, ScoredForm& scored) {
   }
 }
 
-/// How much of the smoothed signal a function of each form's output leaves. Forms of one argument stand together.
+/// How much of the smoothed signal a function of each form's output leaves. Forms of one argument are adjacent.
 std::vector<ScoredForm> scored_by_signal(const SignalCorrelation& correlation, const std::vector<Form>& forms,
                                          unsigned threads) {
   std::vector<std::span<const Form>> of_one_argument;

@@ -30,7 +30,8 @@ namespace {
 /// Sets how a term of unknown law does against the model that it is tried beside, and says so.
 void compare_and_say(Trial& trial, const Assessed& with, const Assessed& beside) {
   compare(trial, with, beside, with.goodness.fitted);
-  trial.reason = words::leaves(trial.held_out_ratio);
+  trial.reason =
+      held_out_rows_contain_more(beside) ? words::leaves(trial.held_out_ratio) : words::leaves_noise(trial.held_out_ratio);
 }
 
 /// Terms of the grammar that are fitted jointly, of those that were proposed: one of every site, or two of one.

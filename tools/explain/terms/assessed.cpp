@@ -134,11 +134,14 @@ double held_out_ratio(const Assessed& with, const Assessed& without) {
   return error_ratio(with.goodness.held_out, without.goodness.held_out);
 }
 
-bool held_out_rows_agree(const Assessed& with, const Assessed& without) {
-  const bool they_contain_it = std::ranges::any_of(without.goodness.held_out, [](const ChannelFit& channel) {
+bool held_out_rows_contain_more(const Assessed& model) {
+  return std::ranges::any_of(model.goodness.held_out, [](const ChannelFit& channel) {
     return channel.mean_square - 1.0 > policy().visible * policy().visible;
   });
-  const bool must_confirm = they_contain_it || !is_within_tolerances(without.model);
+}
+
+bool held_out_rows_agree(const Assessed& with, const Assessed& without) {
+  const bool must_confirm = held_out_rows_contain_more(without) || !is_within_tolerances(without.model);
   return held_out_ratio(with, without) < (must_confirm ? policy().held_out_less : 1.0 + policy().least_held_out_drop);
 }
 

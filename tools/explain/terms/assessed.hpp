@@ -92,6 +92,9 @@ double criterion_change(const Assessed& with, const Assessed& without, const std
 /// Held-out error of one model over that of another, as `error_ratio` counts it.
 double held_out_ratio(const Assessed& with, const Assessed& without);
 
+/// True if held-out rows show more than noise of what a model is missing.
+bool held_out_rows_contain_more(const Assessed& model);
+
 /// True if held-out rows confirm a model that explains more of the fitted ones. Held-out rows may contain nothing of what is
 /// missing, such as a limit that only the fastest motion reaches. Such rows can only refute it.
 /// Beside a calibration beyond its tolerances they have to confirm: that calibration may be what is wrong.

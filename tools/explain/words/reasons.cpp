@@ -54,6 +54,8 @@ std::string leaves(double share_of_error) {
   return fmt::format("leaves {:.1f} % of the held-out error", 100.0 * share_of_error);
 }
 
+std::string leaves_noise(double share_of_error) { return leaves(share_of_error) + ", which is mostly noise"; }
+
 std::string leaves_far_above_noise(double share_of_error) {
   return fmt::format("leaves {:.0f} % of the held-out error, far above the noise", 100.0 * share_of_error);
 }

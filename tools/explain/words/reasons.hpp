@@ -37,6 +37,8 @@ std::string changes_too_little(double share_of_error, double criterion);
 std::string is_better(const std::string& label, double criterion);
 std::string is_tied(const std::string& label, double criterion);
 std::string leaves(double share_of_error);
+/// The same where the held-out error of the other model is that of noise, of which nothing can be explained.
+std::string leaves_noise(double share_of_error);
 std::string leaves_far_above_noise(double share_of_error);
 std::string replaces_listed(double share_left_by_listed);
 std::string explained_by_signal(const std::string& sites);
