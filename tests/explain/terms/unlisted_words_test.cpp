@@ -59,7 +59,13 @@ TEST(UnlistedWords, AnOscillatorIsTunedInHertzAndAStopOperatorIsWeighted) {
   STRCMP_EQUAL("Hz", shown(Memory::oscillator, Argument::flow, 0, Order::curve_last).y_unit.c_str());
   const FittedTable stops = shown(Memory::stops, Argument::position, 0, Order::curve_last);
   STRCMP_EQUAL("(m^3/s)/(m)", stops.y_unit.c_str());
-  STRCMP_CONTAINS("stop operator of position", stops.x_name.c_str());
+  STRCMP_EQUAL("stop width of position", stops.x_name.c_str());
+  STRCMP_EQUAL("m^3/s", shown(Memory::stops, Argument::spool, 0, Order::curve_last).y_unit.c_str());
+}
+
+TEST(UnlistedWords, OfAQuantityWithoutDimensionNoUnitIsSaid) {
+  STRCMP_CONTAINS("over spool from -0.01 to 0.01. Beyond",
+                  explain::in_words(shown(Memory::none, Argument::spool, 0, Order::curve_last)).c_str());
 }
 
 TEST(UnlistedWords, AnyOtherTableKeepsItsAxes) {

@@ -63,6 +63,11 @@ std::string unit_of_term(const Candidate& candidate) {
   return own == other ? fmt::format("({})^2", own) : fmt::format("({}).({})", own, other);
 }
 
+/// "0.01 m"; "0.01" of what has no dimension.
+std::string with_unit(double value, const std::string& unit) {
+  return fmt::format("{:.3g}", value) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
+
 /// "addition to the flow": what a term adds at its site.
 std::string added_by_term(const Candidate& candidate) {
   using model::Site;
@@ -85,19 +90,21 @@ FittedTable with_own_axes(FittedTable table, const Candidate& candidate) {
   if (candidate.choices.empty()) {
     return table;
   }
-  const bool curve_first = candidate.choices[2] == static_cast<int>(model::term::Order::curve_first);
-  const std::string memory = memory_of_term(candidate);
-  const std::string aside = memory.empty() ? memory : fmt::format(" ({})", memory.substr(2));  // without ", "
-  table.x_name = quantity_of_term(candidate) + (curve_first ? "" : aside);
+  const std::string quantity = quantity_of_term(candidate);
   table.x_unit = unit_of_term(candidate);
   if (candidate.option == static_cast<int>(model::Memory::stops)) {
-    table.x_name = "the width of a stop operator of " + quantity_of_term(candidate);
-    table.meaning = added_by_term(candidate) + " for a unit of the operator";
-    table.y_unit = fmt::format("({})/({})", table.y_unit, table.x_unit);
+    table.x_name = "stop width of " + quantity;
+    table.meaning = "weight of a stop operator";
+    table.y_unit = table.x_unit == "1" ? table.y_unit : fmt::format("({})/({})", table.y_unit, table.x_unit);
   } else if (is_oscillator(candidate)) {
+    table.x_name = quantity;
     table.meaning = "frequency of an oscillator";
     table.y_unit = "Hz";
   } else {
+    const std::string memory = memory_of_term(candidate);
+    const std::string aside = memory.empty() ? memory : fmt::format(" ({})", memory.substr(2));  // without ", "
+    const bool curve_first = candidate.choices[2] == static_cast<int>(model::term::Order::curve_first);
+    table.x_name = quantity + (curve_first ? "" : aside);
     table.meaning = added_by_term(candidate) + (curve_first ? aside : "");
   }
   return table;
@@ -106,8 +113,8 @@ FittedTable with_own_axes(FittedTable table, const Candidate& candidate) {
 std::string in_words(const FittedTable& table) {
   const auto [least, most] = std::minmax_element(table.y.begin(), table.y.end());
   std::string text = fmt::format(
-      "{} from {:.3g} to {:.3g} {} over {} from {:.3g} to {:.3g} {}. Beyond these bounds the value at the end holds",
-      table.meaning, *least, *most, table.y_unit, table.x_name, table.x.front(), table.x.back(), table.x_unit);
+      "{} from {:.3g} to {} over {} from {:.3g} to {}. Beyond these bounds the value at the end holds", table.meaning,
+      *least, with_unit(*most, table.y_unit), table.x_name, table.x.front(), with_unit(table.x.back(), table.x_unit));
   constexpr int kSamples = 101;
   const double reach = std::min(std::abs(table.x.front()), std::abs(table.x.back()));
   const bool two_sided = table.x.front() < 0.0 && table.x.back() > 0.0;
