@@ -33,6 +33,7 @@ TEST(UnlistedWords, ACurveOfATermIsOverTheQuantityOfTheTermInItsUnit) {
   const FittedTable table = shown(Memory::resonance, Argument::error, 0, Order::curve_first);
   STRCMP_EQUAL("error", table.x_name.c_str());
   STRCMP_EQUAL("m", table.x_unit.c_str());
+  STRCMP_EQUAL("addition to the flow", table.y_name.c_str());
   STRCMP_EQUAL("addition to the flow (through a resonance)", table.meaning.c_str());
   STRCMP_EQUAL("m^3/s", table.y_unit.c_str());
   STRCMP_CONTAINS("addition to the flow (through a resonance) from -0.0001 to 0.0003 m^3/s over error from -0.01 to 0.01 m.",

@@ -69,7 +69,9 @@ void describe_unlisted(const ModelParameters& parameters, const SearchResult& fo
   }
   const FittedTable table = with_own_axes(*found_table, candidate);
   effect.looks_like = in_words(table);
-  effect.curve = Curve{{table.x_name, table.x_unit, table.meaning, table.y_unit}, {{"as found", table.x, table.y}}};
+  // Beside an axis there is room for a few words.
+  const std::string& y_label = candidate.choices.empty() ? table.meaning : table.y_name;
+  effect.curve = Curve{{table.x_name, table.x_unit, y_label, table.y_unit}, {{"as found", table.x, table.y}}};
 }
 
 }  // namespace

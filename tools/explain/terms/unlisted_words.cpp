@@ -94,18 +94,19 @@ FittedTable with_own_axes(FittedTable table, const Candidate& candidate) {
   table.x_unit = unit_of_term(candidate);
   if (candidate.option == static_cast<int>(model::Memory::stops)) {
     table.x_name = "stop width of " + quantity;
-    table.meaning = "weight of a stop operator";
+    table.y_name = table.meaning = "weight of a stop operator";
     table.y_unit = table.x_unit == "1" ? table.y_unit : fmt::format("({})/({})", table.y_unit, table.x_unit);
   } else if (is_oscillator(candidate)) {
     table.x_name = quantity;
-    table.meaning = "frequency of an oscillator";
+    table.y_name = table.meaning = "frequency of an oscillator";
     table.y_unit = "Hz";
   } else {
     const std::string memory = memory_of_term(candidate);
     const std::string aside = memory.empty() ? memory : fmt::format(" ({})", memory.substr(2));  // without ", "
     const bool curve_first = candidate.choices[2] == static_cast<int>(model::term::Order::curve_first);
     table.x_name = quantity + (curve_first ? "" : aside);
-    table.meaning = added_by_term(candidate) + (curve_first ? aside : "");
+    table.y_name = added_by_term(candidate);
+    table.meaning = table.y_name + (curve_first ? aside : "");
   }
   return table;
 }
