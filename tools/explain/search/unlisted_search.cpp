@@ -128,16 +128,6 @@ std::string objection(const UnlistedTask& task, const Assessed& with, const Cand
   return harm.empty() ? std::string() : "; " + words::refused(harm);
 }
 
-/// True if a term goes before the best so far: it leaves less on held-out rows. Rows without the effect do not rank curves.
-bool goes_before(const UnlistedTask& task, const Trial& trial, const Fitted& model, const UnlistedSearch& result) {
-  const Trial& best = result.trials[*result.best];
-  const bool rows_rank = held_out_rows_contain_more(task.beside);
-  const auto error = [&](const Trial& of, const Fitted& its_model) {
-    return ranking_error(of.held_out_ratio, rows_rank && table_of(its_model.parameters(), of.candidate));
-  };
-  return error(trial, model) < error(best, result.model.model);
-}
-
 /// Fits the first of what was screened with everything else, until there are `most` that nothing speaks against, and files
 /// all of them. Those behind one that leaves no more than noise are not fitted: they promised less.
 void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, const std::vector<Screened>& screened,
@@ -165,7 +155,7 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
           const std::size_t replacement = may_replace > 0 ? 1 : 0;
           to_fit += replacement;
           may_replace -= replacement;
-        } else if (!result.best || goes_before(task, trial, finalist.model, result)) {
+        } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
           result.model = std::move(finalist);
         }
@@ -220,10 +210,6 @@ void settle_best(const UnlistedTask& task, UnlistedSearch& result) {
 }
 
 }  // namespace
-
-double ranking_error(double held_out_ratio, bool has_curve) {
-  return has_curve ? (1.0 + policy().scatter) * held_out_ratio : held_out_ratio;
-}
 
 void UnlistedSearch::add(UnlistedSearch other) {
   if (other.best && (!best || other.trials[*other.best].held_out_ratio < trials[*best].held_out_ratio)) {

@@ -10,10 +10,6 @@
 
 namespace hotfire::explain {
 
-/// The held-out error by which terms of unknown law are ranked. A curve has many points and is constant beyond its bounds,
-/// where a gain goes on: it has to leave less than a gain by the scatter of an estimate.
-double ranking_error(double held_out_ratio, bool has_curve);
-
 /// What terms of unknown law reach, each alone beside a model.
 struct UnlistedSearch {
   std::vector<Trial> trials;        ///< the best in screening first; none is kept yet
