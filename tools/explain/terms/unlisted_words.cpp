@@ -31,25 +31,31 @@ std::string quantity_of_term(const Candidate& candidate) {
          (factor == 0 ? "" : " times " + words::spoken(model::term::kFactorNames[factor]));
 }
 
-/// ", through a delay": its memory; empty if it has none.
+/// "through a delay": its memory; empty if it has none.
 std::string memory_of_term(const Candidate& candidate) {
   constexpr std::array<std::string_view, model::kMemoryNames.size()> kMemories{"",
-                                                                               ", through a delay",
-                                                                               ", through a first-order lag",
-                                                                               ", through a washout filter",
-                                                                               ", through a resonance",
-                                                                               ", through a band-pass filter",
-                                                                               ", with hysteresis",
-                                                                               ", through play",
-                                                                               ", through a stop operator",
-                                                                               ", through a rate limit",
-                                                                               ", through a sample-and-hold",
-                                                                               ", through quantisation",
-                                                                               ", through a dead zone",
-                                                                               ", through saturation",
-                                                                               ", through a periodic function",
-                                                                               ", through the frequency of an oscillator"};
+                                                                               "through a delay",
+                                                                               "through a first-order lag",
+                                                                               "through a washout filter",
+                                                                               "through a resonance",
+                                                                               "through a band-pass filter",
+                                                                               "with hysteresis",
+                                                                               "through play",
+                                                                               "through a stop operator",
+                                                                               "through a rate limit",
+                                                                               "through a sample-and-hold",
+                                                                               "through quantisation",
+                                                                               "through a dead zone",
+                                                                               "through saturation",
+                                                                               "through a periodic function",
+                                                                               "through the frequency of an oscillator"};
   return std::string(kMemories[static_cast<std::size_t>(candidate.option)]);
+}
+
+/// "load pressure, through a delay": both.
+std::string dependence_of_term(const Candidate& candidate) {
+  const std::string memory = memory_of_term(candidate);
+  return quantity_of_term(candidate) + (memory.empty() ? "" : ", " + memory);
 }
 
 /// "rad", "(m/s).(rad)": the unit of that argument.
@@ -102,7 +108,7 @@ FittedTable with_own_axes(FittedTable table, const Candidate& candidate) {
     table.y_unit = "Hz";
   } else {
     const std::string memory = memory_of_term(candidate);
-    const std::string aside = memory.empty() ? memory : fmt::format(" ({})", memory.substr(2));  // without ", "
+    const std::string aside = memory.empty() ? memory : fmt::format(" ({})", memory);
     const bool curve_first = candidate.choices[2] == static_cast<int>(model::term::Order::curve_first);
     table.x_name = quantity + (curve_first ? "" : aside);
     table.y_name = added_by_term(candidate);
@@ -155,7 +161,7 @@ std::string in_words(const FittedTable& table) {
 
 std::string law_in_words(const Candidate& candidate) {
   if (!candidate.choices.empty()) {
-    return "proportional to " + quantity_of_term(candidate) + memory_of_term(candidate);
+    return "proportional to " + dependence_of_term(candidate);
   }
   if (is_periodic(candidate)) {
     return "a sinusoid of one frequency and one amplitude over the whole of every record, independent of the motion";
@@ -184,7 +190,7 @@ std::string law_in_words(const Candidate& candidate) {
 
 std::string dependence_in_words(const Candidate& candidate) {
   if (!candidate.choices.empty()) {
-    return "that depends on " + quantity_of_term(candidate) + memory_of_term(candidate);
+    return "that depends on " + dependence_of_term(candidate);
   }
   if (is_periodic(candidate)) {
     return "that is a sinusoid over time";
