@@ -19,9 +19,11 @@ class Simplex : public Axis<S, List> {
  public:
   using typename Axis<S, List>::Advance;
   using typename Axis<S, List>::State;
-  using Axis<S, List>::Axis;
   static constexpr std::string_view topology = "simplex";
   static constexpr int kPasses = 2;
+
+  /// Constants of a run at step `h` [s].
+  Simplex(const typename Axis<S, List>::Parameters& parameters, double h);
 
   /// The longest step [s] at these parameters: a fifth of a cycle of the piston on its oil and its load spring, 365 Hz on
   /// the reference axis. What is not linear is held over a step.
@@ -37,7 +39,7 @@ class Simplex : public Axis<S, List> {
   }
 
   /// The steady state under a constant command [rad]: set-up only.
-  State steady(const S& command) const { return this->settled(command, Uncoupled{}); }
+  State steady(const S& command) const;
 
   /// The same beside another axis, whose motion is given: `around(angle)` is the `Coupling` at the axis's own angle [rad].
   template <class Around>
@@ -57,9 +59,7 @@ class Simplex : public Axis<S, List> {
   }
 
   /// Advances by one step with the command [rad] held.
-  void step(State& state, const S& command) const noexcept {
-    step(state, command, [](const S&) { return Uncoupled{}; });
-  }
+  void step(State& state, const S& command) const noexcept;
 
   /// The same beside another axis: `around(angle)` is the `Coupling` over the step at the axis's own mean angle.
   template <class Around>
@@ -73,5 +73,22 @@ class Simplex : public Axis<S, List> {
     this->finish(state, advance);
   }
 };
+
+template <class S, class List>
+Simplex<S, List>::Simplex(const typename Axis<S, List>::Parameters& parameters, double h) : Axis<S, List>(parameters, h) {}
+
+template <class S, class List>
+typename Simplex<S, List>::State Simplex<S, List>::steady(const S& command) const {
+  return this->settled(command, Uncoupled{});
+}
+
+template <class S, class List>
+void Simplex<S, List>::step(State& state, const S& command) const noexcept {
+  step(state, command, [](const S&) { return Uncoupled{}; });
+}
+
+#ifdef HOTFIRE_COMPILED_PLANTS
+extern template class Simplex<double>;
+#endif
 
 }  // namespace hotfire::model

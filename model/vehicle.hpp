@@ -89,19 +89,7 @@ class Vehicle {
 
   /// Constants of a run at step `h` [s]. But for constant arms, an axis's moment arm is that of its attach points at zero
   /// angles: the declared one is not read.
-  Vehicle(const Parameters& parameters, double h)
-      : h_(h),
-        axes_(axes_of(parameters, h, std::make_index_sequence<kAxes>{})),
-        structure_(parameters.modes, h),
-        gimbals_(gimbals_of(parameters, h, std::make_index_sequence<Engines>{})) {
-    std::array<S, Engines> thrust{};
-    for (int e = 0; e < Engines; ++e) {
-      const GimbalBearing<S>& bearing = gimbals_[at(e)].bearing;
-      thrust[at(e)] = bearing.thrust;
-      stiffens_ = stiffens_ || value_of(bearing.unloaded_structure) < 1.0 || value_of(bearing.unloaded_stiffness) < 1.0;
-    }
-    give_ = give_under(thrust);
-  }
+  Vehicle(const Parameters& parameters, double h);
 
   double step_size() const noexcept { return h_; }
   const AxisModel& axis(int i) const noexcept { return axes_[at(i)]; }
@@ -115,42 +103,7 @@ class Vehicle {
   State steady(const std::array<S, kAxes>& commands, const std::array<S, Engines>& thrust = {}) const;
 
   /// Advances by one step.
-  void step(State& state, const Inputs& inputs) const noexcept {
-    Step step;
-    for (int i = 0; i < kAxes; ++i) {
-      axes_[at(i)].begin(state.axes[at(i)], inputs.commands[at(i)], step.axes[at(i)]);
-    }
-    structure_.begin(state.structure, step.structure);
-    for (int e = 0; e < Engines; ++e) {
-      const Gimbal& gimbal = gimbals_[at(e)];
-      step.thrust[at(e)] = gimbal.bearing.thrust + inputs.thrust[at(e)];
-      gimbal.spring.begin(state.gimbals[at(e)].bearing, step.bearings[at(e)]);
-      step.vibrating[at(e)] = gimbal.bearing.vibration_under(step.thrust[at(e)]);
-      step.vibration[at(e)] = {inputs.vibration[at(2 * e)], inputs.vibration[at(2 * e + 1)]};
-      if (gimbal.vibrates) {
-        step.vibration[at(e)] =
-            step.vibration[at(e)] + step.vibrating[at(e)] * vibration_over(gimbal.vibration, state.tick, h_);
-      }
-    }
-    step.force = inputs.force;
-    step.torque = inputs.torque;
-    if (stiffens_) {
-      step.give = give_under(step.thrust);
-    }
-    for (int pass = 0; pass < kPasses; ++pass) {
-      evaluate(state, step, pass + 1 == kPasses ? Keep::yes : Keep::no);
-    }
-    for (int i = 0; i < kAxes; ++i) {
-      axes_[at(i)].finish(state.axes[at(i)], step.axes[at(i)]);
-    }
-    structure_.finish(state.structure, step.structure);
-    for (int e = 0; e < Engines; ++e) {
-      GimbalState& own = state.gimbals[at(e)];
-      gimbals_[at(e)].spring.finish(own.bearing, step.bearings[at(e)], bearing_force(state, step, e), own.torque);
-    }
-    ++state.tick;
-    gather(state);
-  }
+  void step(State& state, const Inputs& inputs) const noexcept;
 
   static const std::array<S, kAxes * kChannels>& measured(const State& state) noexcept { return state.measured; }
 
@@ -387,11 +340,54 @@ class Vehicle {
   bool stiffens_ = false;  ///< structure or bearings are stiffer under thrust
 };
 
+template <class S, int Engines, int Capacity, class List>
+void Vehicle<S, Engines, Capacity, List>::step(State& state, const Inputs& inputs) const noexcept {
+  Step step;
+  for (int i = 0; i < kAxes; ++i) {
+    axes_[at(i)].begin(state.axes[at(i)], inputs.commands[at(i)], step.axes[at(i)]);
+  }
+  structure_.begin(state.structure, step.structure);
+  for (int e = 0; e < Engines; ++e) {
+    const Gimbal& gimbal = gimbals_[at(e)];
+    step.thrust[at(e)] = gimbal.bearing.thrust + inputs.thrust[at(e)];
+    gimbal.spring.begin(state.gimbals[at(e)].bearing, step.bearings[at(e)]);
+    step.vibrating[at(e)] = gimbal.bearing.vibration_under(step.thrust[at(e)]);
+    step.vibration[at(e)] = {inputs.vibration[at(2 * e)], inputs.vibration[at(2 * e + 1)]};
+    if (gimbal.vibrates) {
+      step.vibration[at(e)] =
+          step.vibration[at(e)] + step.vibrating[at(e)] * vibration_over(gimbal.vibration, state.tick, h_);
+    }
+  }
+  step.force = inputs.force;
+  step.torque = inputs.torque;
+  if (stiffens_) {
+    step.give = give_under(step.thrust);
+  }
+  for (int pass = 0; pass < kPasses; ++pass) {
+    evaluate(state, step, pass + 1 == kPasses ? Keep::yes : Keep::no);
+  }
+  for (int i = 0; i < kAxes; ++i) {
+    axes_[at(i)].finish(state.axes[at(i)], step.axes[at(i)]);
+  }
+  structure_.finish(state.structure, step.structure);
+  for (int e = 0; e < Engines; ++e) {
+    GimbalState& own = state.gimbals[at(e)];
+    gimbals_[at(e)].spring.finish(own.bearing, step.bearings[at(e)], bearing_force(state, step, e), own.torque);
+  }
+  ++state.tick;
+  gather(state);
+}
+
 /// The presets, with the modes that their memory holds.
 template <class S>
 using Taos = Vehicle<S, 1, 32, SimplexEffects>;
 template <class S>
 using Masv = Vehicle<S, 4, 64, MasvEffects>;
+
+#ifdef HOTFIRE_COMPILED_PLANTS
+extern template class Vehicle<double, 1, 32, SimplexEffects>;
+extern template class Vehicle<double, 4, 64, MasvEffects>;
+#endif
 
 }  // namespace hotfire::model
 

@@ -5,8 +5,23 @@
 
 namespace hotfire::model {
 
-// Where the forces of a vehicle balance: at rest, and within one pass of a step. The members of `Vehicle` that are not its
-// passes; vehicle.hpp says what they do.
+// The set-up of a vehicle, and where its forces balance: at rest, and within one pass of a step. The members of `Vehicle`
+// that are not its passes; vehicle.hpp says what they do.
+
+template <class S, int Engines, int Capacity, class List>
+Vehicle<S, Engines, Capacity, List>::Vehicle(const Parameters& parameters, double h)
+    : h_(h),
+      axes_(axes_of(parameters, h, std::make_index_sequence<kAxes>{})),
+      structure_(parameters.modes, h),
+      gimbals_(gimbals_of(parameters, h, std::make_index_sequence<Engines>{})) {
+  std::array<S, Engines> thrust{};
+  for (int e = 0; e < Engines; ++e) {
+    const GimbalBearing<S>& bearing = gimbals_[at(e)].bearing;
+    thrust[at(e)] = bearing.thrust;
+    stiffens_ = stiffens_ || value_of(bearing.unloaded_structure) < 1.0 || value_of(bearing.unloaded_stiffness) < 1.0;
+  }
+  give_ = give_under(thrust);
+}
 
 template <class S, int Engines, int Capacity, class List>
 typename Vehicle<S, Engines, Capacity, List>::State Vehicle<S, Engines, Capacity, List>::steady(
