@@ -16,9 +16,12 @@
 namespace hotfire::model {
 
 /// A mass driven by a measured force: inertia x'' + damping x' + stiffness x = force - effects. The modal hammer test of
-/// [SD] eq. 8, a bench mass, an electromechanical stage. Units are whatever consistent set the record has.
+/// [SD] eq. 8, a bench mass, an electromechanical stage, a motor with a tachometer. Units are whatever consistent set the
+/// record has.
 ///
-/// Discretised as `Simplex` is: exact hold of the linear part, effects held at the mean of the step's ends, two passes.
+/// Discretised as `Simplex` is: exact hold of the linear part, effects held at the mean of the step's ends, two passes. The
+/// acceleration at the end of a step is that of the mean over the last two steps, continued by half a step: second order
+/// where the motion is smooth.
 template <class S, class List = DirectEffects>
 class Direct {
  public:
@@ -26,8 +29,9 @@ class Direct {
   using Effects = List;
   static constexpr std::string_view topology = "direct";
   static constexpr std::string_view input_channel = "force";
-  static constexpr std::array<std::string_view, 1> channels{"position"};
-  static constexpr std::array<std::string_view, 1> channel_units{""};
+  enum Channel { kPosition, kVelocity, kAcceleration };
+  static constexpr std::array<std::string_view, 3> channels{"position", "velocity", "acceleration"};
+  static constexpr std::array<std::string_view, 3> channel_units{"", "", ""};
   static constexpr std::string_view input_unit = "";
   static constexpr int kPasses = 2;
 
@@ -46,7 +50,8 @@ class Direct {
     Eigen::Matrix<S, 2, 1> inputs = Eigen::Matrix<S, 2, 1>::Zero();
     Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
-    std::array<S, 1> measured{};
+    S mean_acceleration{0.0};  ///< over the last step
+    std::array<S, 3> measured{};
   };
 
   /// The longest step [s] at these parameters: a tenth of a radian of the mass's own oscillation. Nonlinear terms are held
@@ -79,12 +84,22 @@ class Direct {
   /// At rest at a position.
   State at_rest(const S& position) const { return moving(position, S{0.0}); }
 
-  /// At a position with a velocity.
+  /// At a position with a velocity, without force.
   State moving(const S& position, const S& velocity) const {
     State state;
     state.y(0) = position;
     state.y(1) = velocity;
-    state.measured[0] = position;
+    state.measured = {position, velocity, S{0.0}};
+    return state;
+  }
+
+  /// The same under a force: the acceleration is the mean over the step that this force begins.
+  State moving(const S& position, const S& velocity, const S& force) const {
+    State state = moving(position, velocity);
+    State next = state;
+    step(next, force);
+    state.mean_acceleration = next.mean_acceleration;
+    state.measured[kAcceleration] = next.mean_acceleration;
     return state;
   }
 
@@ -102,10 +117,12 @@ class Direct {
     }
     state.y = free + times(hold_.response, state.inputs);
     state.clock.steps += 1.0;
-    state.measured[0] = state.y(0);
+    const S acceleration = (state.y(1) - start(1)) / h_;
+    state.measured = {state.y(0), state.y(1), acceleration + 0.5 * (acceleration - state.mean_acceleration)};
+    state.mean_acceleration = acceleration;
   }
 
-  static const std::array<S, 1>& measured(const State& state) noexcept { return state.measured; }
+  static const std::array<S, 3>& measured(const State& state) noexcept { return state.measured; }
 
  private:
   Parameters parameters_;

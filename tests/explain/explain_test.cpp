@@ -68,6 +68,26 @@ TEST(Explain, ARecordHeldOutWholeChangesNothingOfWhatIsFoundAndIsJudgedWithTheMo
   DOUBLES_EQUAL(std::sqrt(square), position.explained.rms, 0.1 * kNoise);
 }
 
+TEST(Explain, AMassWhoseVelocityOrAccelerationAloneIsMeasuredHasTheSameEffect) {
+  using Mass = model::Direct<double>;
+  // The oscillator moves at some 10 rad/s: the noise is as large beside the velocity and the acceleration as 1e-3 m is.
+  for (const auto& [channel, noise] : {std::pair{Mass::kVelocity, 1e-2}, std::pair{Mass::kAcceleration, 0.1}}) {
+    const Record record = oscillator(400.0, noise, 0.0, channel);
+    const auto found = explained(record);
+    CHECK_EQUAL(1U, found.result.effects.size());
+    STRCMP_EQUAL("cubic_stiffness", found.result.effects.front().name.c_str());
+    const auto& error = found.result.channels.front();
+    STRCMP_EQUAL(record.channels[1].name.c_str(), error.name.c_str());
+    DOUBLES_EQUAL(noise, error.explained.rms, 0.05 * noise);
+  }
+}
+
+TEST(Explain, AVelocityInAnotherUnitOfLengthThanThePositionIsRefused) {
+  Record record = oscillator(400.0, kNoise);
+  record.channels.push_back({"velocity", "mm/s", record.channels[1].values});
+  STRCMP_CONTAINS("velocity: unit \"mm/s\" is not m/s", test::refusal([&] { explained(record); }).c_str());
+}
+
 TEST(Explain, InterruptedAtAnyMomentItSaysThatItIsUndecidedAndWhatItKnowsByThen) {
   const Record record = oscillator(400.0, kNoise);
   const auto interrupted_after = [&](int calls) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "tools/files/model/model_file.hpp"
@@ -12,7 +14,9 @@ namespace hotfire::test {
 
 /// A mass on a spring under a smooth random force, stepped by fourth-order Runge-Kutta of its own: shares no code with the
 /// model. What the declared model lacks: the stiffness `cubic`, and detents, 2 pi / 8 m apart, of up to so many newtons.
-inline Record oscillator(double cubic, double noise, double detents = 0.0) {
+/// `measured` is what the sensor reads, with the rms `noise` in its unit.
+inline Record oscillator(double cubic, double noise, double detents = 0.0,
+                         model::Direct<double>::Channel measured = model::Direct<double>::kPosition) {
   constexpr double kMass = 1.0;
   constexpr double kDamping = 1.5;
   constexpr double kStiffness = 100.0;
@@ -40,13 +44,15 @@ inline Record oscillator(double cubic, double noise, double detents = 0.0) {
   record.name = "oscillator.csv";
   record.period = kPeriod;
   record.rows = 6000;
-  record.channels = {{"force", "N", {}}, {"position", "m", {}}};
+  constexpr std::array<const char*, 3> kUnits{"m", "m/s", "m/s^2"};
+  record.channels = {{"force", "N", {}}, {std::string(model::Direct<double>::channels[measured]), kUnits[measured], {}}};
   double x = 0.0;
   double v = 0.0;
   for (std::size_t row = 0; row < record.rows; ++row) {
     const double t = static_cast<double>(row) * kPeriod;
     record.channels[0].values.push_back(force_at(t));
-    record.channels[1].values.push_back(x + noise * normal(generator));
+    const std::array<double, 3> motion{x, v, acceleration(t, x, v)};
+    record.channels[1].values.push_back(motion[measured] + noise * normal(generator));
     const double h = kPeriod / kSubsteps;
     for (int k = 0; k < kSubsteps; ++k) {
       const double s = t + k * h;

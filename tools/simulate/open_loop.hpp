@@ -10,14 +10,18 @@
 namespace hotfire {
 
 /// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command, a driven
-/// mass at rest at the first row of its first channel, or at zero without one.
+/// mass at the first row of its position and velocity, each zero where the record does not have it.
 template <class Plant>
 typename Plant::State start_of(const Plant& plant, const Record& inputs) {
   using S = typename Plant::Scalar;
   typename Plant::State state = [&] {
     if constexpr (requires { plant.at_rest(S(0.0)); }) {
-      const Channel* position = inputs.find(std::string(Plant::channels.front()));
-      return plant.at_rest(S(position != nullptr ? position->values.front() : 0.0));
+      const auto first = [&](std::string_view name) {
+        const Channel* channel = inputs.find(std::string(name));
+        return S(channel != nullptr ? channel->values.front() : 0.0);
+      };
+      return plant.moving(first(Plant::channels[Plant::kPosition]), first(Plant::channels[Plant::kVelocity]),
+                          first(Plant::input_channel));
     } else {
       return plant.steady(S(inputs.find(std::string(Plant::input_channel))->values.front()));
     }

@@ -73,12 +73,18 @@ std::pair<double, double> fitted_start(const DirectParameters& parameters, const
   return {start(0) * scale, start(1) * speed};
 }
 
-/// The unit in which a `direct` mass moves: that of the record, or what a force or torque in SI goes with.
-std::string unit_of_motion(const Channel* measured, const std::string& unit_of_input) {
-  if (measured != nullptr) {
+/// The unit of a channel of a `direct` mass: that of the record, or one that goes with its position, which goes with a force
+/// or torque in SI.
+std::string unit_of_motion(const Record& inputs, std::string_view channel, const std::string& unit_of_input) {
+  if (const Channel* measured = inputs.find(std::string(channel))) {
     return measured->unit;
   }
-  return unit_of_input == "N" ? "m" : unit_of_input == "N.m" ? "rad" : "1";
+  const Channel* position = inputs.find("position");
+  const std::string unit = position != nullptr      ? position->unit
+                           : unit_of_input == "N"   ? "m"
+                           : unit_of_input == "N.m" ? "rad"
+                                                    : "1";
+  return channel == "velocity" ? unit + "/s" : channel == "acceleration" ? unit + "/s^2" : unit;
 }
 
 template <class Plant>
@@ -90,9 +96,8 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
   outputs.rows = inputs.rows;
   outputs.channels.push_back(input);
   for (std::size_t c = 0; c < Plant::channels.size(); ++c) {
-    const Channel* measured = inputs.find(std::string(Plant::channels[c]));
-    const std::string unit =
-        Plant::channel_units[c].empty() ? unit_of_motion(measured, input.unit) : std::string(Plant::channel_units[c]);
+    const std::string unit = Plant::channel_units[c].empty() ? unit_of_motion(inputs, Plant::channels[c], input.unit)
+                                                             : std::string(Plant::channel_units[c]);
     outputs.channels.push_back({std::string(Plant::channels[c]), unit, {}});
     outputs.channels.back().values.reserve(inputs.rows);
   }
@@ -120,13 +125,14 @@ Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_st
       [&]<class Parameters>(const Parameters& parameters) {
         using Plant = PlantOf<Parameters, double>;
         require_channel(inputs, std::string(Plant::input_channel), "the model is driven by it");
+        require_units_of_one_motion(inputs);
         const int steps = model::steps_per_period<Plant>(parameters, inputs.period);
         const Plant plant(parameters, inputs.period / steps);
         auto state = start_of(plant, inputs);
         if constexpr (std::is_same_v<Parameters, DirectParameters>) {
           if (fit_start_rows > 0) {
             const auto [start, speed] = fitted_start(parameters, inputs, fit_start_rows);
-            state = plant.moving(start, speed);
+            state = plant.moving(start, speed, inputs.find("force")->values.front());
             state.clock.start = inputs.start;
           }
         }

@@ -75,16 +75,20 @@ Record hammer_direct(const DirectParameters& parameters, const Hammer& blow) {
   using Mass = model::Direct<double>;
   const int steps = model::steps_per_period<Mass>(parameters, kPeriod);
   const Mass plant(parameters, kPeriod / steps);
-  auto state = plant.moving(0.0, blow.impulse / parameters.mass.inertia);
+  auto state = plant.moving(0.0, blow.impulse / parameters.mass.inertia, 0.0);
   const std::vector<double> none(static_cast<std::size_t>(blow.seconds / kPeriod), 0.0);
   Record record = command_record(none, "force");
-  std::vector<double> position;
-  const bool finite =
-      run(plant, none, state, steps, [&](std::size_t, const auto& readings) { position.push_back(readings[0]); });
+  for (const std::string_view channel : Mass::channels) {
+    record.channels.push_back({std::string(channel), "", {}});
+  }
+  const bool finite = run(plant, none, state, steps, [&](std::size_t, const auto& readings) {
+    for (std::size_t channel = 0; channel < readings.size(); ++channel) {
+      record.channels[channel + 1].values.push_back(readings[channel]);
+    }
+  });
   if (!finite) {
     throw FileError("the model runs away after the blow: its parameters make it unstable");
   }
-  record.channels.push_back({"position", "", std::move(position)});
   return record;
 }
 

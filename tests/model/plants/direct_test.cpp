@@ -3,6 +3,8 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "tests/model/support/plants.hpp"
@@ -70,6 +72,32 @@ TEST(Direct, FollowsTheClosedSolutionAtAnyStep) {
         rest * (1.0 - std::exp(-decay * time) * (std::cos(damped * time) + decay / damped * std::sin(damped * time)));
     DOUBLES_EQUAL(exact, state.y(0), 1e-10 * rest);  // 100,000 steps of 1e-16, and the same again in the exponential
   }
+}
+
+// m x'' = F - c x' - k x at the end of a step, and at the start of a motion to first order.
+TEST(Direct, ReadsVelocityAndAccelerationOfTheEndOfAStepToSecondOrder) {
+  Plant::Parameters parameters;
+  parameters.mass = {2.0, 0.6, 50.0};
+  const auto force_at = [](double t) { return 3.0 * std::sin(7.0 * t); };
+  const auto error_with = [&](double h) {
+    const Plant plant(parameters, h);
+    Plant::State state = plant.moving(0.1, -0.2, force_at(0.0));
+    double largest = 0.0;
+    for (int k = 1; k * h < 2.0; ++k) {
+      plant.step(state, force_at((k - 0.5) * h));
+      const auto& read = Plant::measured(state);
+      DOUBLES_EQUAL(state.y(0), read[Plant::kPosition], 0.0);
+      DOUBLES_EQUAL(state.y(1), read[Plant::kVelocity], 0.0);
+      const double exact = (force_at(k * h) - 0.6 * read[Plant::kVelocity] - 50.0 * read[Plant::kPosition]) / 2.0;
+      largest = k > 1 ? std::max(largest, std::abs(read[Plant::kAcceleration] - exact)) : largest;
+    }
+    return largest;
+  };
+  const double fine = error_with(1e-3);
+  CHECK(fine < 1e-4);
+  DOUBLES_EQUAL(4.0, error_with(2e-3) / fine, 0.2);
+  // F - c v - k x is -4.88 N.
+  DOUBLES_EQUAL(-2.44, Plant::measured(Plant(parameters, 1e-6).moving(0.1, -0.2, 0.0))[Plant::kAcceleration], 1e-4);
 }
 
 TEST(Direct, KeepsItsEnergyWithoutDamping) {

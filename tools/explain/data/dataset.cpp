@@ -9,6 +9,7 @@
 
 #include "tools/explain/data/hold_out.hpp"
 #include "tools/explain/data/plants.hpp"
+#include "tools/explain/data/smoothing.hpp"
 #include "tools/explain/data/statistics.hpp"
 #include "tools/explain/data/zeros.hpp"
 #include "tools/explain/words/refusals.hpp"
@@ -54,7 +55,8 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
   experiment.excluded = excluded_rows(record, exclusions);
   experiment.input_is_held = is_missing_somewhere(*record.find(input));
   experiment.input = held_where_missing(*record.find(input), record);
-  const bool is_hydraulic = data.channels.size() > 1;
+  require_units_of_one_motion(record);
+  const bool is_hydraulic = input == model::Simplex<double>::input_channel;
   if (is_hydraulic) {
     const Channel* torque = record.find("torque");
     experiment.torque = torque != nullptr ? load_of(*torque, record, exclusions) : std::vector<double>{};
@@ -74,7 +76,7 @@ Experiment experiment_of(const Record& record, const std::string& input, const s
     }
   }
   if (std::ranges::all_of(experiment.measured, &std::vector<double>::empty)) {
-    require_channel(record, data.channels.front(), words::nothing_to_explain());
+    require_channel(record, fmt::format("{}", fmt::join(data.channels, " or ")), words::nothing_to_explain());
   }
   return experiment;
 }
@@ -183,7 +185,7 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   if (const auto* mass = std::get_if<DirectParameters>(&model.parameters)) {
     for (Experiment& experiment : data.experiments) {
       experiment.start_state =
-          start_state(*mass, experiment.input, experiment.measured.front(), experiment.period, experiment.noise.front());
+          start_state(*mass, experiment.input, experiment.measured, experiment.period, experiment.noise);
     }
   } else {
     for (Experiment& experiment : data.experiments) {
@@ -195,6 +197,16 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
     share_out(experiment);
   }
   return data;
+}
+
+std::vector<double> position_of(const Experiment& mass) {
+  using Mass = model::Direct<double>;
+  if (!mass.measured[Mass::kPosition].empty()) {
+    return mass.measured[Mass::kPosition];
+  }
+  const std::vector<double>& velocity = mass.measured[Mass::kVelocity];
+  return integral_of(velocity.empty() ? integral_of(mass.measured[Mass::kAcceleration], mass.period) : velocity,
+                     mass.period);
 }
 
 std::vector<double> load_of(const Channel& channel, const Record& record, const std::vector<Exclusion>& exclusions) {

@@ -77,6 +77,9 @@ struct Dataset {
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
 
+/// Position of a force-driven mass by row: as measured, else from its velocity or its acceleration by `integral_of`.
+std::vector<double> position_of(const Experiment& mass);
+
 /// A measured load, `bridged` over excluded rows. Throws UsageError for a value that is missing in a row that is not
 /// excluded.
 std::vector<double> load_of(const Channel& channel, const Record& record, const std::vector<Exclusion>& exclusions);

@@ -40,4 +40,26 @@ Series rate_of(const Series& x, double period) {
   return rate;
 }
 
+Series integral_of(const Series& rate, double period) {
+  Series integral(rate.size(), 0.0);
+  double mean = 0.0;
+  for (std::size_t i = 1; i < rate.size(); ++i) {
+    integral[i] = integral[i - 1] + 0.5 * period * (rate[i] + rate[i - 1]);
+    mean += integral[i] / static_cast<double>(rate.size());
+  }
+  const double middle = 0.5 * (static_cast<double>(rate.size()) - 1.0);
+  double along = 0.0;
+  double spread = 0.0;
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    const double place = static_cast<double>(i) - middle;
+    along += place * (integral[i] - mean);
+    spread += place * place;
+  }
+  const double slope = spread > 0.0 ? along / spread : 0.0;
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    integral[i] -= mean + slope * (static_cast<double>(i) - middle);
+  }
+  return integral;
+}
+
 }  // namespace hotfire::explain

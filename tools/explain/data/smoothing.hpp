@@ -17,4 +17,8 @@ Series smoothed(const Series& x, double period, double frequency);
 /// Central differences; zero at the ends.
 Series rate_of(const Series& x, double period);
 
+/// Integral by the trapezoidal rule, less the straight line that fits it best: what an unknown start and the offset of a
+/// sensor would add.
+Series integral_of(const Series& rate, double period);
+
 }  // namespace hotfire::explain

@@ -22,25 +22,31 @@ constexpr double kForgotten = 1e-4;
 
 using Mass = model::Direct<double>;
 
-/// Positions of the mass by row from an initial state under a force.
-Eigen::VectorXd response(const Mass& mass, Mass::State state, std::span<const double> force, int steps) {
-  Eigen::VectorXd positions = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(force.size()));
+/// What a sensor of the mass reads by row from an initial state under a force.
+Eigen::VectorXd response(const Mass& mass, Mass::State state, std::span<const double> force, int steps,
+                         std::size_t channel) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(force.size()));
   run(mass, force, state, steps,
-      [&](std::size_t row, const auto& readings) { positions(static_cast<Eigen::Index>(row)) = readings[0]; });
-  return positions;
+      [&](std::size_t row, const auto& readings) { values(static_cast<Eigen::Index>(row)) = readings[channel]; });
+  return values;
 }
 
 }  // namespace
 
 bool StartState::moves() const { return std::abs(velocity) > kStandardErrors * velocity_error; }
 
-StartState start_state(const DirectParameters& parameters, std::span<const double> force, std::span<const double> position,
-                       double period, double noise) {
+StartState start_state(const DirectParameters& parameters, std::span<const double> force,
+                       std::span<const std::vector<double>> measured, double period, std::span<const double> noise) {
   StartState start;
-  const std::size_t rows = std::min({kRows, force.size(), position.size()});
+  const bool has_position = !measured[Mass::kPosition].empty();
+  const std::size_t channel = has_position ? Mass::kPosition : Mass::kVelocity;
+  const std::vector<double>& values = measured[channel];
+  const std::size_t rows = std::min({kRows, force.size(), values.size()});
   if (rows < 4) {
-    start.position = position.empty() ? 0.0 : position.front();
-    start.position_error = noise;
+    if (has_position) {
+      start.position = values.front();
+      start.position_error = noise[channel];
+    }
     return start;
   }
   DirectParameters declared = parameters;
@@ -52,20 +58,28 @@ StartState start_state(const DirectParameters& parameters, std::span<const doubl
   const double time = static_cast<double>(rows) * period;
   const double unit_velocity = 1.0 / time;
   const std::vector<double> constant(rows, declared.mass.inertia / (time * time));
-  Eigen::MatrixX3d columns(static_cast<Eigen::Index>(rows), 3);
-  columns.col(0) = response(mass, mass.moving(1.0, 0.0), none, steps);
-  columns.col(1) = response(mass, mass.moving(0.0, unit_velocity), none, steps);
-  columns.col(2) = response(mass, mass.moving(0.0, 0.0), constant, steps);
-  const Eigen::VectorXd forced = response(mass, mass.moving(0.0, 0.0), force.first(rows), steps);
-  const Eigen::VectorXd free = Eigen::Map<const Eigen::VectorXd>(position.data(), static_cast<Eigen::Index>(rows)) - forced;
-  const Eigen::LDLT<Eigen::Matrix3d> normal(columns.transpose() * columns);
-  const Eigen::Vector3d found = normal.solve(columns.transpose() * free);
-  const double variance = std::max(noise * noise, (columns * found - free).squaredNorm() / static_cast<double>(rows - 3));
-  const Eigen::Matrix3d covariance = variance * normal.solve(Eigen::Matrix3d::Identity());
-  start.position = found(0);
-  start.velocity = found(1) * unit_velocity;
-  start.position_error = std::sqrt(covariance(0, 0));
-  start.velocity_error = std::sqrt(covariance(1, 1)) * unit_velocity;
+  // A velocity says where a mass is only if a spring holds it.
+  const bool finds_position = has_position || declared.mass.stiffness > 0.0;
+  const Eigen::Index first = finds_position ? 0 : 1;
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(rows), 3);
+  columns.col(0) = response(mass, mass.moving(1.0, 0.0), none, steps, channel);
+  columns.col(1) = response(mass, mass.moving(0.0, unit_velocity), none, steps, channel);
+  columns.col(2) = response(mass, mass.moving(0.0, 0.0), constant, steps, channel);
+  const Eigen::MatrixXd used = columns.rightCols(3 - first);
+  const Eigen::VectorXd forced = response(mass, mass.moving(0.0, 0.0), force.first(rows), steps, channel);
+  const Eigen::VectorXd free = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(rows)) - forced;
+  const Eigen::LDLT<Eigen::MatrixXd> normal(used.transpose() * used);
+  const Eigen::VectorXd found = normal.solve(used.transpose() * free);
+  const double freedom = static_cast<double>(rows) - static_cast<double>(found.size());
+  const double variance = std::max(noise[channel] * noise[channel], (used * found - free).squaredNorm() / freedom);
+  const Eigen::MatrixXd covariance = variance * normal.solve(Eigen::MatrixXd::Identity(found.size(), found.size()));
+  const Eigen::Index velocity = 1 - first;
+  if (finds_position) {
+    start.position = found(0);
+    start.position_error = std::sqrt(covariance(0, 0));
+  }
+  start.velocity = found(velocity) * unit_velocity;
+  start.velocity_error = std::sqrt(covariance(velocity, velocity)) * unit_velocity;
   return start;
 }
 

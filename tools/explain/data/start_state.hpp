@@ -21,10 +21,12 @@ struct StartState {
 
 /// Least squares of the first twenty rows on the declared mass: initial position, initial velocity and a constant force that
 /// represents what is missing in the declared model over so short a time (friction, an offset). The declared mass without
-/// effects is linear, so its response to each is exact. `noise` is the rms of the position's sensor noise; where the fit is
-/// worse than that, the standard errors grow with it.
-StartState start_state(const DirectParameters& parameters, std::span<const double> force, std::span<const double> position,
-                       double period, double noise);
+/// effects is linear, so its response to each is exact. `measured` and `noise` [rms] are in the order of the plant's
+/// channels: the position is fitted where it is measured, else the velocity. Where the fit is worse than the noise, the
+/// standard errors grow with it. Zeros without error where a mass is known by its acceleration alone, or by less than four
+/// rows.
+StartState start_state(const DirectParameters& parameters, std::span<const double> force,
+                       std::span<const std::vector<double>> measured, double period, std::span<const double> noise);
 
 /// How many rows pass until a hydraulic axis has forgotten where it started; 0 if it starts in the steady state under its
 /// first command. It does not where measured minus simulated piston or engine motion has a slope over the first twenty rows

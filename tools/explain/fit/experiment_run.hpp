@@ -24,7 +24,7 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
                                     const Start<S>& start) {
   typename Plant::State state = [&] {
     if constexpr (Plant::topology == "direct") {
-      return plant.moving(start.values[0], start.values[1]);
+      return plant.moving(start.values[0], start.values[1], S(experiment.input.front()));
     } else if (experiment.other.is_there()) {
       const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
       const OtherAxis& other = experiment.other;

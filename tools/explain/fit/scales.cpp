@@ -16,33 +16,38 @@ namespace {
 
 Scales scales_of_records(const Dataset& data) {
   double force = 0.0;
-  double position = 0.0;
-  double velocity = 0.0;
+  double size = 0.0;         // of what is measured
+  double rate = 0.0;         // of what is measured
+  std::ptrdiff_t order = 0;  // of the derivative of the position that the first record measures
   double rows = 0.0;
   for (const Experiment& experiment : data.experiments) {
-    const auto& x = experiment.measured.front();
-    if (x.empty()) {
+    const auto measured =
+        std::ranges::find_if(experiment.measured, [](const std::vector<double>& values) { return !values.empty(); });
+    const std::ptrdiff_t own_order = measured - experiment.measured.begin();
+    if (measured == experiment.measured.end() || (rows > 0.0 && own_order != order)) {
       continue;
     }
+    order = own_order;
+    const std::vector<double>& x = *measured;
     const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
     // A speed over a tenth of a second, or over the record if that is shorter: differences of neighbours are noise.
     const std::size_t apart = std::clamp<std::size_t>(static_cast<std::size_t>(0.002 / experiment.period), 1,
                                                       std::max<std::size_t>(1, x.size() / 2));
     for (std::size_t row = 0; row < x.size(); ++row) {
       force += experiment.input[row] * experiment.input[row];
-      position += (x[row] - mean) * (x[row] - mean);
+      size += (x[row] - mean) * (x[row] - mean);
       if (row >= apart) {
         const double v = (x[row] - x[row - apart]) / (static_cast<double>(apart) * experiment.period);
-        velocity += v * v;
+        rate += v * v;
       }
     }
     rows += static_cast<double>(x.size());
   }
   Scales scales;
-  if (rows > 0.0 && force > 0.0 && position > 0.0 && velocity > 0.0) {
+  if (rows > 0.0 && force > 0.0 && size > 0.0 && rate > 0.0) {
     scales.force = std::sqrt(force / rows);
-    scales.position = std::sqrt(position / rows);
-    scales.time = std::sqrt(position / velocity);
+    scales.time = std::sqrt(size / rate);
+    scales.position = std::sqrt(size / rows) * std::pow(scales.time, static_cast<double>(order));
   }
   return scales;
 }

@@ -249,10 +249,13 @@ Reach reach_in(const Dataset& data, const DirectParameters&) {
   Reach reach;
   for (const Experiment& e : data.experiments) {
     reach.input = std::max(reach.input, largest(e.input));
-    reach.position = std::max(reach.position, largest(e.measured[0]));
+    const std::vector<double> position = position_of(e);
+    reach.position = std::max(reach.position, largest(position));
+    const std::vector<double>& velocity = e.measured[model::Direct<double>::kVelocity];
+    reach.position_rate = std::max(reach.position_rate, largest(velocity));
     // A direct mass may move faster than a tenth of a second: neighbours, and their noise, it is.
-    for (std::size_t i = 1; i < e.measured[0].size(); ++i) {
-      reach.position_rate = std::max(reach.position_rate, std::abs(e.measured[0][i] - e.measured[0][i - 1]) / e.period);
+    for (std::size_t i = 1; velocity.empty() && i < position.size(); ++i) {
+      reach.position_rate = std::max(reach.position_rate, std::abs(position[i] - position[i - 1]) / e.period);
     }
   }
   return reach;

@@ -218,11 +218,16 @@ std::vector<Trace> reconstruct_with(const Dataset& data, const SimplexParameters
 std::vector<Trace> reconstruct_with(const Dataset& data, const DirectParameters& parameters) {
   return joined(data, [&](const Experiment& experiment, bool noise_only, std::mt19937_64& generator) {
     if (!noise_only) {
-      return left_over(experiment, parameters, experiment.measured[0]);
+      return left_over(experiment, parameters, position_of(experiment));
     }
     Experiment still = experiment;
     still.input.assign(experiment.rows(), 0.0);
-    return left_over(still, parameters, noise_like(experiment.rows(), experiment.noise[0], generator));
+    for (std::size_t c = 0; c < still.measured.size(); ++c) {
+      if (!still.measured[c].empty()) {
+        still.measured[c] = noise_like(experiment.rows(), experiment.noise[c], generator);
+      }
+    }
+    return left_over(still, parameters, position_of(still));
   });
 }
 

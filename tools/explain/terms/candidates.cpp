@@ -257,7 +257,9 @@ std::vector<FreeParameter> initial_states(const Dataset& data, const Scales& sca
       u.push_back(parameter.prior_center);
       free.push_back(std::move(parameter));
     };
-    add(InitialState::position, ".initial_position", "position", start.position, start.position_error);
+    if (start.position_error > 0.0) {
+      add(InitialState::position, ".initial_position", "position", start.position, start.position_error);
+    }
     add(InitialState::velocity, ".initial_velocity", "position/time", start.velocity, start.velocity_error);
   }
   return free;

@@ -96,7 +96,7 @@ Extents extents_under(const Dataset& data, const Parameters& parameters) {
     const Plant plant(parameters, experiment.period / steps);
     typename Plant::State state = [&] {
       if constexpr (Plant::topology == "direct") {
-        return plant.moving(experiment.start_state.position, experiment.start_state.velocity);
+        return plant.moving(experiment.start_state.position, experiment.start_state.velocity, experiment.input.front());
       } else {
         return plant.steady(experiment.input.front());
       }

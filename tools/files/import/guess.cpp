@@ -168,6 +168,12 @@ std::string channel_of(const std::string& column) {
   if (has_word(name, {"angle", "beta", "gimbal", "engine"})) {
     return "engine";
   }
+  if (has_word(name, {"velocity", "speed", "tacho", "tachometer"})) {
+    return "velocity";
+  }
+  if (has_word(name, {"acceleration", "accelerometer", "accel", "acc"})) {
+    return "acceleration";
+  }
   return has_word(name, {"position"}) ? "position" : "";
 }
 

@@ -14,6 +14,7 @@
 #include "tools/files/record/time_grid.hpp"
 #include "tools/files/text/csv_lines.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/files/text/units.hpp"
 
 namespace hotfire {
 
@@ -183,6 +184,30 @@ Record load_record(const std::filesystem::path& path, const std::vector<DropOut>
     }
   }
   return record;
+}
+
+void require_units_of_one_motion(const Record& record) {
+  const Channel* reference = nullptr;
+  std::string expected;  // of the next channel, the rate of the one before
+  for (const char* name : {"position", "velocity", "acceleration"}) {
+    const Channel* channel = record.find(name);
+    // Without a unit it may be any.
+    if (channel != nullptr && reference != nullptr && channel->unit != "1" && reference->unit != "1") {
+      try {
+        if (std::abs(convert_unit(1.0, channel->unit, expected) - 1.0) > 1e-9) {
+          throw UnitError(fmt::format("unit \"{}\" is not {}", channel->unit, expected));
+        }
+      } catch (const UnitError& error) {
+        throw FileError(fmt::format("{}:1: {}: {}: a mass has one unit of length in all its channels, here that of {} [{}]",
+                                    record.path.string(), name, error.what(), reference->name, reference->unit));
+      }
+    }
+    if (channel != nullptr) {
+      reference = channel;
+      expected = channel->unit;
+    }
+    expected += reference != nullptr ? "/s" : "";
+  }
 }
 
 void require_channel(const Record& record, const std::string& channel, const std::string& reason) {

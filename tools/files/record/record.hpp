@@ -48,6 +48,10 @@ std::vector<double> times_of(const Record& record);
 /// times are kept.
 Record load_record(const std::filesystem::path& path, const std::vector<DropOut>& drop_outs = {});
 
+/// Refuses a record whose position, velocity and acceleration of a mass are not in one unit of length and in seconds: each
+/// is compared in the numbers that the record has. Throws FileError.
+void require_units_of_one_motion(const Record& record);
+
 /// Throws FileError unless the record has the channel; the message lists the channels it has and what the model needs.
 void require_channel(const Record& record, const std::string& channel, const std::string& reason);
 

@@ -19,7 +19,7 @@ struct KnownChannel {
   std::string_view unit;  ///< empty: the channel keeps the unit it has
 };
 
-constexpr std::array<KnownChannel, 15> kKnownChannels{{{"time", "s"},
+constexpr std::array<KnownChannel, 17> kKnownChannels{{{"time", "s"},
                                                        {"command", "rad"},
                                                        {"current", "A"},
                                                        {"piston", "m"},
@@ -27,6 +27,8 @@ constexpr std::array<KnownChannel, 15> kKnownChannels{{{"time", "s"},
                                                        {"load_pressure", "Pa"},
                                                        {"force", ""},
                                                        {"position", ""},
+                                                       {"velocity", ""},
+                                                       {"acceleration", ""},
                                                        {"string1", "m"},
                                                        {"string2", "m"},
                                                        {"string3", "m"},

@@ -21,10 +21,12 @@ namespace hotfire::plant {
 inline constexpr double kLargest = std::numeric_limits<double>::max();
 
 inline std::string_view meaning_of_channel(std::string_view channel) {
-  return channel == "piston"     ? "piston position as its sensor reads it"
-         : channel == "engine"   ? "engine angle as its sensor reads it"
-         : channel == "position" ? "position of the mass as its sensor reads it"
-                                 : "pressure across the piston as its sensor reads it";
+  return channel == "piston"         ? "piston position as its sensor reads it"
+         : channel == "engine"       ? "engine angle as its sensor reads it"
+         : channel == "position"     ? "position of the mass as its sensor reads it"
+         : channel == "velocity"     ? "velocity of the mass as its sensor reads it"
+         : channel == "acceleration" ? "acceleration of the mass as its sensor reads it"
+                                     : "pressure across the piston as its sensor reads it";
 }
 
 /// What both models have in common for `PlantOf`: their keys, channels and readings.

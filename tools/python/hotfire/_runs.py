@@ -114,6 +114,8 @@ def gradients(
         **{f"string{number}": "m" for number in range(1, 5)},
         # Of a mass the record decides the unit, as for the parameters.
         "position": "position",
+        "velocity": "position/time",
+        "acceleration": "position/time^2",
     }
     of_keys = {key: parameter.unit for key, parameter in model.parameters.items()}
     quotients = {
