@@ -319,7 +319,9 @@ void settle_channel(int channel, const EffectParameters<S, List>& parameters, Ef
         if constexpr (requires { E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input); }) {
           E::settle(std::get<I>(parameters.values), std::get<I>(states.values), input);
         }
-        input.value = E::step(std::get<I>(parameters.values), std::get<I>(states.values), input);
+        // On a copy: the first reading is the first step of the state.
+        auto state = std::get<I>(states.values);
+        input.value = E::step(std::get<I>(parameters.values), state, input);
       }
     }
   });

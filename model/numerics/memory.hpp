@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -25,7 +26,7 @@ enum class Memory {
   play,        ///< what follows s at a distance of up to `width` (backlash)
   stop,        ///< s less that: one stop operator
   slew,        ///< what follows s by at most `width` a second
-  hold,        ///< s as it was sampled once every `time`
+  hold,        ///< s as it was sampled once every `time`, of which `phase` over a turn has passed at the start
   quantise,    ///< s rounded to multiples of `width`
   dead_zone,   ///< s without what lies within `width` of zero
   saturation,  ///< s limited to `width`
@@ -43,7 +44,7 @@ struct MemoryParameters {
   S frequency{1.0};  ///< [Hz]
   S damping{0.5};    ///< of critical [1]
   S width{1.0};      ///< in the argument's unit
-  S phase{0.0};      ///< of an oscillator at the start [rad]
+  S phase{0.0};      ///< of an oscillator or of the samples of a hold at the start [rad]
 };
 
 inline constexpr std::size_t kMostStops = 4;
@@ -75,6 +76,7 @@ class MemoryState {
 
   /// Output of every memory but `stops`, mean over a step of `h` [s] in which the argument `s` is held.
   S step(const MemoryParameters<S>& params, const S& s, double h) noexcept {
+    const bool begins = !started_;
     start(s);
     switch (params.kind) {
       case Memory::none:
@@ -106,12 +108,7 @@ class MemoryState {
         value_ = value_ + clamp_symmetric<S>(s - value_, params.width * h);
         return value_;
       case Memory::hold:
-        if (since_ >= value_of(params.time) * (1.0 - 1e-9)) {
-          value_ = s;
-          since_ = 0.0;
-        }
-        since_ += h;
-        return value_;
+        return held(value_of(params.time), begins ? value_of(params.phase) : 0.0, s, h);
       case Memory::quantise:
         return params.width * std::round(value_of(s) / value_of(params.width));
       case Memory::dead_zone:
@@ -164,6 +161,19 @@ class MemoryState {
     }
   }
 
+  /// The newest sample of the argument. A sample is due at a time between two steps: its value is interpolated.
+  S held(double time, double phase, const S& s, double h) noexcept {
+    const double turns = phase / (2.0 * std::numbers::pi);
+    since_ += (turns - std::floor(turns)) * time;
+    if (since_ >= time * (1.0 - 1e-9)) {
+      since_ = std::clamp(since_ - time, 0.0, time);
+      value_ = s + (earlier_[0] - s) * std::min(since_ / h, 1.0);
+    }
+    since_ += h;
+    earlier_[0] = s;
+    return value_;
+  }
+
   /// The argument `time` ago, between samples that are as many steps apart as the ring needs to reach so far.
   S delayed(const S& time, const S& s, double h) noexcept {
     const S steps = time / h;
@@ -189,8 +199,8 @@ class MemoryState {
   S rate_{0.0};
   S turns_{0.0};  ///< of an oscillator, without whole ones
   std::array<S, kMostStops> stops_{};
-  double since_ = 0.0;  ///< the last sample of `hold` [s]
-  std::array<S, kEarlier> earlier_{};
+  double since_ = 0.0;                 ///< the last sample of `hold` [s]
+  std::array<S, kEarlier> earlier_{};  ///< arguments of a delay; the first, of a hold
   std::size_t newest_ = 0;
   int age_ = 0;  ///< of the newest of them, in steps
 };

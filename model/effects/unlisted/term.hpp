@@ -65,7 +65,8 @@ struct Names<Site::sensor, 1> {
 /// A term of the grammar. What is added at a site is a curve and a memory, in either order, of one quantity of the axis or
 /// of the product s of two, and `direct` times s: a signal that is replaced has -1 there. Without points the curve is a
 /// gain; of `stops` the points are the widths and what each operator counts (Prandtl and Ishlinskii); of an oscillator the
-/// curve is added to its frequency [Hz] and `gain` is its amplitude. A force or torque opposes the motion.
+/// curve is added to its frequency [Hz] and `gain` is its amplitude. A force or torque opposes the motion. Beyond the points
+/// of a curve in front of a memory the whole term is constant: `direct` would go on where its counterpart does not.
 template <Site at, int channel = -1>
 struct Term {
   using Names = term::Names<at, channel>;
@@ -114,8 +115,9 @@ struct Term {
           Field<Params>{"width", "", 1e-15, 1e15, 1.0,
                         "limit, quantum, half width or pitch in the argument's unit; of slew, of its rate", &Params::width,
                         only(play, stop, slew, quantise, dead_zone, saturation, periodic)},
-          Field<Params>{"phase", "rad", -10.0, 10.0, 1.0, "phase of the oscillator at the start of a record", &Params::phase,
-                        only(oscillator)}};
+          Field<Params>{"phase", "rad", -10.0, 10.0, 1.0,
+                        "phase at the start of a record, of the oscillator or of the sampling", &Params::phase,
+                        only(oscillator, hold)}};
     }
     static constexpr auto tables() {
       return std::array{TableField<Params, UnlistedTable<S>>{
@@ -212,7 +214,8 @@ struct Term {
       return params.gain * state.memory.step(memory, shift, input.h);
     }
     if (has_curve && static_cast<term::Order>(params.order) == term::Order::curve_first) {
-      return state.memory.step(memory, unlisted::value_at<S>(params.table, s), input.h) + params.direct * s;
+      const S within = unlisted::within<S>(params.table, s);
+      return state.memory.step(memory, unlisted::value_at<S>(params.table, within), input.h) + params.direct * within;
     }
     const S remembered = state.memory.step(memory, s, input.h);
     const S own = has_curve ? unlisted::value_at<S>(params.table, remembered) : S(params.gain * remembered);

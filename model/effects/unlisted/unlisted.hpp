@@ -26,6 +26,14 @@ S value_at(const UnlistedTable<S>& table, const X& x) noexcept {
   return curve_value<S>(table.x, table.y, static_cast<std::size_t>(table.points), x);
 }
 
+/// `x` limited to the range of a table's points.
+template <class S>
+S within(const UnlistedTable<S>& table, const S& x) noexcept {
+  const auto& first = table.x[0];
+  const auto& last = table.x[static_cast<std::size_t>(table.points) - 1];
+  return value_of(x) < value_of(first) ? S(first) : value_of(x) > value_of(last) ? S(last) : x;
+}
+
 /// Force of a table over the velocity, solved together with velocity = free_velocity - compliance * force: the first
 /// crossing as the velocity rises, so that a steep table (dry friction) is as stable as a flat one.
 template <class S>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <CppUTest/TestHarness.h>
@@ -94,6 +95,19 @@ TEST(FormSearch, AHeldSignalIsFoundAtItsOwnNumberOfRows) {
   CHECK(best.form.form.memory.kind == Memory::hold);
   CHECK(best.form.form.argument == Argument::command);
   DOUBLES_EQUAL(kRows * 2e-3, best.form.form.memory.time, 1e-9);
+}
+
+// The sampling of a real signal is at no special row when a record starts.
+TEST(FormSearch, AHeldSignalIsFoundWithThePhaseOfItsSamples) {
+  static constexpr int kRows = 10;
+  static constexpr int kPassed = 3;
+  const Best best(with_reading([row = 0, held = 0.0](double command) mutable {
+    held = (row++ + kPassed) % kRows == 0 ? command : held;
+    return 0.5 * (held - command);
+  }));
+  CHECK(best.form.form.memory.kind == Memory::hold);
+  DOUBLES_EQUAL(kRows * 2e-3, best.form.form.memory.time, 1e-9);
+  DOUBLES_EQUAL(2.0 * std::numbers::pi * kPassed / kRows, best.form.form.memory.phase, 2.0 * std::numbers::pi * 0.5 / kRows);
 }
 
 // Half as wide again: the refinement goes on until the response explains most.

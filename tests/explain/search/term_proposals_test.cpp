@@ -148,7 +148,7 @@ std::optional<Screened> start_for(double truth, double proposed) {
   const explain::Evaluator evaluator(data, explain::Resolution::coarse);
   const explain::Fitted around = about_declared();
   return explain::best_start(evaluator, around, gain_of_rate(proposed), explain::Scales{},
-                             explain::left_by(evaluator, around, 2), 2);
+                             explain::left_by(evaluator, around, 2), data.experiments.front().period, 2);
 }
 
 }  // namespace

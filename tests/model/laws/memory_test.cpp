@@ -152,6 +152,25 @@ TEST(TermMemory, HoldKeepsTheSampleOfEveryPeriod) {
   }
 }
 
+TEST(TermMemory, TheSamplesOfAHoldComeAsMuchEarlierAsHasPassedAtTheStart) {
+  Parameters parameters = of(Memory::hold);
+  parameters.time = 5.0 * kMemoryStep;
+  parameters.phase = 2.0 * std::numbers::pi * 2.0 / 5.0;
+  model::MemoryState<double> state;
+  for (int n = 0; n < 50; ++n) {
+    DOUBLES_EQUAL(n < 3 ? 0 : n - (n + 2) % 5, state.step(parameters, n, kMemoryStep), 1e-12);
+  }
+}
+
+TEST(TermMemory, AHoldTakesItsSamplesBetweenTheStepsWhereTheyAreDue) {
+  Parameters parameters = of(Memory::hold);
+  parameters.time = 2.5 * kMemoryStep;
+  model::MemoryState<double> state;
+  for (int n = 0; n < 50; ++n) {
+    DOUBLES_EQUAL(2.5 * std::floor(n / 2.5), state.step(parameters, n, kMemoryStep), 1e-12);
+  }
+}
+
 TEST(TermMemory, MemorylessDistortionsAreWhatTheyAreCalled) {
   model::MemoryState<double> state;
   Parameters parameters = of(Memory::quantise);

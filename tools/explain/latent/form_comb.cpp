@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "tools/explain/fit/curve_points.hpp"
@@ -42,6 +43,7 @@ constexpr double kWidestPlay = 0.7;
 constexpr int kPlays = 5;
 /// The longest time for which a signal is held, in rows: of 500 Hz a tenth of a second.
 constexpr int kMostRowsHeld = 50;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 /// Limits of a slew, over the 99th percentile of the argument's rate.
 constexpr double kSlowestSlew = 0.03;
 constexpr int kSlews = 7;
@@ -332,8 +334,12 @@ std::vector<Form> neighbours(const Form& form, double factor) {
     case Memory::delay:
     case Memory::lag:
     case Memory::washout:
+      add([](Form& f, double by) { f.memory.time *= by; });
+      break;
     case Memory::hold:
       add([](Form& f, double by) { f.memory.time *= by; });
+      // As far in turns as the time in its logarithm.
+      add([](Form& f, double by) { f.memory.phase = std::remainder(f.memory.phase + kTurn * std::log(by), kTurn); });
       break;
     case Memory::resonance:
     case Memory::band_pass:

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <numbers>
+#include <string_view>
 
 #include "tools/explain/latent/oscillation_search.hpp"
 #include "tools/explain/policy/policy.hpp"
@@ -28,6 +30,10 @@ constexpr double kReach = 100.0;
 constexpr std::array kSharesOfTerm{1.0, 0.5, 0.25, 0.12, 0.06, 0.03};
 /// Forms of a place that are tried at the others.
 constexpr std::ptrdiff_t kExchanged = 2;
+/// How many rows the samples of a hold may be off from where the regression of thinned rows has them.
+constexpr int kRowsOff = 2;
+/// Where in a row they are tried: a logger that is in step with them reads before or after the sample.
+constexpr std::array kPartsOfRow{-0.02, 0.02, 0.5};
 
 /// The effect of the model that is a term at the form's site.
 std::optional<Candidate> candidate_of(const Form& form) {
@@ -67,6 +73,7 @@ void set_values(ModelParameters& parameters, const Candidate& candidate, const S
       values.frequency = form.memory.frequency;
       values.damping = form.memory.damping;
       values.width = form.memory.width;
+      values.phase = form.memory.phase;
       values.gain = form.points.empty() ? coefficients(0) : 0.0;
       values.direct = form.has_direct() ? coefficients(coefficients.size() - 1) : 0.0;
       if (form.is_oscillator()) {
@@ -101,8 +108,10 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
     const bool is_unused_gain = p.address.field == "gain" && !form.points.empty() && !form.is_oscillator();
     // The curve of an oscillator moves its frequency everywhere.
     const bool is_of_curve = p.address.field == "frequency" && form.is_oscillator() && !form.points.empty();
-    // A sampling period has no derivative.
-    return is_unused_gain || is_of_curve || (form.memory.kind == model::Memory::hold && p.address.field == "time");
+    // A sampling instant has no derivative.
+    const bool is_sampling =
+        form.memory.kind == model::Memory::hold && (p.address.field == "time" || p.address.field == "phase");
+    return is_unused_gain || is_of_curve || is_sampling;
   });
   const std::vector<double> values = values_of(parameters);
   double largest = 0.0;
@@ -123,6 +132,48 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
     }
   }
   return free;
+}
+
+double& value_of_term(ModelParameters& parameters, const Candidate& candidate, std::string_view name) {
+  double* found = nullptr;
+  visit_parameters(parameters, [&](const model::Key& key, const auto& field, double& value) {
+    if (key.is_effect && key.effect_index == candidate.effect && field.name == name) {
+      found = &value;
+    }
+  });
+  return *found;
+}
+
+/// Moves the samples of a held term to where it leaves least: to a period of whole rows, because the logger of a sampled
+/// signal is in step with it, then to their phase. No fit moves them, since they have no derivative.
+void match_samples(const Evaluator& evaluator, double row, unsigned threads, Screened& start) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const auto move_to = [&](const Screened& from, double rows, double passed) {
+    Screened moved = from;
+    value_of_term(moved.fitted.base, moved.candidate, "time") = rows * row;
+    value_of_term(moved.fitted.base, moved.candidate, "phase") = std::remainder(kTurn * passed / rows, kTurn);
+    moved.criterion = left_by(evaluator, moved.fitted, threads);
+    if (moved.criterion < start.criterion) {
+      start = std::move(moved);
+    }
+  };
+  const auto rows_of = [&](Screened& of) {
+    return std::max(2.0, std::round(value_of_term(of.fitted.base, of.candidate, "time") / row));
+  };
+  Screened found = start;
+  const double phase = value_of_term(found.fitted.base, found.candidate, "phase");
+  for (int longer = -kRowsOff; longer <= kRowsOff; ++longer) {
+    const double rows = std::max(2.0, rows_of(found) + longer);
+    move_to(found, rows, rows * phase / kTurn);
+  }
+  found = start;
+  const double rows = rows_of(found);
+  const double passed = std::round(rows * value_of_term(found.fitted.base, found.candidate, "phase") / kTurn);
+  for (int early = -kRowsOff; early <= kRowsOff; ++early) {
+    for (const double part : kPartsOfRow) {
+      move_to(found, rows, passed + early + part);
+    }
+  }
 }
 
 /// The forms of one place, with the regression that found them.
@@ -212,7 +263,7 @@ std::optional<Screened> start_of(const Fitted& around, const ScoredForm& propose
 }
 
 std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& around, const ScoredForm& proposed,
-                                   const Scales& scales, double without, unsigned threads) {
+                                   const Scales& scales, double without, double row, unsigned threads) {
   const Stopwatch stopwatch;
   std::optional<Screened> best;
   for (const double share : kSharesOfTerm) {
@@ -228,6 +279,9 @@ std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& aro
     }
   }
   if (best) {
+    if (proposed.form.memory.kind == model::Memory::hold) {
+      match_samples(evaluator, row, threads, *best);
+    }
     best->seconds = stopwatch.seconds();
   }
   return best;

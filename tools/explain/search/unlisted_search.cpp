@@ -72,12 +72,13 @@ void order_by_site(std::vector<Screened>& proposals) {
 std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& evaluator, const Fitted& around,
                                     const std::vector<ScoredForm>& proposals) {
   const double without = left_by(evaluator, around, task.threads);
+  const double row = std::ranges::min(task.data.experiments, {}, &Experiment::period).period;
   std::vector<Screened> starts;
   for (const ScoredForm& proposed : proposals) {
     if (task.watch.interrupted()) {
       break;
     }
-    if (auto start = best_start(evaluator, around, proposed, task.scales, without, task.threads)) {
+    if (auto start = best_start(evaluator, around, proposed, task.scales, without, row, task.threads)) {
       starts.push_back(std::move(*start));
     }
   }
