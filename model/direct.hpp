@@ -118,7 +118,7 @@ class Direct {
     state.y = free + times(hold_.response, state.inputs);
     state.clock.steps += 1.0;
     const S acceleration = (state.y(1) - start(1)) / h_;
-    state.measured = {state.y(0), state.y(1), acceleration + 0.5 * (acceleration - state.mean_acceleration)};
+    state.measured = {state.y(0), state.y(1), S(acceleration + 0.5 * (acceleration - state.mean_acceleration))};
     state.mean_acceleration = acceleration;
   }
 

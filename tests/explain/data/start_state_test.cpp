@@ -15,7 +15,7 @@ constexpr double kStartStateNoise = 1e-7;
 /// A mass of 95 kg with an undeclared constant friction of 20 N, under a force that jumps to 90 N and rises: closed form.
 struct Pushed {
   std::vector<double> force;
-  std::vector<double> position;
+  std::vector<std::vector<double>> measured = std::vector<std::vector<double>>(3);  ///< by channel of the plant
 
   Pushed(double velocity, double noise) {
     std::mt19937_64 generator(7);
@@ -23,7 +23,7 @@ struct Pushed {
     for (int row = 0; row < 200; ++row) {
       const double t = row * kStartStatePeriod;
       force.push_back(90.0 + 2000.0 * t);
-      position.push_back(0.1 + velocity * t + (70.0 * t * t / 2 + 2000.0 * t * t * t / 6) / 95.0 + normal(generator));
+      measured[0].push_back(0.1 + velocity * t + (70.0 * t * t / 2 + 2000.0 * t * t * t / 6) / 95.0 + normal(generator));
     }
   }
 };
@@ -33,7 +33,8 @@ hotfire::explain::StartState start_of(const Pushed& pushed) {
   mass.mass.inertia = 95.0;
   mass.mass.damping = 0.0;
   mass.mass.stiffness = 0.0;
-  return hotfire::explain::start_state(mass, pushed.force, pushed.position, kStartStatePeriod, kStartStateNoise);
+  const std::vector<double> noise(3, kStartStateNoise);
+  return hotfire::explain::start_state(mass, pushed.force, pushed.measured, kStartStatePeriod, noise);
 }
 
 }  // namespace
@@ -51,10 +52,25 @@ TEST(StartState, AMassThatMovesAtTheFirstRowIsFoundMovingWithinFourStandardError
 
 TEST(StartState, AMassThatIsPushedFromRestIsNotTakenToMove) { CHECK(!start_of(Pushed(0.0, kStartStateNoise)).moves()); }
 
+TEST(StartState, AVelocityAloneSaysHowFastAMassWithoutASpringStartsAndNotWhere) {
+  Pushed pushed(0.0, 0.0);
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> normal(0.0, 1e-4);
+  pushed.measured[0].clear();
+  for (int row = 0; row < 200; ++row) {
+    const double t = row * kStartStatePeriod;
+    pushed.measured[1].push_back(0.0065 + (70.0 * t + 2000.0 * t * t / 2) / 95.0 + normal(generator));
+  }
+  const auto start = start_of(pushed);
+  CHECK(start.moves());
+  CHECK(std::abs(start.velocity - 0.0065) < 4.0 * start.velocity_error);
+  DOUBLES_EQUAL(0.0, start.position_error, 0.0);
+}
+
 TEST(StartState, ARecordOfFewRowsTakesItsFirstRowAsPosition) {
   Pushed pushed(0.0, 0.0);
   pushed.force.resize(3);
-  pushed.position.resize(3);
+  pushed.measured[0].resize(3);
   const auto start = start_of(pushed);
   DOUBLES_EQUAL(0.1, start.position, 0.0);
   CHECK(!start.moves());

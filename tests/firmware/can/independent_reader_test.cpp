@@ -40,7 +40,7 @@ const Message* named(const std::string& name) {
 TEST_GROUP(IndependentReader){};
 
 TEST(IndependentReader, UnderstandsEveryFrameOfTheFirmwareAsTheFirmwareDoes) {
-  std::ifstream file(std::string(HOTFIRE_CAN_TESTS) + "/independent_reader.txt");
+  std::ifstream file(HOTFIRE_CAN_TESTS "/independent_reader.txt");
   std::set<std::string> seen;
   std::string line;
   while (std::getline(file, line)) {

@@ -43,6 +43,8 @@ constexpr double kWidestPlay = 0.7;
 constexpr int kPlays = 5;
 /// The longest time for which a signal is held, in rows: of 500 Hz a tenth of a second.
 constexpr int kMostRowsHeld = 50;
+/// Phases of the samples: at an eighth of a period from the right one most of a held signal shows.
+constexpr int kPhasesHeld = 4;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 /// Limits of a slew, over the 99th percentile of the argument's rate.
 constexpr double kSlowestSlew = 0.03;
@@ -266,7 +268,12 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   // At any other period than its own a held signal is soon out of step, and no fit moves it there. A logger that is
   // synchronous with it has a whole number of rows. A product of two is held more rarely: its comb is coarser.
   for (int rows = 2; rows <= kMostRowsHeld; rows += plain.factor ? 1 + rows / 4 : 1) {
-    add(Memory::hold, [&](auto& memory) { memory.time = rows * period; });
+    for (int phase = 0; phase < (plain.factor ? 1 : kPhasesHeld); ++phase) {
+      add(Memory::hold, [&](auto& memory) {
+        memory.time = rows * period;
+        memory.phase = kTurn * phase / kPhasesHeld;
+      });
+    }
   }
   Form stops = plain;
   stops.memory.kind = Memory::stops;
