@@ -100,9 +100,11 @@ TEST(ExplainVehicle, an_axis_of_eight_is_explained_while_those_that_are_not_meas
 }
 
 TEST(ExplainVehicleAtLength, of_eight_axes_the_two_with_a_missing_effect_are_named_and_no_other) {
-  const VehicleFile truth = vehicle_with(std::string(kDeadband) +
-                                         "[effects.soft_stiffness.yaw3]\nlaw = \"compliance\"\nlow_stiffness = 5.2e7\n"
-                                         "load_scale = 6e3\n[structure.yaw4]\nstiffness = 4.4e8\n");
+  std::string effects(kDeadband);
+  effects +=
+      "[effects.soft_stiffness.yaw3]\nlaw = \"compliance\"\nlow_stiffness = 5.2e7\n"
+      "load_scale = 6e3\n[structure.yaw4]\nstiffness = 4.4e8\n";
+  const VehicleFile truth = vehicle_with(effects);
   explain::ExplainOptions options;
   options.threads = 2;
   const auto found = explain::explain(declared(), {measured(truth, axis_names(4), 131.0)}, options);
