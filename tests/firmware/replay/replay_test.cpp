@@ -46,7 +46,8 @@ TEST(Replay, EightActuatorsAreProvedTogether) {
 
 TEST(Replay, LastBitOfOneReadingIsNamedWithItsCycleActuatorAndChannel) {
   test::record_bench(test::recorded_options(path, 490, 3));
-  const std::size_t second_reading = sizeof(hal::CycleHead) + 8 * (3 + 1);
+  // Three commands, then the readings of one mass after the other.
+  const std::size_t second_reading = sizeof(hal::CycleHead) + 8 * (3 + model::Direct<double>::channels.size());
   rewrite([&](std::uint64_t cycle, std::string& bytes) {
     bytes[second_reading] = static_cast<char>(bytes[second_reading] ^ (cycle == 123 ? 1 : 0));
     return true;
