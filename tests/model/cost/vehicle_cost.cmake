@@ -70,7 +70,7 @@ foreach(topology taos masv)
   require_more("${name} that follows its thrust / ${name}" ${${topology}_thrust_ratio} 1.01)
   require_less("${name} that follows its thrust / ${name}" ${${topology}_thrust_ratio} 1.1)
   require_more("${name} with a block / without" ${${topology}_block_ratio} 1.01)
-  require_less("${name} with a block / without" ${${topology}_block_ratio} 1.1)
+  require_less("${name} with a block / without" ${${topology}_block_ratio} 1.12)
   require_more("${name} under disturbances / without" ${${topology}_disturbed_ratio} 0.99)
   require_less("${name} under disturbances / without" ${${topology}_disturbed_ratio} 1.01)
   # The same in every step, whatever thrust, disturbances and state.
