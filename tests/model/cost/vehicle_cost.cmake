@@ -57,8 +57,8 @@ steps_of(masv_64 hotfire_measured_masv masv 64)
 
 quotient(taos_ratio ${taos} ${axis})
 require_less("TAOS / one axis" ${taos_ratio} 3)
-# What follows the thrust costs a tenth of a step at most, and a hundredth at least: less would follow nothing. So does the
-# block of a bearing. A disturbance is added whether it is zero or not, so that it costs nothing more.
+# What follows the thrust costs a tenth of a step at most, and a hundredth at least: less would follow nothing. The block of
+# a bearing costs an eighth at most. A disturbance is added whether it is zero or not, so that it costs nothing more.
 quotient(taos_thrust_ratio ${taos_thrust} ${taos})
 quotient(taos_disturbed_ratio ${taos_disturbed} ${taos_thrust})
 quotient(taos_block_ratio ${taos_block} ${taos})
