@@ -9,7 +9,6 @@
 #include <iterator>
 #include <memory>
 #include <numbers>
-#include <string_view>
 
 #include "tools/explain/latent/oscillation_search.hpp"
 #include "tools/explain/policy/policy.hpp"
@@ -134,44 +133,39 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
   return free;
 }
 
-double& value_of_term(ModelParameters& parameters, const Candidate& candidate, std::string_view name) {
-  double* found = nullptr;
-  visit_parameters(parameters, [&](const model::Key& key, const auto& field, double& value) {
-    if (key.is_effect && key.effect_index == candidate.effect && field.name == name) {
-      found = &value;
-    }
-  });
-  return *found;
-}
-
 /// Moves the samples of a held term to where it leaves least: to a period of whole rows, because the logger of a sampled
 /// signal is in step with it, then to their phase. No fit moves them, since they have no derivative.
-void match_samples(const Evaluator& evaluator, double row, unsigned threads, Screened& start) {
+void match_samples(const Evaluator& evaluator, const model::MemoryParameters<double>& proposed, double row, unsigned threads,
+                   Screened& start) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
-  const auto move_to = [&](const Screened& from, double rows, double passed) {
-    Screened moved = from;
-    value_of_term(moved.fitted.base, moved.candidate, "time") = rows * row;
-    value_of_term(moved.fitted.base, moved.candidate, "phase") = std::remainder(kTurn * passed / rows, kTurn);
+  const auto leaves_less = [&](double rows, double passed) {
+    Screened moved = start;
+    visit_effects(moved.fitted.base, [&]<class E>(std::size_t index, auto& values) {
+      if constexpr (requires { E::is_term; }) {
+        if (index == moved.candidate.effect) {
+          values.time = rows * row;
+          values.phase = std::remainder(kTurn * passed / rows, kTurn);
+        }
+      }
+    });
     moved.criterion = left_by(evaluator, moved.fitted, threads);
-    if (moved.criterion < start.criterion) {
+    const bool less = moved.criterion < start.criterion;
+    if (less) {
       start = std::move(moved);
     }
+    return less;
   };
-  const auto rows_of = [&](Screened& of) {
-    return std::max(2.0, std::round(value_of_term(of.fitted.base, of.candidate, "time") / row));
-  };
-  Screened found = start;
-  const double phase = value_of_term(found.fitted.base, found.candidate, "phase");
+  const double turns = proposed.phase / kTurn;
+  double rows = std::max(2.0, std::round(proposed.time / row));
+  const double about = rows;
   for (int longer = -kRowsOff; longer <= kRowsOff; ++longer) {
-    const double rows = std::max(2.0, rows_of(found) + longer);
-    move_to(found, rows, rows * phase / kTurn);
+    const double tried = std::max(2.0, about + longer);
+    rows = leaves_less(tried, tried * turns) ? tried : rows;
   }
-  found = start;
-  const double rows = rows_of(found);
-  const double passed = std::round(rows * value_of_term(found.fitted.base, found.candidate, "phase") / kTurn);
+  const double passed = std::round(rows * turns);
   for (int early = -kRowsOff; early <= kRowsOff; ++early) {
     for (const double part : kPartsOfRow) {
-      move_to(found, rows, passed + early + part);
+      leaves_less(rows, passed + early + part);
     }
   }
 }
@@ -280,7 +274,7 @@ std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& aro
   }
   if (best) {
     if (proposed.form.memory.kind == model::Memory::hold) {
-      match_samples(evaluator, row, threads, *best);
+      match_samples(evaluator, proposed.form.memory, row, threads, *best);
     }
     best->seconds = stopwatch.seconds();
   }
