@@ -15,8 +15,8 @@
 
 namespace hotfire::model {
 
-/// A mass driven by a measured force: inertia x'' + damping x' + stiffness x = force - effects. The modal hammer test of
-/// [SD] eq. 8, a bench mass, an electromechanical stage, a motor with a tachometer. Units are whatever consistent set the
+/// A mass driven by a measured force: inertia x'' + damping x' + stiffness x = drive(force) - effects. The modal hammer test
+/// of [SD] eq. 8, a bench mass, an electromechanical stage, a motor with a tachometer. Units are whatever consistent set the
 /// record has.
 ///
 /// Discretised as `Simplex` is: exact hold of the linear part, effects held at the mean of the step's ends, two passes. The
@@ -90,12 +90,14 @@ class Direct {
     state.y(0) = position;
     state.y(1) = velocity;
     state.measured = {position, velocity, S{0.0}};
+    settle<Site::command>(parameters_.effects, state.effects, Signal<S>{S{0.0}, h_});
     return state;
   }
 
   /// The same under a force: the acceleration is the mean over the step that this force begins.
   State moving(const S& position, const S& velocity, const S& force) const {
     State state = moving(position, velocity);
+    settle<Site::command>(parameters_.effects, state.effects, Signal<S>{force, h_});
     State next = state;
     step(next, force);
     state.mean_acceleration = next.mean_acceleration;
@@ -105,13 +107,17 @@ class Direct {
 
   /// Advances by one step with the force held.
   void step(State& state, const S& force) const noexcept {
-    state.inputs(0) = force;
+    Signal<S> drive{force, h_, state.clock.at(h_, 0.5)};
+    pass_through<Site::command>(parameters_.effects, acting_, state.effects, drive, Keep::yes);
+    state.inputs(0) = drive.value;
     const Eigen::Matrix<S, 2, 1> start = state.y;
     const Eigen::Matrix<S, 2, 1> free = times(hold_.transition, start);
     for (int pass = 0; pass < kPasses; ++pass) {
       const Eigen::Matrix<S, 2, 1> end = free + times(hold_.response, state.inputs);
       const S velocity = (end(0) - start(0)) / h_;
       Motion<S> motion{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_, state.clock.at(h_, 0.5)};
+      motion.declared_stiffness = parameters_.mass.stiffness;
+      motion.declared_damping = parameters_.mass.damping;
       state.inputs(1) = sum_over<Site::mass_force>(parameters_.effects, acting_, state.effects, motion,
                                                    pass + 1 == kPasses ? Keep::yes : Keep::no);
     }

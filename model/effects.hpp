@@ -5,6 +5,8 @@
 #include "model/effects/actuator/piston_friction.hpp"
 #include "model/effects/command/command_delay.hpp"
 #include "model/effects/command/command_scale.hpp"
+#include "model/effects/command/drive_deadband.hpp"
+#include "model/effects/command/drive_saturation.hpp"
 #include "model/effects/command/rate_limit.hpp"
 #include "model/effects/gimbal/cross_axis.hpp"
 #include "model/effects/gimbal/duct_hardening.hpp"
@@ -16,8 +18,11 @@
 #include "model/effects/load/structural_mode.hpp"
 #include "model/effects/load/variable_moment_arm.hpp"
 #include "model/effects/mass/cubic_stiffness.hpp"
+#include "model/effects/mass/elastic_stop.hpp"
 #include "model/effects/mass/force_offset.hpp"
+#include "model/effects/mass/free_play.hpp"
 #include "model/effects/mass/position_damping.hpp"
+#include "model/effects/mass/quadratic_damping.hpp"
 #include "model/effects/mass/quadratic_stiffness.hpp"
 #include "model/effects/mass/sliding_friction.hpp"
 #include "model/effects/sensor/sensor_delay.hpp"
@@ -59,8 +64,17 @@ using MasvEffects =
     EffectList<RateLimit, ValveBias, ValveHysteresis, ValveDeadband, ValveAsymmetry, Leakage, PistonFriction, Backlash,
                SoftStiffness, DuctHardening, TorqueOffset, CrossAxis, SensorNonlinearity, SensorLag>;
 
-/// Every effect a force-driven mass knows.
-using DirectEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, PositionDamping,
-                                 UnlistedMotion<Site::mass_force>>;
+/// Every effect of a body that is moved along a path. A constant force is the zero of the sensor that reads the force.
+using ImposedMotionEffects = EffectList<SlidingFriction, QuadraticStiffness, CubicStiffness, ElasticStop, FreePlay,
+                                        PositionDamping, QuadraticDamping, UnlistedMotion<Site::mass_force>>;
+
+/// Every effect of the joint of a structure in modal coordinates.
+using JointEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, ElasticStop,
+                                PositionDamping, QuadraticDamping, UnlistedMotion<Site::mass_force>>;
+
+/// Every effect of a mass that a force drives: those of its drive, in the order of application, and those of the body.
+using DirectEffects =
+    EffectList<DriveSaturation, CommandDelay, DriveDeadband, SlidingFriction, ForceOffset, QuadraticStiffness,
+               CubicStiffness, ElasticStop, FreePlay, PositionDamping, QuadraticDamping, UnlistedMotion<Site::mass_force>>;
 
 }  // namespace hotfire::model

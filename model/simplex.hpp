@@ -41,6 +41,9 @@ class Simplex : public Axis<S, List> {
   /// The steady state under a constant command [rad]: set-up only.
   State steady(const S& command) const;
 
+  /// The same of an axis that may have no position feedback: its piston is then at `piston` [m].
+  State resting(const S& command, const S& piston) const { return this->settled(command, Uncoupled{}, piston); }
+
   /// The same beside another axis, whose motion is given: `around(angle)` is the `Coupling` at the axis's own angle [rad].
   template <class Around>
   State steady(const S& command, const Around& around) const {

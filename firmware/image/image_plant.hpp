@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -18,6 +19,8 @@ namespace detail {
 template <class Parameters>
 struct PlantOf {
   using Vehicle = typename Parameters::Vehicle;
+  static constexpr std::size_t kReadings = Vehicle::kChannels;
+  static constexpr std::string_view kWithoutValve{};
   static auto make(const Parameters& parameters, double period, std::size_t, const PlantImage& image) {
     return std::make_unique<VehiclePlant<Vehicle>>(parameters, period, image.faults, image.recorded);
   }
@@ -25,6 +28,10 @@ struct PlantOf {
 
 template <class Model>
 struct PlantOfAxes {
+  static constexpr std::size_t kReadings = Model::channels.size();
+  static constexpr std::string_view kWithoutValve = requires { Model::kAngle; }
+  ? std::string_view() : Model::topology;
+
   static auto make(const typename Model::Parameters& parameters, double period, std::size_t actuators,
                    const PlantImage& image) {
     return std::make_unique<Plant<Model>>(parameters, period, actuators, image.faults, image.recorded);
@@ -34,6 +41,10 @@ template <>
 struct PlantOf<model::Simplex<double>::Parameters> : PlantOfAxes<model::Simplex<double>> {};
 template <>
 struct PlantOf<model::Direct<double>::Parameters> : PlantOfAxes<model::Direct<double>> {};
+template <>
+struct PlantOf<model::ImposedMotion<double>::Parameters> : PlantOfAxes<model::ImposedMotion<double>> {};
+template <>
+struct PlantOf<model::Modal<double>::Parameters> : PlantOfAxes<model::Modal<double>> {};
 
 }  // namespace detail
 
@@ -48,6 +59,17 @@ inline std::size_t actuators_of(const PlantParameters& parameters) {
         }
       },
       parameters);
+}
+
+/// Number of readings of one actuator of the plant in an image.
+inline std::size_t readings_of(const PlantParameters& parameters) {
+  return std::visit([]<class Parameters>(const Parameters&) { return detail::PlantOf<Parameters>::kReadings; }, parameters);
+}
+
+/// The topology of the plant in an image, if it has no servovalve; empty for the others.
+inline std::string_view topology_without_valve(const PlantParameters& parameters) {
+  return std::visit([]<class Parameters>(const Parameters&) { return detail::PlantOf<Parameters>::kWithoutValve; },
+                    parameters);
 }
 
 /// Why the record of disturbances of an image cannot be played in cycles of `period` [s]; empty if it can.

@@ -279,13 +279,19 @@ PlantImage parse_plant_image(const std::string& text, const std::string& name) {
   if (topology->value == model::Direct<double>::topology) {
     return fill<model::Direct<double>>(entries);
   }
+  if (topology->value == model::ImposedMotion<double>::topology) {
+    return fill<model::ImposedMotion<double>>(entries);
+  }
+  if (topology->value == model::Modal<double>::topology) {
+    return fill<model::Modal<double>>(entries);
+  }
   if (topology->value == model::Taos<double>::topology) {
     return fill_vehicle<model::Taos<double>>(entries);
   }
   if (topology->value == model::Masv<double>::topology) {
     return fill_vehicle<model::Masv<double>>(entries);
   }
-  entries.refuse(*topology, "allowed are direct simplex taos masv");
+  entries.refuse(*topology, "allowed are direct imposed_motion modal simplex taos masv");
   return {std::nullopt, entries.error()};
 }
 

@@ -13,6 +13,8 @@
 #include "hal/plant_bus.hpp"
 #include "hal/recording/fnv1a.hpp"
 #include "model/direct.hpp"
+#include "model/imposed_motion.hpp"
+#include "model/modal.hpp"
 #include "model/numerics/step_size.hpp"
 #include "model/sensors/string_potentiometer.hpp"
 #include "model/simplex.hpp"

@@ -168,6 +168,12 @@ std::optional<hal::Failure> refuse_options(const PlantOptions& options, const Pl
     return hal::Failure{text("--actuators %zu: the model is a vehicle of %zu actuators", options.actuators, own),
                         "leave --actuators out: a vehicle has one for each axis"};
   }
+  const std::size_t most = hal::kMaxReadings / readings_of(*image.parameters);
+  if (own == 0 && options.actuators > most) {
+    return hal::Failure{text("--actuators %zu: each has %zu readings, and a plant has room for %zu", options.actuators,
+                             readings_of(*image.parameters), hal::kMaxReadings),
+                        text("--actuators from 1 to %zu", most)};
+  }
   if (const std::string refused = refused_record(image, period_of(options)); !refused.empty()) {
     return hal::Failure{refused, "--period-us, or a record with other rows: hotfire import with [resample] period"};
   }
@@ -176,11 +182,12 @@ std::optional<hal::Failure> refuse_options(const PlantOptions& options, const Pl
                              can::kLayouts[static_cast<std::size_t>(*options.layout)].data(), own),
                         "leave --layout out"};
   }
-  if (options.on_can() && std::holds_alternative<model::Direct<double>::Parameters>(*image.parameters)) {
+  if (const std::string_view topology = topology_without_valve(*image.parameters); options.on_can() && !topology.empty()) {
     return options.load_pressure
-               ? hal::Failure{"--load-pressure: a model of topology direct has no load pressure, nor a servovalve",
+               ? hal::Failure{text("--load-pressure: a model of topology %s has no load pressure, nor a servovalve",
+                                   topology.data()),
                               "a model of topology simplex, taos or masv"}
-               : hal::Failure{"a model of topology direct has no servovalve that a CAN bus could command",
+               : hal::Failure{text("a model of topology %s has no servovalve that a CAN bus could command", topology.data()),
                               "a model of topology simplex, taos or masv, or --bus sim"};
   }
   return std::nullopt;

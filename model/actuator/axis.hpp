@@ -14,8 +14,7 @@
 
 namespace hotfire::model {
 
-/// Inputs of an axis over one step from outside its own equations, if it is one of several (`Vehicle`). The caller, who
-/// knows the other axes and the structure, gives them as means over the step.
+/// Inputs of an axis of a `Vehicle` from the other axes and the structure, as means over one step.
 template <class S>
 struct Coupling {
   S motion;            ///< motion of the attach point, and stroke of the geometry beyond R beta [m]
@@ -29,7 +28,7 @@ struct Coupling {
 struct Uncoupled {};
 
 /// One axis: the hydraulic servoactuator with mechanical feedback driving an engine on a gimbal, physics.md section 1
-/// ([SD] fig. 1b), with the effects of `List` at their sites. `Simplex` is one alone, `Vehicle` several on one structure.
+/// ([SD] fig. 1b), with the effects of `List` at their sites. `Simplex` is one alone, `Vehicle` several on a structure.
 ///
 /// Discretisation. The declared model without saturation, pressure drop and effects is linear: its state is advanced by the
 /// exact hold, so that valve, oil and load are right at any step. All else (saturation, flow root, effects) enters as inputs
@@ -37,8 +36,7 @@ struct Uncoupled {};
 /// passes solve for the mean; velocities are mean velocities (displacement over the step), and stiff forces solve themselves
 /// together with the velocity (`Motion`). Second order where the model is smooth, first order at stick and slip.
 ///
-/// One step costs the same whatever the state: no loop depends on data. No allocation, no lock, no exception after
-/// construction. `State` is one flat block that the caller owns; copying it is a checkpoint.
+/// One step costs the same whatever the state, without allocation, lock or exception. A copy of `State` is a checkpoint.
 template <class S, class List>
 class Axis : public AxisStates {
  public:
@@ -108,7 +106,7 @@ class Axis : public AxisStates {
     linear(kOpening, kOpeningRate) = S{1.0};
     linear(kOpeningRate, kOpening) = -valve_squared;
     linear(kOpeningRate, kOpeningRate) = -2.0 * valve.damping_ratio * valve.natural_frequency;
-    linear(kOpeningRate, kPiston) = -valve_squared * valve.position_gain;
+    linear(kOpeningRate, kPiston) = -valve_squared * valve.position_gain * valve.position_feedback;
     linear(kOpeningRate, kPressure) = -valve_squared * valve.pressure_feedback_gain;
     linear(kOpeningRate, kWashout) = valve_squared * valve.pressure_feedback_gain;
     linear(kPressure, kOpening) = oil * valve.rated_flow;
@@ -158,23 +156,25 @@ class Axis : public AxisStates {
   const S& engine_compliance() const noexcept { return engine_compliance_; }
 
   /// The steady state under a constant command [rad]: set-up only. The valve's flow equals the leakage, the engine's torques
-  /// balance, friction is unloaded. If a dead band leaves the piston free, it is at the command.
+  /// balance, friction is unloaded. If a dead band leaves the piston free, it is at the command. Without position feedback
+  /// it is held at `piston` [m] until the first step.
   template <class Around>
-  State settled(const S& command, const Around& around) const {
+  State settled(const S& command, const Around& around, const S& piston = S{0.0}) const {
     State state;
     Signal<S> commanded{command, h_};
     settle<Site::command>(parameters_.effects, state.effects, commanded);
     pass_through<Site::command>(parameters_.effects, acting_, state.effects, commanded, Keep::no);
     state.inputs(kCommand) = parameters_.actuator.moment_arm * commanded.value;
     constexpr double kWidth = 1e-6;  // m, rad: far below what a sensor sees
-    const auto flow_at = [&](const S& piston) {
-      state.y(kPiston) = piston;
+    const auto flow_at = [&](const S& at) {
+      state.y(kPiston) = at;
       const auto force_at = [&](const S& angle) { return excess_force(state, angle, around); };
-      state.y(kAngle) = root_of_decreasing<S>(piston / parameters_.actuator.moment_arm, kWidth, force_at);
+      state.y(kAngle) = root_of_decreasing<S>(at / parameters_.actuator.moment_arm, kWidth, force_at);
       excess_force(state, state.y(kAngle), around);
       return net_flow(state, around);
     };
-    flow_at(root_of_decreasing<S>(state.inputs(kCommand), kWidth, flow_at));
+    const S& fed = parameters_.servovalve.position_feedback;
+    flow_at(value_of(fed) > 0.0 ? root_of_decreasing<S>(state.inputs(kCommand) / fed, kWidth, flow_at) : piston);
     evaluate(state, at_rest(state), around, Keep::no);
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
     const Surroundings<S> seen = around_state(state, state.y, state.clock.at(h_));
@@ -308,7 +308,7 @@ class Axis : public AxisStates {
   /// The command of the torque motor before saturation, with the axis at `y`.
   S torque_motor(const State& state, const Eigen::Matrix<S, 8, 1>& y) const noexcept {
     const Servovalve<S>& valve = parameters_.servovalve;
-    return valve.position_gain * (state.inputs(kCommand) - y(kPiston)) -
+    return valve.position_gain * (state.inputs(kCommand) - valve.position_feedback * y(kPiston)) -
            valve.pressure_feedback_gain * (y(kPressure) - y(kWashout));
   }
   static S saturated(const S& command) noexcept { return clamp_symmetric<S>(command, S{1.0}); }
@@ -361,16 +361,16 @@ class Axis : public AxisStates {
   /// At rest under the load in `state`: what flows into the extend chamber [m^3/s]. Leaves pressure and spool in `state`.
   template <class Around>
   S net_flow(State& state, const Around& around) const noexcept {
-    const Servovalve<S>& valve = parameters_.servovalve;
     state.y(kPressure) = (state.spring_force + state.inputs(kPistonForce)) / parameters_.actuator.piston_area;
     state.y(kWashout) = state.y(kPressure);
     evaluate(state, at_rest(state), around, Keep::no);
-    state.y(kOpening) = valve.position_gain * (state.inputs(kCommand) - state.y(kPiston)) + state.inputs(kValveCommand);
+    state.y(kOpening) = torque_motor(state, state.y) + state.inputs(kValveCommand);
     settle<Site::valve>(parameters_.effects, state.effects, Signal<S>{state.y(kOpening), h_});
     settle<Site::flow>(parameters_.effects, state.effects,
                        hydraulics(state, state.y(kOpening), state.y(kPressure), mid_step(state), Keep::no));
     evaluate(state, at_rest(state), around, Keep::no);
-    return valve.rated_flow * state.y(kOpening) + state.inputs(kFlow) - parameters_.actuator.leakage * state.y(kPressure);
+    return parameters_.servovalve.rated_flow * state.y(kOpening) + state.inputs(kFlow) -
+           parameters_.actuator.leakage * state.y(kPressure);
   }
 
   void measure(State& state) const noexcept {

@@ -16,6 +16,7 @@ struct Servovalve {
   S natural_frequency{377.0};
   S damping_ratio{0.8};
   S position_gain{86.2};
+  S position_feedback{1.0};
   S pressure_feedback_gain{1e-7};
   S pressure_feedback_corner{6.283};
   static constexpr auto fields() {
@@ -24,8 +25,9 @@ struct Servovalve {
         Field<P>{"rated_flow", "m^3/s", 1e-6, 1.0, 3.155e-3, "no-load flow at full spool travel", &P::rated_flow},
         Field<P>{"natural_frequency", "rad/s", 1.0, 1e5, 377.0, "natural frequency of the spool", &P::natural_frequency},
         Field<P>{"damping_ratio", "1", 0.01, 10.0, 0.8, "damping ratio of the spool", &P::damping_ratio},
-        Field<P>{"position_gain", "1/m", 1e-3, 1e6, 86.2, "valve command per piston error (mechanical feedback)",
-                 &P::position_gain},
+        Field<P>{"position_gain", "1/m", 1e-3, 1e6, 86.2, "valve command per piston error", &P::position_gain},
+        Field<P>{"position_feedback", "1", 0.0, 10.0, 0.0,
+                 "piston position that is fed back, per piston position; 0: no position feedback", &P::position_feedback},
         Field<P>{"pressure_feedback_gain", "1/Pa", 0.0, 1e-3, 1e-7, "valve command per changing load pressure",
                  &P::pressure_feedback_gain},
         Field<P>{"pressure_feedback_corner", "rad/s", 1e-3, 1e5, 6.283, "corner of the pressure washout",
@@ -101,6 +103,23 @@ struct Mass {
     return std::array{Field<P>{"inertia", "force.time^2/position", 1e-12, 1e12, 1.0, "inertia", &P::inertia},
                       Field<P>{"damping", "force.time/position", 0.0, 1e12, 1.0, "viscous damping", &P::damping},
                       Field<P>{"stiffness", "force/position", 0.0, 1e15, 1.0, "stiffness to ground", &P::stiffness}};
+  }
+};
+
+/// The body of an `imposed_motion` model. Units are whatever consistent set the record has.
+template <class S>
+struct MovedBody {
+  using Scalar = S;
+  static constexpr std::string_view name = "body";
+  S inertia{0.0};
+  S damping{0.0};
+  S stiffness{0.0};
+  static constexpr auto fields() {
+    using P = MovedBody;
+    return std::array{
+        Field<P>{"inertia", "force.time^2/position", 0.0, 1e12, 1.0, "inertia that moves with the path", &P::inertia},
+        Field<P>{"damping", "force.time/position", 0.0, 1e12, 1.0, "viscous damping", &P::damping},
+        Field<P>{"stiffness", "force/position", 0.0, 1e15, 1.0, "stiffness to ground", &P::stiffness}};
   }
 };
 

@@ -18,7 +18,7 @@ struct AxisStates {
 /// The quantities on which a term may depend: those of an axis that exist at every site.
 enum class Argument {
   command,        ///< beta_c, of the axis [rad]
-  error,          ///< R beta_c - x_p, of the position loop [m]
+  error,          ///< R beta_c less the position that is fed back, of the position loop [m]
   valve_command,  ///< of the torque motor, saturated, before its effects [1]
   spool,          ///< [1]
   flow,           ///< of the declared orifices at that spool position and load pressure [m^3/s]
@@ -54,9 +54,9 @@ struct Surroundings : AxisStates {
       case Argument::command:
         return piston_command / actuator.moment_arm;
       case Argument::error:
-        return piston_command - y(kPiston);
+        return piston_command - valve.position_feedback * y(kPiston);
       case Argument::valve_command:
-        return clamp_symmetric<S>(valve.position_gain * (piston_command - y(kPiston)) -
+        return clamp_symmetric<S>(valve.position_gain * (piston_command - valve.position_feedback * y(kPiston)) -
                                       valve.pressure_feedback_gain * (y(kPressure) - y(kWashout)),
                                   S{1.0});
       case Argument::spool:

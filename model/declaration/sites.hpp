@@ -96,6 +96,8 @@ struct Motion {
   S other_angle{0.0};    ///< of the engine about its other axis, mean over the step [rad]; known at `engine_torque` only
   S other_rate{0.0};     ///< its rate [rad/s]; both zero for an axis alone
   S load{0.0};           ///< A p_L at `piston`, the load spring's force at `engine_torque`, mean over the step [N]
+  S declared_stiffness{0.0};  ///< of the declared spring to ground; this and the damping known at `mass_force` only
+  S declared_damping{0.0};
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 

@@ -38,8 +38,18 @@ class Interpolation {
     return mean;
   }
 
-  /// The mean over that part of a row. `values` is the signal, which has at least one row. The weights apply to what the
-  /// rows differ from this one: their sum is one only up to rounding, and a constant signal keeps its value bit for bit.
+  /// The weights of the rows around a row in the value at `part` of its period.
+  Weights weights(double part) const noexcept { return weights_at(nodes_, part); }
+
+  /// True if the signal has all rows from which a value after this row is interpolated.
+  bool reaches(std::size_t row, std::size_t rows) const noexcept {
+    const auto first = static_cast<std::ptrdiff_t>(row) - before(nodes_);
+    return first >= 0 && first + nodes_ <= static_cast<std::ptrdiff_t>(rows);
+  }
+
+  /// The mean over that part of a row, or the value at it. `values` is the signal, which has at least one row. The weights
+  /// apply to what the rows differ from this one: their sum is one only up to rounding, and a constant signal keeps its
+  /// value bit for bit.
   double mean(std::span<const double> values, std::size_t row, const Weights& weights) const noexcept {
     const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
     const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(row) - before(nodes_);

@@ -94,6 +94,32 @@ TEST(ExplainAtLength, AMassWhoseAccelerationAloneIsMeasuredHasTheSameEffect) {
   check_cubic_found(model::Direct<double>::kAcceleration, 100.0 * kNoise, 6000);
 }
 
+/// The oscillator whose drive had this input, instead of the force that it then gave: `input(force, row)`.
+template <class Input>
+explain::Explanation explained_with_drive(Input&& input) {
+  Record record = oscillator(0.0, kNoise);
+  const std::vector<double> force = record.channels[0].values;
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    record.channels[0].values[row] = input(force, row);
+  }
+  return explained(record);
+}
+
+TEST(ExplainAtLength, DeadBandOfTheDriveOfAMassIsNamed) {
+  const auto found = explained_with_drive(
+      [](const std::vector<double>& force, std::size_t row) { return force[row] + std::copysign(4.0, force[row]); });
+  CHECK_TRUE(!found.result.effects.empty());
+  STRCMP_EQUAL("drive_deadband", found.result.effects.front().name.c_str());
+}
+
+TEST(Explain, DelayOfTheDriveOfAMassIsNamedAndLeavesTheNoise) {
+  const auto found = explained_with_drive(
+      [](const std::vector<double>& force, std::size_t row) { return force[std::min(row + 2, force.size() - 1)]; });
+  CHECK_EQUAL(1U, found.result.effects.size());
+  STRCMP_EQUAL("command_delay", found.result.effects.front().name.c_str());
+  DOUBLES_EQUAL(kNoise, found.result.channels.at(0).explained.rms, 0.1 * kNoise);
+}
+
 TEST(Explain, AVelocityInAnotherUnitOfLengthThanThePositionIsRefused) {
   Record record = oscillator(400.0, kNoise);
   record.channels.push_back({"velocity", "mm/s", record.channels[1].values});

@@ -74,7 +74,20 @@ Case simplex(std::size_t rows) {
   return made;
 }
 
-/// The force is interpolated between rows; what a plant step gets of it drives a period of one step.
+/// The force of a record is interpolated between rows; what a plant step gets of it drives a period of one step.
+template <class Plant>
+void drive_by_force(const typename Plant::Parameters& parameters, const Record& record, Case& made) {
+  const int steps = model::steps_per_period<Plant>(parameters, record.period);
+  made.period = record.period / steps;
+  made.periods_per_row = static_cast<std::size_t>(steps);
+  const Excitation force(record.channels[0].values, steps, Excitation::Between::interpolated);
+  for (std::size_t row = 0; row < record.rows; ++row) {
+    for (int step = 0; step < steps; ++step) {
+      made.driven[0].push_back(force(row, step));
+    }
+  }
+}
+
 Case direct(std::size_t rows) {
   Case made{"direct",
             kHead +
@@ -87,16 +100,55 @@ Case direct(std::size_t rows) {
             {}};
   const Record record = record_of(rows, {channel("force", "", rows, 0, 30.0)});
   const ModelFile model = parse_model(made.text, "case.toml");
+  drive_by_force<model::Direct<double>>(std::get<DirectParameters>(model.parameters), record, made);
+  made.simulated = simulate(model, record);
+  return made;
+}
+
+/// At rest over its first rows, as a plant starts. The state at a row has moved on by one step of the path.
+Case imposed_motion(std::size_t rows) {
+  Case made{"imposed_motion",
+            kHead +
+                "\"imposed_motion\"\n[body]\ninertia = 2.0\ndamping = 300.0\n[effects.free_play]\nof = \"damper\"\n"
+                "half_width = 0.002\n[effects.sliding_friction]\nlaw = \"lugre\"\ncoulomb_forward = 4.0\n"
+                "coulomb_backward = 3.0\n",
+            0.0,
+            1,
+            {"position"},
+            {{}},
+            {}};
+  Record record = record_of(rows, {channel("position", "", rows, 0, 0.02)});
+  std::vector<double>& path = record.channels[0].values;
+  std::fill_n(path.begin(), std::min<std::size_t>(model::Interpolation::kMostNodes, rows), 0.0);
+  const ModelFile model = parse_model(made.text, "case.toml");
   const int steps =
-      model::steps_per_period<model::Direct<double>>(std::get<DirectParameters>(model.parameters), record.period);
+      steps_in_row<model::ImposedMotion<double>>(std::get<ImposedMotionParameters>(model.parameters), record.period);
   made.period = record.period / steps;
   made.periods_per_row = static_cast<std::size_t>(steps);
-  const Excitation force(record.channels[0].values, steps, Excitation::Between::interpolated);
+  const Excitation position(path, steps, Excitation::Between::ahead);
   for (std::size_t row = 0; row < rows; ++row) {
     for (int step = 0; step < steps; ++step) {
-      made.driven[0].push_back(force(row, step));
+      made.driven[0].push_back(position(row, step));
     }
   }
+  made.simulated = simulate(model, record);
+  return made;
+}
+
+/// The force is interpolated between rows, as of a direct mass.
+Case modal(std::size_t rows) {
+  Case made{"modal",
+            kHead +
+                "\"modal\"\n[mode1]\nfrequency = 5.0\nmobility = 0.5\njoint = 0.4\nplace2 = 0.3\n[mode2]\nfrequency = 17.0\n"
+                "mobility = 0.2\njoint = -0.8\n[effects.elastic_stop]\nstiffness = 2e4\nforward = 1e-3\n",
+            0.0,
+            1,
+            {"force"},
+            {{}},
+            {}};
+  const Record record = record_of(rows, {channel("force", "", rows, 0, 30.0)});
+  const ModelFile model = parse_model(made.text, "case.toml");
+  drive_by_force<model::Modal<double>>(std::get<ModalParameters>(model.parameters), record, made);
   made.simulated = simulate(model, record);
   return made;
 }
@@ -157,6 +209,12 @@ Case case_of(const std::string& topology, std::size_t rows) {
   if (topology == "direct") {
     return direct(rows);
   }
+  if (topology == "imposed_motion") {
+    return imposed_motion(rows);
+  }
+  if (topology == "modal") {
+    return modal(rows);
+  }
   if (topology == "taos") {
     return vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"},
                    {{"force.x", "N", 26e4},
@@ -181,6 +239,9 @@ Case case_of(const std::string& topology, std::size_t rows) {
 std::vector<Case> cases(std::size_t rows) {
   std::vector<Case> all;
   for (const char* topology : kTopologies) {
+    all.push_back(case_of(topology, rows));
+  }
+  for (const char* topology : {"imposed_motion", "modal"}) {
     all.push_back(case_of(topology, rows));
   }
   return all;

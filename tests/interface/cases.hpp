@@ -27,12 +27,13 @@ struct Case {
   std::vector<std::string> outputs() const;
 };
 
+/// Those whose derivatives and cost are tested.
 inline constexpr std::array<const char*, 4> kTopologies{"simplex", "direct", "taos", "masv"};
 
 /// One of them, over `rows` rows of 1 ms.
 Case case_of(const std::string& topology, std::size_t rows);
 
-/// The four topologies, over `rows` rows of 1 ms.
+/// Every topology, over `rows` rows of 1 ms.
 std::vector<Case> cases(std::size_t rows);
 
 }  // namespace hotfire::test

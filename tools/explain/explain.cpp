@@ -50,17 +50,23 @@ void refuse_turned_sign(const Dataset& data, const ModelFile& model, const Searc
                         const SearchResult& found) {
   constexpr double kFollowsMass = 50.0;  // percent of the motion
   constexpr double kClearlyLess = 0.5;
-  const ChannelFit& left = found.explained.goodness.held_out.front();
-  if (!found.searched || found.interrupted || left.fit_percent >= kFollowsMass) {
+  const std::vector<ChannelFit>& fits = found.explained.goodness.held_out;
+  const auto first = static_cast<std::size_t>(std::ranges::find(data.used, true) - data.used.begin());
+  bool follows = false;
+  for (std::size_t c = 0; c < fits.size(); ++c) {
+    follows = follows || (data.used[c] && fits[c].fit_percent >= kFollowsMass);
+  }
+  if (!found.searched || found.interrupted || follows) {
     return;
   }
+  const ChannelFit& left = fits[first];
   options.watch.progress({Work::concluding, "nothing follows the mass: the same with its force turned"});
   Dataset turned = data;
   for (Experiment& experiment : turned.experiments) {
     std::ranges::transform(experiment.input, experiment.input.begin(), std::negate<>());
   }
   const SearchResult other = search(turned, model, options);
-  const double left_turned = other.explained.goodness.held_out.front().rms;
+  const double left_turned = other.explained.goodness.held_out[first].rms;
   if (!other.interrupted && left_turned < kClearlyLess * left.rms) {
     throw FileError(words::turned_mass(data.experiments.front().name, left_turned, left.rms));
   }

@@ -62,7 +62,7 @@ DualParameters with_dual_parts(const Parameters& parameters, std::span<const std
 template <class Plant, class DualPlant>
 std::vector<ChannelSlopes> differentiated(const typename Plant::Parameters& parameters, const Record& inputs,
                                           std::span<const std::string> keys) {
-  const int steps = model::steps_per_period<Plant>(parameters, inputs.period);
+  const int steps = steps_in_row<Plant>(parameters, inputs.period);
   std::vector<ChannelSlopes> channels;
   channels.reserve(Plant::channels.size());
   for (const std::string_view name : Plant::channels) {

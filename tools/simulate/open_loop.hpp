@@ -9,25 +9,41 @@
 
 namespace hotfire {
 
-/// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command, a driven
-/// mass at the first row of its position and velocity, each zero where the record does not have it.
+/// Piston position at the first row of a record of a hydraulic axis, if it is measured there [m]; otherwise 0.
+inline double first_piston(const Record& inputs, double moment_arm) {
+  const Channel* piston = inputs.find("piston");
+  const Channel* engine = inputs.find("engine");
+  return piston != nullptr ? piston->values.front() : engine != nullptr ? moment_arm * engine->values.front() : 0.0;
+}
+
+/// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command
+/// (without position feedback at the first row of its piston or engine), a driven
+/// mass at the first row of its position and velocity, each zero where the record does not have it, a moved body on its
+/// path, a structure in modal coordinates at rest.
 template <class Plant>
 typename Plant::State start_of(const Plant& plant, const Record& inputs) {
   using S = typename Plant::Scalar;
-  typename Plant::State state = [&] {
-    if constexpr (requires { plant.at_rest(S(0.0)); }) {
-      const auto first = [&](std::string_view name) {
-        const Channel* channel = inputs.find(std::string(name));
-        return S(channel != nullptr ? channel->values.front() : 0.0);
-      };
-      return plant.moving(first(Plant::channels[Plant::kPosition]), first(Plant::channels[Plant::kVelocity]),
-                          first(Plant::input_channel));
-    } else {
-      return plant.steady(S(inputs.find(std::string(Plant::input_channel))->values.front()));
-    }
-  }();
-  state.clock.start = S(inputs.start);
-  return state;
+  if constexpr (Plant::topology == "imposed_motion") {
+    return enter_path(plant, inputs.find(std::string(Plant::input_channel))->values, inputs.period, inputs.start);
+  } else {
+    typename Plant::State state = [&] {
+      if constexpr (Plant::topology == "direct") {
+        const auto first = [&](std::string_view name) {
+          const Channel* channel = inputs.find(std::string(name));
+          return S(channel != nullptr ? channel->values.front() : 0.0);
+        };
+        return plant.moving(first(Plant::channels[Plant::kPosition]), first(Plant::channels[Plant::kVelocity]),
+                            first(Plant::input_channel));
+      } else if constexpr (Plant::topology == "modal") {
+        return plant.at_rest(S(0.0));
+      } else {
+        return plant.resting(S(inputs.find(std::string(Plant::input_channel))->values.front()),
+                             S(first_piston(inputs, model::value_of(plant.parameters().actuator.moment_arm))));
+      }
+    }();
+    state.clock.start = S(inputs.start);
+    return state;
+  }
 }
 
 /// Steps a plant of one axis through a record, `steps` plant steps a row, and hands every row's readings to

@@ -73,18 +73,21 @@ std::pair<double, double> fitted_start(const DirectParameters& parameters, const
   return {start(0) * scale, start(1) * speed};
 }
 
-/// The unit of a channel of a `direct` mass: that of the record, or one that goes with its position, which goes with a force
-/// or torque in SI.
+/// The unit of a channel of a mass or a moved body: that of the record, or one that goes with its position, which goes with
+/// a force or torque in SI.
 std::string unit_of_motion(const Record& inputs, std::string_view channel, const std::string& unit_of_input) {
   if (const Channel* measured = inputs.find(std::string(channel))) {
     return measured->unit;
+  }
+  if (channel == "force") {
+    return unit_of_input == "m" ? "N" : unit_of_input == "rad" ? "N.m" : "1";
   }
   const Channel* position = inputs.find("position");
   const std::string unit = position != nullptr      ? position->unit
                            : unit_of_input == "N"   ? "m"
                            : unit_of_input == "N.m" ? "rad"
                                                     : "1";
-  return channel == "velocity" ? unit + "/s" : channel == "acceleration" ? unit + "/s^2" : unit;
+  return channel.starts_with("velocity") ? unit + "/s" : channel.starts_with("acceleration") ? unit + "/s^2" : unit;
 }
 
 template <class Plant>
@@ -119,14 +122,15 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
 Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_start_rows) {
   if (fit_start_rows > 0 && !std::holds_alternative<DirectParameters>(model.parameters)) {
     throw UsageError(
-        "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command");
+        "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command, and a body "
+        "of imposed_motion on its path");
   }
   return std::visit(
       [&]<class Parameters>(const Parameters& parameters) {
         using Plant = PlantOf<Parameters, double>;
         require_channel(inputs, std::string(Plant::input_channel), "the model is driven by it");
         require_units_of_one_motion(inputs);
-        const int steps = model::steps_per_period<Plant>(parameters, inputs.period);
+        const int steps = steps_in_row<Plant>(parameters, inputs.period);
         const Plant plant(parameters, inputs.period / steps);
         auto state = start_of(plant, inputs);
         if constexpr (std::is_same_v<Parameters, DirectParameters>) {

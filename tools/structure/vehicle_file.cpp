@@ -93,7 +93,9 @@ class Reader {
       });
     }
     for (const NumberKey* number : left_out) {
-      declarations_[at(axis)].left_out.push_back(prefix + std::string{number->name});
+      if (!number->has_usual_value) {
+        declarations_[at(axis)].left_out.push_back(prefix + std::string{number->name});
+      }
     }
   }
 

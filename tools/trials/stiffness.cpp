@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <numbers>
+#include <string_view>
 #include <type_traits>
 
 #include "model/effects/load/soft_stiffness.hpp"
 #include "model/keys.hpp"
+#include "tools/files/model/plant_of.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 
@@ -59,15 +61,20 @@ ResonanceStiffness stiffness_at(const analysis::LoadResonance& load, double ampl
           total, analysis::beside(load.load_stiffness, total)};
 }
 
+std::string_view topology_of(const ModelFile& model) {
+  return std::visit([]<class Parameters>(const Parameters&) { return PlantOf<Parameters, double>::topology; },
+                    model.parameters);
+}
+
 }  // namespace
 
 LoadSpring load_spring_of(const ModelFile& model) {
   const auto* axis = std::get_if<SimplexParameters>(&model.parameters);
   if (axis == nullptr) {
     throw FileError(
-        fmt::format("{}: topology = \"direct\": a mass has no actuator in series with its load; allowed: \"simplex\", "
+        fmt::format("{}: topology = \"{}\": a mass has no actuator in series with its load; allowed: \"simplex\", "
                     "\"taos\", \"masv\"",
-                    model.path.string()));
+                    model.path.string(), topology_of(model)));
   }
   return spring_of(*axis, axis->actuator.moment_arm, 0.0);
 }

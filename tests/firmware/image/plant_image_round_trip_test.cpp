@@ -49,6 +49,29 @@ coulomb_forward = 20.39
 coulomb_backward = 19.1
 )";
 
+const char* const kMoved = R"(schema = 1
+topology = "imposed_motion"
+[body]
+damping = 1100.1
+[effects.free_play]
+of = "damper"
+half_width = 0.0021
+)";
+
+const char* const kModal = R"(schema = 1
+topology = "modal"
+[mode1]
+frequency = 5.1
+mobility = 0.0203
+joint = -0.31
+[mode6]
+frequency = 40.2
+mobility = 0.011
+[effects.elastic_stop]
+stiffness = 8003.0
+forward = 0.0021
+)";
+
 template <class Parameters>
 std::vector<std::uint64_t> bits_of(const Parameters& parameters) {
   std::vector<std::uint64_t> bits;
@@ -85,5 +108,9 @@ TEST_GROUP(PlantImageRoundTrip) {
 TEST(PlantImageRoundTrip, SimplexOfAModelFileArrivesBitForBit) { check<SimplexParameters>(kSimplex); }
 
 TEST(PlantImageRoundTrip, DirectMassOfAModelFileArrivesBitForBit) { check<DirectParameters>(kDirect); }
+
+TEST(PlantImageRoundTrip, MovedBodyOfAModelFileArrivesBitForBit) { check<ImposedMotionParameters>(kMoved); }
+
+TEST(PlantImageRoundTrip, StructureOfAModelFileArrivesBitForBit) { check<ModalParameters>(kModal); }
 
 }  // namespace hotfire

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "firmware/image/image_plant.hpp"
+
 namespace hotfire::firmware {
 
 namespace {
@@ -13,7 +15,8 @@ const std::string kMass = "schema 1\ntopology direct\nmass.inertia 0x1p+1\nmass.
 
 const std::string kTable =
     "servovalve.rated_flow 0.003\nservovalve.natural_frequency 377\nservovalve.damping_ratio 0.8\n"
-    "servovalve.position_gain 86\nservovalve.pressure_feedback_gain 1e-7\nservovalve.pressure_feedback_corner 6\n"
+    "servovalve.position_gain 86\nservovalve.position_feedback 1\nservovalve.pressure_feedback_gain "
+    "1e-7\nservovalve.pressure_feedback_corner 6\n"
     "actuator.piston_area 0.016\nactuator.supply_pressure 2e7\nactuator.bulk_modulus 1e9\nactuator.trapped_volume 5e-3\n"
     "actuator.leakage 2e-12\nactuator.piston_mass 50\nactuator.piston_damping 2e4\nactuator.stiffness 1.2e8\n"
     "actuator.moment_arm 0.75\nstructure.stiffness 5e7\nengine.inertia 9490\nengine.viscous_damping 1e4\n"
@@ -93,7 +96,7 @@ TEST(PlantImage, ActiveEffectNeedsEveryParameterAndAKnownLaw) {
 TEST(PlantImage, WrongSchemaTopologyAndLineAreRefused) {
   refused("", "missing key schema");
   refused("schema 2\ntopology direct\n", "schema = 2: this build reads schema 1");
-  refused("schema 1\ntopology wheel\n", "topology = wheel: allowed are direct simplex");
+  refused("schema 1\ntopology wheel\n", "topology = wheel: allowed are direct imposed_motion modal simplex");
   refused(kMass + "mass.inertia\n", "line 6: \"mass.inertia\": expected `key value`");
   refused(kMass + "\n", "line 6: \"\": expected `key value`");
 }
@@ -105,6 +108,19 @@ TEST(PlantImage, FileThatCannotBeReadIsRefusedWithTheReason) {
   STRCMP_CONTAINS("No such file", image.error.c_str());
   STRCMP_CONTAINS("/dev/zero:1: over 67108864 bytes", read_plant_image("/dev/zero").error.c_str());
   STRCMP_CONTAINS("Is a directory", read_plant_image("/tmp").error.c_str());
+}
+
+// A plant has room for `hal::kMaxReadings`; `hotfire-rt plant` takes as many copies as fit, and CAN only with a servovalve.
+TEST(PlantImage, ReadingsAndServovalveOfAPlantAreThoseOfItsTopology) {
+  const PlantParameters axis = model::Simplex<double>::Parameters{};
+  const PlantParameters structure = model::Modal<double>::Parameters{};
+  const PlantParameters moved = model::ImposedMotion<double>::Parameters{};
+  LONGS_EQUAL(3, readings_of(axis));
+  LONGS_EQUAL(9, readings_of(structure));
+  LONGS_EQUAL(1, readings_of(moved));
+  CHECK(topology_without_valve(axis).empty());
+  CHECK(topology_without_valve(structure) == "modal");
+  CHECK(topology_without_valve(moved) == "imposed_motion");
 }
 
 }  // namespace hotfire::firmware

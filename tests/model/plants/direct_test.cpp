@@ -156,4 +156,34 @@ TEST(Direct, HasItsOwnFrictionInEachDirection) {
   }
 }
 
+// A free mass under a constant input F gains F / m a second. The drive has the delay, then its dead band; its saturation
+// comes first.
+TEST(Direct, DriveLimitsDelaysAndSwallowsItsInputInThisOrder) {
+  Plant::Parameters parameters;
+  parameters.mass = {2.0, 0.0, 0.0};
+  ParamsOf<model::DriveSaturation, double> saturation;
+  saturation.limit = 10.0;
+  activate<model::DriveSaturation, Plant>(parameters, saturation);
+  ParamsOf<model::CommandDelay, double> delay;
+  delay.delay = 0.02;
+  activate<model::CommandDelay, Plant>(parameters, delay);
+  ParamsOf<model::DriveDeadband, double> deadband;
+  deadband.half_width = 4.0;
+  activate<model::DriveDeadband, Plant>(parameters, deadband);
+  const Plant plant(parameters, 1e-3);
+  Plant::State state = plant.at_rest(0.0);
+  for (int k = 0; k < 120; ++k) {
+    plant.step(state, 25.0);
+  }
+  DOUBLES_EQUAL((10.0 - 4.0) / 2.0 * 0.1, state.y(1), 1e-12);
+  for (int k = 0; k < 20; ++k) {
+    plant.step(state, 3.0);
+  }
+  const double before = state.y(1);
+  for (int k = 0; k < 50; ++k) {
+    plant.step(state, 3.0);
+  }
+  DOUBLES_EQUAL(before, state.y(1), 1e-12);
+}
+
 }  // namespace hotfire::test

@@ -40,9 +40,9 @@ std::string image_of_model(const std::string& model_path, const PlayedFiles& pla
   }
   const ModelFile model = load_model(model_path);
   return plant_image_text(model) + played_lines(model, played, [&](const Record& record) {
-           if (std::holds_alternative<DirectParameters>(model.parameters)) {
+           if (!std::holds_alternative<SimplexParameters>(model.parameters)) {
              throw FileError(
-                 fmt::format("{}: topology \"direct\" has no disturbance beside its force; allowed with "
+                 fmt::format("{}: a mass or a moved body has no disturbance beside its input; allowed with "
                              "\"simplex\", \"taos\" and \"masv\"",
                              model_path));
            }

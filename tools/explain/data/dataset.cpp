@@ -134,6 +134,7 @@ void set_zero_deviations(const ModelFile& model, Dataset& data) {
   for (Experiment& experiment : data.experiments) {
     experiment.zero_deviation.assign(data.channels.size(), 0.0);
   }
+  // A force-driven mass starts where it is measured.
   if (std::holds_alternative<DirectParameters>(model.parameters)) {
     return;
   }
@@ -172,6 +173,7 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
         input = Plant::input_channel;
       },
       model.parameters);
+  data.input_is_path = std::holds_alternative<ImposedMotionParameters>(model.parameters);
   data.used.assign(data.channels.size(), false);
 
   data.experiments.reserve(records.size());
@@ -187,10 +189,14 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
       experiment.start_state =
           start_state(*mass, experiment.input, experiment.measured, experiment.period, experiment.noise);
     }
-  } else {
+  } else if (const auto* modes = std::get_if<ModalParameters>(&model.parameters)) {
     for (Experiment& experiment : data.experiments) {
-      experiment.first_scored = rows_to_forget_start(std::get<SimplexParameters>(model.parameters), experiment.input,
-                                                     experiment.measured, experiment.period, experiment.noise);
+      experiment.first_scored = rows_to_forget_start(*modes, experiment.rows(), experiment.period);
+    }
+  } else if (const auto* axis = std::get_if<SimplexParameters>(&model.parameters)) {
+    for (Experiment& experiment : data.experiments) {
+      experiment.first_scored =
+          rows_to_forget_start(*axis, experiment.input, experiment.measured, experiment.period, experiment.noise);
     }
   }
   for (Experiment& experiment : data.experiments) {
@@ -201,6 +207,9 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
 
 std::vector<double> position_of(const Experiment& mass) {
   using Mass = model::Direct<double>;
+  if (mass.measured.size() < Mass::channels.size()) {
+    return mass.input;
+  }
   if (!mass.measured[Mass::kPosition].empty()) {
     return mass.measured[Mass::kPosition];
   }
@@ -239,7 +248,8 @@ Dataset thinned(const Dataset& data, double period) {
     for (std::size_t row = 0; row < experiment.input.size(); ++row) {
       const auto first = full.begin() + static_cast<std::ptrdiff_t>(row * every);
       const auto held = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(every), full.end() - first);
-      experiment.input[row] = std::accumulate(first, first + held, 0.0) / static_cast<double>(held);
+      experiment.input[row] =
+          data.input_is_path ? *first : std::accumulate(first, first + held, 0.0) / static_cast<double>(held);
     }
     const auto thin_rows = [&](std::vector<double>& values) {
       for (std::size_t row = 0; row * every < values.size(); ++row) {

@@ -53,7 +53,8 @@ struct Dataset {
   std::vector<double> noise;          ///< rms over all records by channel; 1 where unused
   std::vector<NoiseSource> noise_source;
   std::vector<Experiment> experiments;
-  AxisGeometry geometry;  ///< read where experiments have another axis
+  bool input_is_path = false;  ///< the input is a position, known at the rows: a reading needs its neighbours
+  AxisGeometry geometry;       ///< read where experiments have another axis
   /// Names of the effects that the plant of the axis knows; empty: all.
   std::vector<std::string> known_effects;
 

@@ -11,14 +11,16 @@
 
 namespace hotfire::explain {
 
-/// Parameters of whichever plant is explained: a hydraulic axis or a force-driven mass. What lies above the simulation of a
-/// plant asks it for effects, fields and values by the functions below, and is written and compiled once for all plants.
+/// Parameters of whichever plant is explained: a hydraulic axis, a force-driven mass, a body on a given path or a
+/// structure in modal coordinates. What lies
+/// above the simulation of a plant asks it for effects, fields and values by the functions below, and is written and
+/// compiled once for all plants.
 using ModelParameters = decltype(ModelFile::parameters);
 
 template <class Parameters>
 concept IsModelParameters = std::same_as<std::remove_const_t<Parameters>, ModelParameters>;
 
-/// True for an axis that a servo moves to its command, false for a mass that a force drives.
+/// True for an axis that a servo moves to its command, false for all others.
 inline bool is_hydraulic_axis(const ModelParameters& parameters) {
   return std::holds_alternative<SimplexParameters>(parameters);
 }

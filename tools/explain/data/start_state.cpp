@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "model/numerics/step_size.hpp"
 #include "tools/simulate/run.hpp"
@@ -91,6 +92,14 @@ std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<
   if (rows < 4) {
     return 0;
   }
+  const auto& valve = parameters.servovalve;
+  if (valve.position_feedback == 0.0) {
+    // The position stays; what is forgotten are the spool and the washout.
+    const double seconds =
+        -std::log(kForgotten) * (2.0 * valve.damping_ratio / valve.natural_frequency +
+                                 (valve.pressure_feedback_gain > 0.0 ? 1.0 / valve.pressure_feedback_corner : 0.0));
+    return std::min(command.size() / 4, static_cast<std::size_t>(seconds / period));
+  }
   const int steps = model::steps_per_period(period);
   const model::Simplex<double> axis(parameters, period / steps);
   auto state = axis.steady(command.front());
@@ -116,10 +125,21 @@ std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<
   if (steady) {
     return 0;
   }
-  const auto& valve = parameters.servovalve;
-  const double loop_gain = valve.rated_flow * valve.position_gain / parameters.actuator.piston_area;
+  const double loop_gain =
+      valve.rated_flow * valve.position_gain * valve.position_feedback / parameters.actuator.piston_area;
   const double seconds = -std::log(kForgotten) * (1.0 / loop_gain + 1.0 / valve.pressure_feedback_corner);
   return std::min(command.size() / 4, static_cast<std::size_t>(seconds / period));
+}
+
+std::size_t rows_to_forget_start(const ModalParameters& parameters, std::size_t rows, double period) {
+  double longest = 0.0;
+  ModalParameters::for_each_part(parameters, [&](const auto& mode) {
+    const double rate = 2.0 * std::numbers::pi * mode.frequency * mode.damping_ratio;
+    if (mode.mobility > 0.0 && rate > 0.0) {
+      longest = std::max(longest, -std::log(kForgotten) / rate);
+    }
+  });
+  return std::min(rows / 4, static_cast<std::size_t>(longest / period));
 }
 
 }  // namespace hotfire::explain

@@ -176,11 +176,10 @@ bool simulate_dual(const Parameters& plain, const Course& course, const std::vec
 
 /// Steps per row of an experiment.
 int steps_of(const ModelParameters& base, const Experiment& experiment, Resolution resolution) {
-  const int fine = std::visit(
-      [&]<class Parameters>(const Parameters& own) {
-        return model::steps_per_period<PlantOf<Parameters, double>>(own, experiment.period);
-      },
-      base);
+  const int fine =
+      std::visit([&]<class Parameters>(
+                     const Parameters& own) { return steps_in_row<PlantOf<Parameters, double>>(own, experiment.period); },
+                 base);
   const int times_longer = resolution == Resolution::fine ? 1 : resolution == Resolution::coarse ? 2 : 4;
   return (fine + times_longer - 1) / times_longer;
 }

@@ -19,30 +19,44 @@ struct Start {
   std::array<S, 3> values{S(0.0), S(0.0), S(0.0)};  ///< position, velocity, clock: FreeParameter::state
 };
 
+/// Piston position at the first row of an experiment of a hydraulic axis, as it is measured there [m]; 0 where it is not.
+inline double first_piston(const Experiment& experiment, double moment_arm) {
+  const std::vector<double>& piston = experiment.measured[0];
+  const std::vector<double>& engine = experiment.measured[1];
+  return !piston.empty() ? piston.front() : !engine.empty() ? moment_arm * engine.front() : 0.0;
+}
+
 template <class Plant, class S>
 typename Plant::State initial_state(const Plant& plant, const Dataset& data, const Experiment& experiment,
                                     const Start<S>& start) {
-  typename Plant::State state = [&] {
-    if constexpr (Plant::topology == "direct") {
-      return plant.moving(start.values[0], start.values[1], S(experiment.input.front()));
-    } else if (experiment.other.is_there()) {
-      const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
-      const OtherAxis& other = experiment.other;
-      const RestOfVehicle& vehicle = experiment.vehicle;
-      return plant.steady(S(experiment.input.front()), [&](const S& angle) {
-        auto coupling = beside(angle, other.angle.front(), 0.0, other.force.front());
-        if (vehicle.is_there()) {
-          coupling.motion += vehicle.motion.front();
-          coupling.torque += vehicle.torque.front();
-        }
-        return coupling;
-      });
-    } else {
-      return plant.steady(S(experiment.input.front()));
-    }
-  }();
-  state.clock.start = start.values[2];
-  return state;
+  if constexpr (Plant::topology == "imposed_motion") {
+    return enter_path(plant, experiment.input, experiment.period, experiment.start);
+  } else {
+    typename Plant::State state = [&] {
+      if constexpr (Plant::topology == "direct") {
+        return plant.moving(start.values[0], start.values[1], S(experiment.input.front()));
+      } else if constexpr (Plant::topology == "modal") {
+        return plant.at_rest(S(0.0));
+      } else if (experiment.other.is_there()) {
+        const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
+        const OtherAxis& other = experiment.other;
+        const RestOfVehicle& vehicle = experiment.vehicle;
+        return plant.steady(S(experiment.input.front()), [&](const S& angle) {
+          auto coupling = beside(angle, other.angle.front(), 0.0, other.force.front());
+          if (vehicle.is_there()) {
+            coupling.motion += vehicle.motion.front();
+            coupling.torque += vehicle.torque.front();
+          }
+          return coupling;
+        });
+      } else {
+        return plant.resting(S(experiment.input.front()),
+                             S(first_piston(experiment, model::value_of(plant.parameters().actuator.moment_arm))));
+      }
+    }();
+    state.clock.start = start.values[2];
+    return state;
+  }
 }
 
 /// Steps a plant through an experiment: a hydraulic axis under the torque that was measured, and if it is one of a vehicle,
@@ -50,7 +64,7 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
 template <class Plant, class Sink>
 bool run_experiment(const Plant& plant, const Dataset& data, const Experiment& experiment, typename Plant::State& state,
                     int steps, Sink&& sink) {
-  if constexpr (Plant::topology != "direct") {
+  if constexpr (Plant::topology == "simplex") {
     if (experiment.other.is_there()) {
       AxisInVehicle<Plant> axis(plant, data, experiment, state, steps);
       const auto advance = [&](std::size_t row, int k) {

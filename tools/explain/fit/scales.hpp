@@ -31,4 +31,12 @@ double servo_time(const SimplexParameters& declared);
 /// "force.time/position^2"; 1 for any other.
 double size_of_unit(std::string_view unit, const Scales& scales);
 
+/// The motion across the joint of a structure in modal coordinates by row, as its model predicts it: no sensor reads it.
+struct JointMotion {
+  std::vector<double> position;
+  std::vector<double> rate;
+};
+
+JointMotion joint_motion(const Dataset& data, const Experiment& experiment, const ModalParameters& parameters);
+
 }  // namespace hotfire::explain

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/simulate/path.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -28,7 +30,7 @@ struct Signals {
   Series output;
 };
 
-/// A hydraulic axis has a zero of its own, which a constant takes up; a mass starts where it is.
+/// A channel of an axis or of a moved body has a zero of its own, which a constant takes up; a mass starts where it is.
 bool has_zero(const Experiment& experiment, std::size_t channel) { return experiment.zero_deviation[channel] > 0.0; }
 
 /// Mean of a series over the rows that a fit sees.
@@ -224,7 +226,17 @@ Scored best_delay(const std::vector<Signals>& all, std::size_t channel, std::siz
 
 }  // namespace
 
-Dataset for_black_box(const Dataset& data) { return thinned(data, kClosestRows); }
+Dataset for_black_box(const Dataset& data) {
+  Dataset thin = thinned(data, kClosestRows);
+  if (data.input_is_path) {
+    // The force along a path needs the position one row later, which a delay cannot give.
+    for (Experiment& experiment : thin.experiments) {
+      experiment.input.push_back(Path(experiment.input, 1).at(static_cast<std::ptrdiff_t>(experiment.rows())));
+      experiment.input.erase(experiment.input.begin());
+    }
+  }
+  return thin;
+}
 
 BlackBox black_box(const Dataset& full) {
   const Dataset data = for_black_box(full);

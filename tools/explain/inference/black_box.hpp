@@ -37,7 +37,7 @@ BlackBox black_box(const Dataset& data);
 /// from where it is; with the zeros that `add_zeros` gives them. `data` is thinned to its period.
 Prediction simulated(const BlackBox& box, const Dataset& data);
 
-/// The records as a black box sees them.
+/// The records as a black box sees them: `thinned`, and where the input is a path its position one row later.
 Dataset for_black_box(const Dataset& data);
 
 }  // namespace hotfire::explain

@@ -33,7 +33,9 @@ SimplexParameters with_valve_bias(SimplexParameters parameters, double bias) {
 }
 
 std::optional<double> common_valve_bias(const Dataset& data, const Zeros& zeros, const SimplexParameters& parameters) {
-  if (data.experiments.size() < kFewestRecords || has_valve_bias(parameters)) {
+  // Without position feedback a bias of the valve is a drift and not a zero.
+  const bool has_feedback = parameters.servovalve.position_feedback > 0.0;
+  if (!has_feedback || data.experiments.size() < kFewestRecords || has_valve_bias(parameters)) {
     return std::nullopt;
   }
   constexpr double kSmall = 0.01;

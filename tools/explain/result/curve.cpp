@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/explain/fit/scales.hpp"
+
 namespace hotfire::explain {
 
 namespace {
@@ -212,9 +214,26 @@ Curve effect_curve(const SimplexParameters& p, const Params& params, const Reach
 }
 
 template <class E, class Params>
+Curve mass_curve(const Params& params, const Reach& reach) {
+  if constexpr (E::site == Site::command) {
+    return signal_curve<E>(params, reach.input, "input of the drive", "force");
+  } else {
+    return motion_curve<E>(params, reach.position, reach.position_rate, "mass", "position", "force against the motion",
+                           "force");
+  }
+}
+
+template <class E, class Params>
 Curve effect_curve(const DirectParameters&, const Params& params, const Reach& reach) {
-  return motion_curve<E>(params, reach.position, reach.position_rate, "mass", "position", "force against the motion",
-                         "force");
+  return mass_curve<E>(params, reach);
+}
+template <class E, class Params>
+Curve effect_curve(const ImposedMotionParameters&, const Params& params, const Reach& reach) {
+  return mass_curve<E>(params, reach);
+}
+template <class E, class Params>
+Curve effect_curve(const ModalParameters&, const Params& params, const Reach& reach) {
+  return mass_curve<E>(params, reach);
 }
 
 Reach reach_in(const Dataset& data, const SimplexParameters& parameters) {
@@ -257,6 +276,29 @@ Reach reach_in(const Dataset& data, const DirectParameters&) {
     for (std::size_t i = 1; velocity.empty() && i < position.size(); ++i) {
       reach.position_rate = std::max(reach.position_rate, std::abs(position[i] - position[i - 1]) / e.period);
     }
+  }
+  return reach;
+}
+
+Reach reach_in(const Dataset& data, const ImposedMotionParameters&) {
+  Reach reach;
+  for (const Experiment& e : data.experiments) {
+    reach.input = std::max(reach.input, largest(e.input));
+    reach.position = std::max(reach.position, largest(e.input));
+    for (std::size_t i = 1; i < e.input.size(); ++i) {
+      reach.position_rate = std::max(reach.position_rate, std::abs(e.input[i] - e.input[i - 1]) / e.period);
+    }
+  }
+  return reach;
+}
+
+Reach reach_in(const Dataset& data, const ModalParameters& parameters) {
+  Reach reach;
+  for (const Experiment& e : data.experiments) {
+    const JointMotion joint = joint_motion(data, e, parameters);
+    reach.input = std::max(reach.input, largest(e.input));
+    reach.position = std::max(reach.position, largest(joint.position));
+    reach.position_rate = std::max(reach.position_rate, largest(joint.rate));
   }
   return reach;
 }

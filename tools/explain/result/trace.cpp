@@ -61,7 +61,7 @@ std::vector<LeftOver> left_over(const Experiment& experiment, const SimplexParam
   Series valve_command(rows);
   for (std::size_t i = 0; i < rows; ++i) {
     washout += p.servovalve.pressure_feedback_corner * (pressure[i] - washout) * period;
-    valve_command[i] = std::clamp(p.servovalve.position_gain * (arm * command[i] - x[i]) -
+    valve_command[i] = std::clamp(p.servovalve.position_gain * (arm * command[i] - p.servovalve.position_feedback * x[i]) -
                                       p.servovalve.pressure_feedback_gain * (pressure[i] - washout),
                                   -1.0, 1.0);
   }
@@ -88,16 +88,18 @@ std::vector<LeftOver> left_over(const Experiment& experiment, const SimplexParam
             {"load pressure", "Pa", pressure}}}};
 }
 
-std::vector<LeftOver> left_over(const Experiment& experiment, const DirectParameters& p, const Series& position) {
+/// Of a driven mass or a moved body.
+std::vector<LeftOver> left_over(const Experiment& experiment, const Series& measured_force, double inertia, double damping,
+                                double stiffness, const Series& position) {
   const double period = experiment.period;
   // The smoothing follows the sampling: a direct mass has no bandwidth that is known beforehand.
   const double frequency = 1.0 / (10.0 * period);
   const Series x = smoothed(position, period, frequency);
-  const Series force = smoothed(experiment.input, period, frequency);
+  const Series force = smoothed(measured_force, period, frequency);
   const Series velocity = rate_of(x, period);
   const Series acceleration = rate_of(velocity, period);
   const Series missing = by_row(x.size(), [&](std::size_t i) {
-    return force[i] - p.mass.inertia * acceleration[i] - p.mass.damping * velocity[i] - p.mass.stiffness * x[i];
+    return force[i] - inertia * acceleration[i] - damping * velocity[i] - stiffness * x[i];
   });
   return {{"mass",
            {"force against the motion", "force", missing},
@@ -216,9 +218,10 @@ std::vector<Trace> reconstruct_with(const Dataset& data, const SimplexParameters
 }
 
 std::vector<Trace> reconstruct_with(const Dataset& data, const DirectParameters& parameters) {
+  const auto& [inertia, damping, stiffness] = parameters.mass;
   return joined(data, [&](const Experiment& experiment, bool noise_only, std::mt19937_64& generator) {
     if (!noise_only) {
-      return left_over(experiment, parameters, position_of(experiment));
+      return left_over(experiment, experiment.input, inertia, damping, stiffness, position_of(experiment));
     }
     Experiment still = experiment;
     still.input.assign(experiment.rows(), 0.0);
@@ -227,9 +230,24 @@ std::vector<Trace> reconstruct_with(const Dataset& data, const DirectParameters&
         still.measured[c] = noise_like(experiment.rows(), experiment.noise[c], generator);
       }
     }
-    return left_over(still, parameters, position_of(still));
+    return left_over(still, still.input, inertia, damping, stiffness, position_of(still));
   });
 }
+
+std::vector<Trace> reconstruct_with(const Dataset& data, const ImposedMotionParameters& parameters) {
+  const auto& [inertia, damping, stiffness] = parameters.body;
+  return joined(data, [&](const Experiment& experiment, bool noise_only, std::mt19937_64& generator) {
+    if (!noise_only) {
+      return left_over(experiment, experiment.measured[0], inertia, damping, stiffness, experiment.input);
+    }
+    const Series still(experiment.rows(), 0.0);
+    return left_over(experiment, noise_like(experiment.rows(), experiment.noise[0], generator), inertia, damping, stiffness,
+                     still);
+  });
+}
+
+/// What acts in a joint does not follow from the motion of other places without the modes.
+std::vector<Trace> reconstruct_with(const Dataset&, const ModalParameters&) { return {}; }
 
 }  // namespace
 

@@ -137,14 +137,14 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
 /// signal is in step with it, then to their phase. No fit moves them, since they have no derivative.
 void match_samples(const Evaluator& evaluator, const model::MemoryParameters<double>& proposed, double row, unsigned threads,
                    Screened& start) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
+  constexpr double kPeriodPhase = 2.0 * std::numbers::pi;
   const auto leaves_less = [&](double rows, double passed) {
     Screened moved = start;
     visit_effects(moved.fitted.base, [&]<class E>(std::size_t index, auto& values) {
       if constexpr (requires { E::is_term; }) {
         if (index == moved.candidate.effect) {
           values.time = rows * row;
-          values.phase = std::remainder(kTurn * passed / rows, kTurn);
+          values.phase = std::remainder(kPeriodPhase * passed / rows, kPeriodPhase);
         }
       }
     });
@@ -155,7 +155,7 @@ void match_samples(const Evaluator& evaluator, const model::MemoryParameters<dou
     }
     return less;
   };
-  const double turns = proposed.phase / kTurn;
+  const double turns = proposed.phase / kPeriodPhase;
   double rows = std::max(2.0, std::round(proposed.time / row));
   const double about = rows;
   for (int longer = -kRowsOff; longer <= kRowsOff; ++longer) {

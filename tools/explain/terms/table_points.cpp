@@ -82,7 +82,15 @@ void take_state(Extents& extents, const model::Simplex<double>& plant, const mod
   extents.deflection.take(state.y(Plant::kPiston) - plant.parameters().actuator.moment_arm * state.y(Plant::kAngle));
 }
 
-void take_state(Extents& extents, const model::Direct<double>&, const model::Direct<double>::State& state) {
+/// Of the joint.
+void take_state(Extents& extents, const model::Modal<double>& plant, const model::Modal<double>::State& state) {
+  extents.position.take(plant.joint_position(state));
+  extents.rate.take(plant.joint_rate(state));
+}
+
+/// Of a driven mass or a moved body.
+template <class Plant>
+void take_state(Extents& extents, const Plant&, const typename Plant::State& state) {
   extents.position.take(state.y(0));
   extents.rate.take(state.y(1));
 }
@@ -92,13 +100,17 @@ Extents extents_under(const Dataset& data, const Parameters& parameters) {
   using Plant = PlantOf<Parameters, double>;
   Extents extents;
   for (const Experiment& experiment : data.experiments) {
-    const int steps = model::steps_per_period<Plant>(parameters, experiment.period);
+    const int steps = steps_in_row<Plant>(parameters, experiment.period);
     const Plant plant(parameters, experiment.period / steps);
     typename Plant::State state = [&] {
-      if constexpr (Plant::topology == "direct") {
+      if constexpr (Plant::topology == "imposed_motion") {
+        return enter_path(plant, experiment.input, experiment.period, experiment.start);
+      } else if constexpr (Plant::topology == "direct") {
         return plant.moving(experiment.start_state.position, experiment.start_state.velocity, experiment.input.front());
+      } else if constexpr (Plant::topology == "modal") {
+        return plant.at_rest(0.0);
       } else {
-        return plant.steady(experiment.input.front());
+        return plant.resting(experiment.input.front(), first_piston(experiment, parameters.actuator.moment_arm));
       }
     }();
     auto block = experiment.fitted.begin();

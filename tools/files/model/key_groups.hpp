@@ -18,8 +18,8 @@ template <class Values>
 std::vector<NumberKey> number_keys(Values& values) {
   std::vector<NumberKey> keys;
   for (const auto& field : Values::fields()) {
-    keys.push_back(
-        {field.name, field.unit, field.lower, field.upper, field.meaning, &(values.*field.member), field.options});
+    keys.push_back({field.name, field.unit, field.lower, field.upper, field.meaning, &(values.*field.member), field.options,
+                    field.typical == 0.0});
   }
   return keys;
 }

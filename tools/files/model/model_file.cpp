@@ -37,7 +37,10 @@ void read_parts(const TomlSource& source, const ModelLayout& layout, ModelFile& 
             fmt::format("missing: topology \"{}\" needs it, in the record's own units, {}; allowed: {:g} to {:g}",
                         layout.topology, number->unit, number->lower, number->upper));
       }
-      model.left_out.push_back(key);
+      // A part in the record's own units that the file does not have is not there: its reference values are zero.
+      if (!number->has_usual_value && (node != nullptr || !own_units)) {
+        model.left_out.push_back(key);
+      }
     }
   }
 }

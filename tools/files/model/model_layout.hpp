@@ -18,6 +18,7 @@ struct NumberKey {
   std::string_view meaning;
   double* value;
   unsigned options;
+  bool has_usual_value = false;  ///< a rig is built otherwise on purpose only: the reference value needs no warning
 };
 
 /// One curve of a table of a model file: two arrays, bound to their places. As in model::TableField.

@@ -20,6 +20,16 @@ struct PlantOfParameters<DirectParameters> {
   template <class S>
   using Plant = model::Direct<S>;
 };
+template <>
+struct PlantOfParameters<ImposedMotionParameters> {
+  template <class S>
+  using Plant = model::ImposedMotion<S>;
+};
+template <>
+struct PlantOfParameters<ModalParameters> {
+  template <class S>
+  using Plant = model::Modal<S>;
+};
 
 /// `PlantOf<SimplexParameters, S>` is `model::Simplex<S>`.
 template <class Parameters, class S>

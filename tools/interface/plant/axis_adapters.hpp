@@ -21,12 +21,14 @@ namespace hotfire::plant {
 inline constexpr double kLargest = std::numeric_limits<double>::max();
 
 inline std::string_view meaning_of_channel(std::string_view channel) {
-  return channel == "piston"         ? "piston position as its sensor reads it"
-         : channel == "engine"       ? "engine angle as its sensor reads it"
-         : channel == "position"     ? "position of the mass as its sensor reads it"
-         : channel == "velocity"     ? "velocity of the mass as its sensor reads it"
-         : channel == "acceleration" ? "acceleration of the mass as its sensor reads it"
-                                     : "pressure across the piston as its sensor reads it";
+  const std::string_view kind = channel.substr(0, channel.find_last_not_of("23") + 1);
+  return kind == "piston"         ? "piston position as its sensor reads it"
+         : kind == "engine"       ? "engine angle as its sensor reads it"
+         : kind == "position"     ? "position as its sensor reads it"
+         : kind == "velocity"     ? "velocity as its sensor reads it"
+         : kind == "acceleration" ? "acceleration as its sensor reads it"
+         : kind == "force"        ? "force that the motion takes, of the period before, as its sensor reads it"
+                                  : "pressure across the piston as its sensor reads it";
 }
 
 /// What both models have in common for `PlantOf`: their keys, channels and readings.
@@ -76,7 +78,7 @@ auto under_torque(const model::Simplex<S>& model, const S& torque) {
   };
 }
 
-// The binary of an FMU is for any x86_64: these two steps are compiled twice, and the processor that runs them chooses. Both
+// The binary of an FMU is for any x86_64: these steps are compiled twice, and the processor that runs them chooses. Both
 // versions give the same bits.
 
 /// Advances an axis by one step with a command [rad] and a torque on its engine [N m], both held.
@@ -85,6 +87,13 @@ void step_axis(const model::Simplex<double>& model, model::Simplex<double>::Stat
 
 /// Advances a mass by one step with a force that is held.
 void step_mass(const model::Direct<double>& model, model::Direct<double>::State& state, const double& force) noexcept;
+
+/// Advances a structure in modal coordinates by one step with a force that is held.
+void step_modes(const model::Modal<double>& model, model::Modal<double>::State& state, const double& force) noexcept;
+
+/// Moves a body by one step that ends at a position.
+void move_body(const model::ImposedMotion<double>& model, model::ImposedMotion<double>::State& state,
+               const double& position) noexcept;
 
 /// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
 template <class S>
@@ -147,6 +156,70 @@ struct DirectAdapter : ModelAdapter<S, model::Direct<S>> {
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
     if constexpr (std::same_as<S, double>) {
       step_mass(model, state.plant, inputs[0]);
+    } else {
+      model.step(state.plant, inputs[0]);
+    }
+  }
+};
+
+/// A structure in modal coordinates. Input: force, in the record's own units.
+template <class S>
+struct ModalAdapter : ModelAdapter<S, model::Modal<S>> {
+  using typename ModelAdapter<S, model::Modal<S>>::Model;
+  using typename ModelAdapter<S, model::Modal<S>>::Parameters;
+  using typename ModelAdapter<S, model::Modal<S>>::State;
+
+  static int steps(const typename Model::Parameters& parameters, double period) {
+    return model::steps_per_period<Model>(parameters, period);
+  }
+
+  static std::vector<Variable> inputs(const Parameters&) {
+    return {{"force", "", "force on the structure, held over a period", 0.0, -kLargest, kLargest}};
+  }
+
+  static std::vector<Variable> further_parameters() { return {}; }
+
+  static void settle(const Model& model, State& state, std::span<const S>, const Parameters&, std::span<const S>,
+                     double time) {
+    state.plant = model.at_rest(S(0.0));
+    state.plant.clock = {model::Precise<S>(time)};
+  }
+
+  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
+    if constexpr (std::same_as<S, double>) {
+      step_modes(model, state.plant, inputs[0]);
+    } else {
+      model.step(state.plant, inputs[0]);
+    }
+  }
+};
+
+/// A body that is moved along a path. Input: position at the end of a period, in the record's own units.
+template <class S>
+struct ImposedMotionAdapter : ModelAdapter<S, model::ImposedMotion<S>> {
+  using typename ModelAdapter<S, model::ImposedMotion<S>>::Model;
+  using typename ModelAdapter<S, model::ImposedMotion<S>>::Parameters;
+  using typename ModelAdapter<S, model::ImposedMotion<S>>::State;
+
+  static int steps(const typename Model::Parameters& parameters, double period) {
+    return model::steps_per_period<Model>(parameters, period);
+  }
+
+  static std::vector<Variable> inputs(const Parameters&) {
+    return {{"position", "", "position of the body at the end of a period", 0.0, -kLargest, kLargest}};
+  }
+
+  static std::vector<Variable> further_parameters() { return {}; }
+
+  static void settle(const Model& model, State& state, std::span<const S> inputs, const Parameters&, std::span<const S>,
+                     double time) {
+    state.plant = model.at_rest(inputs[0]);
+    state.plant.clock = {model::Precise<S>(time)};
+  }
+
+  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
+    if constexpr (std::same_as<S, double>) {
+      move_body(model, state.plant, inputs[0]);
     } else {
       model.step(state.plant, inputs[0]);
     }

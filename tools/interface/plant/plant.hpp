@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "model/direct.hpp"
+#include "model/imposed_motion.hpp"
+#include "model/modal.hpp"
 #include "model/sensors/vehicle_sensors.hpp"
 #include "model/simplex.hpp"
 #include "model/vehicle.hpp"
@@ -23,6 +25,7 @@ inline constexpr double kRunaway = 1e12;
 /// The parameters of a plant of any topology.
 using AnyParameters =
     std::variant<model::Simplex<double>::Parameters, model::Direct<double>::Parameters,
+                 model::ImposedMotion<double>::Parameters, model::Modal<double>::Parameters,
                  model::InstrumentedVehicle<model::Taos<double>>, model::InstrumentedVehicle<model::Masv<double>>>;
 
 /// How a plant is run.
@@ -137,6 +140,8 @@ std::unique_ptr<Plant> make_plant(const AnyParameters& parameters, const Setup& 
 // One for each topology, each in a file of its own.
 std::unique_ptr<Plant> make_plant(const model::Simplex<double>::Parameters& parameters, const Setup& setup);
 std::unique_ptr<Plant> make_plant(const model::Direct<double>::Parameters& parameters, const Setup& setup);
+std::unique_ptr<Plant> make_plant(const model::ImposedMotion<double>::Parameters& parameters, const Setup& setup);
+std::unique_ptr<Plant> make_plant(const model::Modal<double>::Parameters& parameters, const Setup& setup);
 std::unique_ptr<Plant> make_plant(const model::InstrumentedVehicle<model::Taos<double>>& parameters, const Setup& setup);
 std::unique_ptr<Plant> make_plant(const model::InstrumentedVehicle<model::Masv<double>>& parameters, const Setup& setup);
 

@@ -19,6 +19,7 @@ struct ReferenceAxis {
   double valve_frequency = 377.0;
   double valve_damping = 0.8;
   double position_gain = 86.2;
+  double position_feedback = 1.0;
   double pressure_gain = 1e-7;
   double pressure_corner = 6.283;
   double area = 0.0160;

@@ -198,8 +198,8 @@ double command_at(const ReferenceProblem& problem, double t) {
 }
 
 double torque_motor(const ReferenceAxis& axis, double command, double elapsed, const StateVector& y) {
-  return axis.position_gain * (axis.arm * command - y[kPiston]) - axis.pressure_gain * (y[kPressure] - y[kWashout]) +
-         axis.unlisted.null_offset + axis.unlisted.null_drift * elapsed;
+  return axis.position_gain * (axis.arm * command - axis.position_feedback * y[kPiston]) -
+         axis.pressure_gain * (y[kPressure] - y[kWashout]) + axis.unlisted.null_offset + axis.unlisted.null_drift * elapsed;
 }
 
 namespace {
@@ -298,7 +298,8 @@ StateVector derivative(const ReferenceProblem& problem, double t, const StateVec
                    coulomb - bristle.force - forcing + at_site(wild, WildSite::engine_torque)) /
                   a.inertia;
 
-  const double torque_motor_rate = -a.position_gain * v - a.pressure_gain * (d[kPressure] - d[kWashout]);
+  const double torque_motor_rate =
+      -a.position_gain * a.position_feedback * v - a.pressure_gain * (d[kPressure] - d[kWashout]);
   d[kPlay] = (std::abs(asked) < 1.0 ? torque_motor_rate : 0.0) - kPlayGivesWay * beyond(y[kPlay], a.play);
   d[kSeal] = seal.rate;
   d[kSealBristle] = seal_bristle.rate;

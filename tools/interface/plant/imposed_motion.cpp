@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/interface/plant/axis_adapters.hpp"
+#include "tools/interface/plant/for_each_processor.hpp"
+#include "tools/interface/plant/plant_of.hpp"
+
+namespace hotfire::plant {
+
+HOTFIRE_FOR_EACH_PROCESSOR void move_body(const model::ImposedMotion<double>& model,
+                                          model::ImposedMotion<double>::State& state, const double& position) noexcept {
+  model.step(state, position);
+}
+
+std::unique_ptr<Plant> make_plant(const model::ImposedMotion<double>::Parameters& parameters, const Setup& setup) {
+  return PlantOf<ImposedMotionAdapter>::make(parameters, setup);
+}
+
+}  // namespace hotfire::plant
