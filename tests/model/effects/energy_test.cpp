@@ -20,7 +20,8 @@ constexpr double kPeriod = 1.0;
 /// on the other; an offset is a source.
 template <class E>
 constexpr bool is_dissipative = std::is_same_v<E, model::Leakage> || std::is_same_v<E, model::PistonFriction> ||
-                                std::is_same_v<E, model::GimbalFriction> || std::is_same_v<E, model::SlidingFriction>;
+                                std::is_same_v<E, model::GimbalFriction> || std::is_same_v<E, model::SlidingFriction> ||
+                                std::is_same_v<E, model::QuadraticDamping>;
 template <class E>
 constexpr bool is_conservative = std::is_same_v<E, model::DuctHardening> || std::is_same_v<E, model::QuadraticStiffness> ||
                                  std::is_same_v<E, model::CubicStiffness>;

@@ -314,6 +314,9 @@ InputOf<E, double> smooth_input(double t, double h) {
   InputOf<E, double> input{};
   input.h = h;
   move(t, input);
+  if constexpr (std::is_same_v<E, model::DriveDeadband>) {
+    input.value *= 10.0;  // a force of the order of one, where a command is an angle
+  }
   return input;
 }
 
