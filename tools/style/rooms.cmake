@@ -37,7 +37,7 @@ room(model/effects valve "effects in the servovalve: bias, hysteresis, dead band
 room(model/effects actuator "effects in the cylinder: leakage, friction of the piston")
 room(model/effects load "effects between piston and engine: play, soft stiffness, moment arm, a structural mode")
 room(model/effects gimbal "torques on the engine: friction of the bearing, ducts, offset, the other axis")
-room(model/effects mass "forces on a mass of a `direct` model")
+room(model/effects mass "forces on a mass or in a joint (`direct`, `imposed_motion`, `modal`)")
 room(model/effects sensor "effects in a sensor: scale, nonlinearity, lag, delay")
 room(model/effects unlisted "terms of unknown law: the grammar, tables, short laws" command)
 
