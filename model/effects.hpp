@@ -75,6 +75,6 @@ using JointEffects = EffectList<SlidingFriction, ForceOffset, QuadraticStiffness
 /// Every effect of a mass that a force drives: those of its drive, in the order of application, and those of the body.
 using DirectEffects =
     EffectList<DriveSaturation, CommandDelay, DriveDeadband, SlidingFriction, ForceOffset, QuadraticStiffness,
-               CubicStiffness, ElasticStop, FreePlay, PositionDamping, QuadraticDamping, UnlistedMotion<Site::mass_force>>;
+               CubicStiffness, FreePlay, PositionDamping, QuadraticDamping, UnlistedMotion<Site::mass_force>>;
 
 }  // namespace hotfire::model

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/interface/cases.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/numerics/step_size.hpp"
@@ -178,14 +179,17 @@ Case vehicle(const std::string& topology, const std::string& rest, const std::ve
   return made;
 }
 
-bool is_output(const Channel& channel) { return !channel.name.starts_with("command") && channel.name != "force"; }
+/// The simulation repeats what drives it.
+bool is_output(const Case& own, const Channel& channel) {
+  return !channel.name.starts_with("command") && std::ranges::find(own.inputs, channel.name) == own.inputs.end();
+}
 
 }  // namespace
 
 std::vector<double> Case::readings_at(std::size_t after) const {
   std::vector<double> readings;
   for (const Channel& channel : simulated.channels) {
-    if (is_output(channel)) {
+    if (is_output(*this, channel)) {
       readings.push_back(channel.values[after / periods_per_row]);
     }
   }
@@ -195,7 +199,7 @@ std::vector<double> Case::readings_at(std::size_t after) const {
 std::vector<std::string> Case::outputs() const {
   std::vector<std::string> names;
   for (const Channel& channel : simulated.channels) {
-    if (is_output(channel)) {
+    if (is_output(*this, channel)) {
       names.push_back(channel.name);
     }
   }

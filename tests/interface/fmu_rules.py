@@ -179,7 +179,7 @@ def starts(root, version):
 
 
 def units(root, version):
-    """Every unit is defined once, and its base unit is what its factors say; of a direct mass the record defines them."""
+    """Every unit is defined once, and its base unit is what its factors say; of a mass the record defines them."""
     defined = {}
     for unit in root.findall("UnitDefinitions/Unit"):
         if unit.get("name") in defined:
@@ -188,7 +188,8 @@ def units(root, version):
     for variable in variables_of(root):
         if variable.get("unit") is not None and variable["unit"] not in defined:
             yield f"{variable['name']}: unit {variable['unit']} is not defined"
-        if "topology direct" not in root.get("description") and (variable.get("unit") is None or defined.get(variable["unit"]) is None):
+        of_record = any("topology " + name in root.get("description") for name in ("direct", "imposed_motion", "modal"))
+        if not of_record and (variable.get("unit") is None or defined.get(variable["unit"]) is None):
             yield f"{variable['name']}: a unit with a base unit is missing"
     for name, base in defined.items():
         factors = re.findall(r"(^|[./])([A-Za-z]+|1)(?:\^(-?\d+))?", name)

@@ -62,7 +62,7 @@ TEST(PlantImage, TableIsReadPointByPoint) {
 TEST(PlantImage, TableThatDoesNotRiseOrHasGapsOrTooFewPointsIsRefused) {
   refused(soft("effects.soft_stiffness.load.0 5\neffects.soft_stiffness.table_stiffness.0 4e7\n"
                "effects.soft_stiffness.load.1 5\neffects.soft_stiffness.table_stiffness.1 1.2e8\n"),
-          "line 27: effects.soft_stiffness.load.1 = 5: must be above the value before it");
+          "line 28: effects.soft_stiffness.load.1 = 5: must be above the value before it");
   refused(soft("effects.soft_stiffness.load.0 0\neffects.soft_stiffness.table_stiffness.0 4e7\n"), "at least two points");
   refused(soft("effects.soft_stiffness.load.0 0\n"), "missing key effects.soft_stiffness.table_stiffness.0");
   refused(soft("effects.soft_stiffness.load.1 0\n"), "effects.soft_stiffness.load.1 = 0: unknown key");
