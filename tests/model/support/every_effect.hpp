@@ -302,6 +302,8 @@ inline void move(double t, model::Motion<double>& input) {
            t,
            0.1 * std::sin(5.0 * t),
            0.5 * std::cos(5.0 * t)};
+  input.declared_stiffness = 40.0;
+  input.declared_damping = 0.5;
 }
 inline void move(double t, model::Spring<double>& input) {
   input = reference_spring(5e-4 * std::sin(9.0 * t), 0.1 * std::sin(5.0 * t), input.h);
@@ -335,8 +337,17 @@ model::Compression<S> converted(const model::Compression<double>& in) {
 }
 template <class S>
 model::Motion<S> converted(const model::Motion<double>& in) {
-  return {S(in.position),    S(in.velocity),  S(in.free_velocity), S(in.compliance), in.h, model::Precise<S>(in.time),
-          S(in.other_angle), S(in.other_rate)};
+  return {S(in.position),
+          S(in.velocity),
+          S(in.free_velocity),
+          S(in.compliance),
+          in.h,
+          model::Precise<S>(in.time),
+          S(in.other_angle),
+          S(in.other_rate),
+          S(in.load),
+          S(in.declared_stiffness),
+          S(in.declared_damping)};
 }
 template <class S>
 model::Spring<S> converted(const model::Spring<double>& in) {
