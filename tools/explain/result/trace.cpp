@@ -218,10 +218,10 @@ std::vector<Trace> reconstruct_with(const Dataset& data, const SimplexParameters
 }
 
 std::vector<Trace> reconstruct_with(const Dataset& data, const DirectParameters& parameters) {
-  const auto& [inertia, damping, stiffness] = parameters.mass;
+  const auto& mass = parameters.mass;
   return joined(data, [&](const Experiment& experiment, bool noise_only, std::mt19937_64& generator) {
     if (!noise_only) {
-      return left_over(experiment, experiment.input, inertia, damping, stiffness, position_of(experiment));
+      return left_over(experiment, experiment.input, mass.inertia, mass.damping, mass.stiffness, position_of(experiment));
     }
     Experiment still = experiment;
     still.input.assign(experiment.rows(), 0.0);
@@ -230,19 +230,19 @@ std::vector<Trace> reconstruct_with(const Dataset& data, const DirectParameters&
         still.measured[c] = noise_like(experiment.rows(), experiment.noise[c], generator);
       }
     }
-    return left_over(still, still.input, inertia, damping, stiffness, position_of(still));
+    return left_over(still, still.input, mass.inertia, mass.damping, mass.stiffness, position_of(still));
   });
 }
 
 std::vector<Trace> reconstruct_with(const Dataset& data, const ImposedMotionParameters& parameters) {
-  const auto& [inertia, damping, stiffness] = parameters.body;
+  const auto& body = parameters.body;
   return joined(data, [&](const Experiment& experiment, bool noise_only, std::mt19937_64& generator) {
     if (!noise_only) {
-      return left_over(experiment, experiment.measured[0], inertia, damping, stiffness, experiment.input);
+      return left_over(experiment, experiment.measured[0], body.inertia, body.damping, body.stiffness, experiment.input);
     }
     const Series still(experiment.rows(), 0.0);
-    return left_over(experiment, noise_like(experiment.rows(), experiment.noise[0], generator), inertia, damping, stiffness,
-                     still);
+    return left_over(experiment, noise_like(experiment.rows(), experiment.noise[0], generator), body.inertia, body.damping,
+                     body.stiffness, still);
   });
 }
 
