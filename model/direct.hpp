@@ -58,7 +58,6 @@ class Direct {
   /// over a step. The error of this is a 24th of the square of that angle: 0.04 %. A mass without a spring moves slowly.
   static double longest_step(const Parameters& parameters) noexcept {
     constexpr double kAngle = 0.1;
-    constexpr double kShortestStep = 5e-6;  // s: bounds the steps of a real-time period
     const double stiffness = value_of(parameters.mass.stiffness);
     if (!(stiffness > 0.0)) {
       return kLongestStep;

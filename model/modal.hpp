@@ -63,7 +63,6 @@ class Modal {
   /// The longest step [s] at these parameters: a tenth of a radian of the fastest mode, as of a `Direct` mass.
   static double longest_step(const Parameters& parameters) noexcept {
     constexpr double kAngle = 0.1;
-    constexpr double kShortestStep = 5e-6;  // s: bounds the steps of a real-time period
     double fastest = 0.0;
     Parameters::for_each_part(parameters, [&](const auto& mode) {
       fastest = value_of(mode.mobility) > 0.0 ? std::max(fastest, value_of(mode.frequency)) : fastest;

@@ -29,7 +29,6 @@ class Simplex : public Axis<S, List> {
   /// the reference axis. What is not linear is held over a step.
   static double longest_step(const typename Axis<S, List>::Parameters& parameters) noexcept {
     constexpr double kStepsInCycle = 5.0;
-    constexpr double kShortestStep = 5e-6;  // s: bounds the steps of a real-time period
     const auto& actuator = parameters.actuator;
     const double area = value_of(actuator.piston_area);
     const double oil = 4.0 * value_of(actuator.bulk_modulus) * area * area / value_of(actuator.trapped_volume);

@@ -29,8 +29,8 @@ struct PlantOf {
 template <class Model>
 struct PlantOfAxes {
   static constexpr std::size_t kReadings = Model::channels.size();
-  static constexpr std::string_view kWithoutValve = requires { Model::kAngle; }
-  ? std::string_view() : Model::topology;
+  static constexpr bool kHasValve = requires { Model::kAngle; };
+  static constexpr std::string_view kWithoutValve = kHasValve ? std::string_view() : Model::topology;
 
   static auto make(const typename Model::Parameters& parameters, double period, std::size_t actuators,
                    const PlantImage& image) {

@@ -62,10 +62,7 @@ class Interpolation {
     return present + change;
   }
 
- private:
-  static constexpr int kFewestNodes = 6;
-  static constexpr double kMaterial = 5e-3;
-
+  /// Nodes in front of node 0.
   static constexpr std::ptrdiff_t before(int nodes) noexcept { return nodes / 2 - 1; }
 
   /// Lagrange polynomials of `nodes` nodes -before .. nodes/2 at `t` rows beyond node 0.
@@ -83,6 +80,10 @@ class Interpolation {
     }
     return weights;
   }
+
+ private:
+  static constexpr int kFewestNodes = 6;
+  static constexpr double kMaterial = 5e-3;
 
   /// Estimated half-way between rows, where a polynomial is furthest off, at no more than a thousand or two places of the
   /// signal.

@@ -7,6 +7,9 @@ namespace hotfire::model {
 /// equal parts: 0.5 ms puts 5 steps into a cycle of the reference oil mode (365 Hz).
 inline constexpr double kLongestStep = 5e-4;
 
+/// The shortest step that parameters can ask for [s]: bounds the steps of a real-time period.
+inline constexpr double kShortestStep = 5e-6;
+
 /// Number of equal steps of at most `longest` [s] in a period [s], at least one. A period that is a multiple of the longest
 /// step up to rounding is split into that multiple.
 constexpr int steps_per_period(double period, double longest = kLongestStep) noexcept {

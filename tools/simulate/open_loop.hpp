@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 
@@ -11,15 +12,17 @@ namespace hotfire {
 
 /// Piston position at the first row of a record of a hydraulic axis, if it is measured there [m]; otherwise 0.
 inline double first_piston(const Record& inputs, double moment_arm) {
-  const Channel* piston = inputs.find("piston");
-  const Channel* engine = inputs.find("engine");
-  return piston != nullptr ? piston->values.front() : engine != nullptr ? moment_arm * engine->values.front() : 0.0;
+  const auto values = [&](const char* name) {
+    const Channel* channel = inputs.find(name);
+    return channel != nullptr ? std::span<const double>(channel->values) : std::span<const double>();
+  };
+  return first_piston(values("piston"), values("engine"), moment_arm);
 }
 
 /// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command
-/// (without position feedback at the first row of its piston or engine), a driven
-/// mass at the first row of its position and velocity, each zero where the record does not have it, a moved body on its
-/// path, a structure in modal coordinates at rest.
+/// (without position feedback at the first row of its piston or engine), a driven mass at the first row of its position and
+/// velocity, each zero where the record does not have it, a moved body on its path, a structure in modal coordinates at
+/// rest.
 template <class Plant>
 typename Plant::State start_of(const Plant& plant, const Record& inputs) {
   using S = typename Plant::Scalar;

@@ -62,16 +62,12 @@ class Path {
   double near_end(std::size_t row, double part) const {
     const std::size_t nodes = std::min<std::size_t>(6, values_.size());
     const std::size_t first = std::min(row - std::min(row, nodes / 2 - 1), values_.size() - nodes);
+    const int count = static_cast<int>(nodes);
+    const double place = static_cast<double>(row - first) + part - static_cast<double>(model::Interpolation::before(count));
+    const auto weights = model::Interpolation::weights_at(count, place);
     double sum = 0.0;
     for (std::size_t node = 0; node < nodes; ++node) {
-      double basis = 1.0;
-      for (std::size_t other = 0; other < nodes; ++other) {
-        if (other != node) {
-          basis *= (static_cast<double>(row) + part - static_cast<double>(first + other)) /
-                   (static_cast<double>(node) - static_cast<double>(other));
-        }
-      }
-      sum += basis * values_[first + node];
+      sum += weights[node] * values_[first + node];
     }
     return sum;
   }

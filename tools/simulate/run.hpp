@@ -17,6 +17,11 @@ namespace hotfire {
 /// A reading beyond this is a simulation that ran away, in any unit.
 inline constexpr double kRunaway = 1e12;
 
+/// Piston position at the first row of a hydraulic axis, by what is measured there [m]; 0 where neither is.
+inline double first_piston(std::span<const double> piston, std::span<const double> engine, double moment_arm) {
+  return !piston.empty() ? piston.front() : !engine.empty() ? moment_arm * engine.front() : 0.0;
+}
+
 /// Steps a plant through `rows` rows, `steps` plant steps a row by `advance(row, step)`, and hands every row's readings to
 /// `sink(row, readings)`: row 0 is the state as given. Denormal numbers are zero, as they are on the rig. Returns false at
 /// the first reading that is not finite or ran away.

@@ -11,10 +11,9 @@
 
 namespace hotfire::explain {
 
-/// Parameters of whichever plant is explained: a hydraulic axis, a force-driven mass, a body on a given path or a
-/// structure in modal coordinates. What lies
-/// above the simulation of a plant asks it for effects, fields and values by the functions below, and is written and
-/// compiled once for all plants.
+/// Parameters of whichever plant is explained: a hydraulic axis, a force-driven mass, a body on a given path or a structure
+/// in modal coordinates. What lies above the simulation of a plant asks it for effects, fields and values by the functions
+/// below, and is written and compiled once for all plants.
 using ModelParameters = decltype(ModelFile::parameters);
 
 template <class Parameters>

@@ -19,13 +19,6 @@ struct Start {
   std::array<S, 3> values{S(0.0), S(0.0), S(0.0)};  ///< position, velocity, clock: FreeParameter::state
 };
 
-/// Piston position at the first row of an experiment of a hydraulic axis, as it is measured there [m]; 0 where it is not.
-inline double first_piston(const Experiment& experiment, double moment_arm) {
-  const std::vector<double>& piston = experiment.measured[0];
-  const std::vector<double>& engine = experiment.measured[1];
-  return !piston.empty() ? piston.front() : !engine.empty() ? moment_arm * engine.front() : 0.0;
-}
-
 template <class Plant, class S>
 typename Plant::State initial_state(const Plant& plant, const Dataset& data, const Experiment& experiment,
                                     const Start<S>& start) {
@@ -51,7 +44,8 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
         });
       } else {
         return plant.resting(S(experiment.input.front()),
-                             S(first_piston(experiment, model::value_of(plant.parameters().actuator.moment_arm))));
+                             S(first_piston(experiment.measured[0], experiment.measured[1],
+                                            model::value_of(plant.parameters().actuator.moment_arm))));
       }
     }();
     state.clock.start = start.values[2];

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <numbers>
 
 #include "tools/explain/fit/scales.hpp"
@@ -213,27 +214,16 @@ Curve effect_curve(const SimplexParameters& p, const Params& params, const Reach
   }
 }
 
-template <class E, class Params>
-Curve mass_curve(const Params& params, const Reach& reach) {
+/// Of every plant but a hydraulic axis.
+template <class E, class Parameters, class Params>
+requires(!std::same_as<Parameters, SimplexParameters>) Curve
+    effect_curve(const Parameters&, const Params& params, const Reach& reach) {
   if constexpr (E::site == Site::command) {
     return signal_curve<E>(params, reach.input, "input of the drive", "force");
   } else {
     return motion_curve<E>(params, reach.position, reach.position_rate, "mass", "position", "force against the motion",
                            "force");
   }
-}
-
-template <class E, class Params>
-Curve effect_curve(const DirectParameters&, const Params& params, const Reach& reach) {
-  return mass_curve<E>(params, reach);
-}
-template <class E, class Params>
-Curve effect_curve(const ImposedMotionParameters&, const Params& params, const Reach& reach) {
-  return mass_curve<E>(params, reach);
-}
-template <class E, class Params>
-Curve effect_curve(const ModalParameters&, const Params& params, const Reach& reach) {
-  return mass_curve<E>(params, reach);
 }
 
 Reach reach_in(const Dataset& data, const SimplexParameters& parameters) {

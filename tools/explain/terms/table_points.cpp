@@ -110,7 +110,8 @@ Extents extents_under(const Dataset& data, const Parameters& parameters) {
       } else if constexpr (Plant::topology == "modal") {
         return plant.at_rest(0.0);
       } else {
-        return plant.resting(experiment.input.front(), first_piston(experiment, parameters.actuator.moment_arm));
+        return plant.resting(experiment.input.front(),
+                             first_piston(experiment.measured[0], experiment.measured[1], parameters.actuator.moment_arm));
       }
     }();
     auto block = experiment.fitted.begin();
