@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string_view>
 #include <tuple>
 
@@ -56,24 +57,30 @@ class Modal {
     S joint_force{0.0};
     Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
-    std::array<S, kPlaces> mean_acceleration{};  ///< over the last step
+    Eigen::Matrix<S, 2 * kRigModes, 1> before = Eigen::Matrix<S, 2 * kRigModes, 1>::Zero();  ///< a step ago
+    Eigen::Matrix<S, kRigModes, 1> rates_before_that = Eigen::Matrix<S, kRigModes, 1>::Zero();
     std::array<S, 9> measured{};
   };
 
-  /// The longest step [s] at these parameters: a tenth of a radian of the fastest mode, as of a `Direct` mass.
+  /// The longest step [s] at these parameters: a tenth of a radian of the fastest mode, as of a `Direct` mass. A structure
+  /// has no oil mode, which alone limits the step of slower ones.
   static double longest_step(const Parameters& parameters) noexcept {
     constexpr double kAngle = 0.1;
     double fastest = 0.0;
     Parameters::for_each_part(parameters, [&](const auto& mode) {
       fastest = value_of(mode.mobility) > 0.0 ? std::max(fastest, value_of(mode.frequency)) : fastest;
     });
-    return fastest > 0.0 ? std::clamp(kAngle / (2.0 * std::numbers::pi * fastest), kShortestStep, kLongestStep)
-                         : kLongestStep;
+    return fastest > 0.0 ? std::max(kAngle / (2.0 * std::numbers::pi * fastest), kShortestStep) : kLongestStep;
   }
 
   Modal(const Parameters& parameters, double h) : parameters_(parameters), acting_(parameters.effects.active), h_(h) {
-    std::size_t k = 0;
+    Eigen::Index q = 0;
     Parameters::for_each_part(parameters_, [&](const auto& mode) {
+      const Eigen::Index own = q;
+      q += 2;
+      if (!(value_of(mode.mobility) > 0.0)) {
+        return;
+      }
       const S w = 2.0 * std::numbers::pi * mode.frequency;
       Eigen::Matrix<S, 2, 2> linear = Eigen::Matrix<S, 2, 2>::Zero();
       linear(0, 1) = S{1.0};
@@ -81,9 +88,14 @@ class Modal {
       linear(1, 1) = -2.0 * mode.damping_ratio * w;
       Eigen::Matrix<S, 2, 1> driven = Eigen::Matrix<S, 2, 1>::Zero();
       driven(1) = mode.mobility;
-      modes_[k] = {exact_hold<S, 2, 1>(linear, driven, h), mode.drive, mode.joint, {S{1.0}, mode.place2, mode.place3}};
-      compliance_ += mode.joint * mode.joint * modes_[k].hold.response(0) / h;
-      ++k;
+      const auto hold = exact_hold<S, 2, 1>(linear, driven, h);
+      modes_[count_++] = {own,
+                          hold.transition,
+                          {hold.response(0) * mode.drive, hold.response(1) * mode.drive},
+                          {hold.response(0) * mode.joint, hold.response(1) * mode.joint},
+                          mode.joint,
+                          {S{1.0}, mode.place2, mode.place3}};
+      compliance_ += mode.joint * mode.joint * hold.response(0) / h;
     });
   }
 
@@ -93,82 +105,90 @@ class Modal {
   /// At rest.
   State at_rest(const S&) const { return {}; }
 
-  /// Advances by one step with the force held.
+  /// Advances by one step with the force held, and reads.
   void step(State& state, const S& force) const noexcept {
-    const Eigen::Matrix<S, 2 * kRigModes, 1> start = state.y;
-    Eigen::Matrix<S, 2 * kRigModes, 1> free;
-    for (std::size_t k = 0; k < kRigModes; ++k) {
-      const Mode& mode = modes_[k];
-      const auto q = static_cast<Eigen::Index>(2 * k);
-      for (Eigen::Index i = 0; i < 2; ++i) {
-        free(q + i) = mode.hold.transition(i, 0) * start(q) + mode.hold.transition(i, 1) * start(q + 1) +
-                      mode.hold.response(i) * mode.drive * force;
-      }
+    step_unread(state, force);
+    read(state);
+  }
+
+  /// The same without the readings, which cost more than the step: for a step that nobody reads at.
+  void step_unread(State& state, const S& force) const noexcept {
+    for (const Mode& mode : modes()) {
+      state.rates_before_that(mode.q / 2) = state.before(mode.q + 1);
     }
-    const S before = across_joint(start);
+    state.before = state.y;
+    const auto& start = state.before;
+    Eigen::Matrix<S, 2 * kRigModes, 1> free;
+    S before{0.0};
+    S free_end{0.0};
+    for (const Mode& mode : modes()) {
+      for (Eigen::Index i = 0; i < 2; ++i) {
+        free(mode.q + i) =
+            mode.transition(i, 0) * start(mode.q) + mode.transition(i, 1) * start(mode.q + 1) + mode.driven(i) * force;
+      }
+      before += mode.joint * start(mode.q);
+      free_end += mode.joint * free(mode.q);
+    }
     for (int pass = 0; pass < kPasses; ++pass) {
-      const S end = across_joint(free) - compliance_ * h_ * state.joint_force;
+      const S end = free_end - compliance_ * h_ * state.joint_force;
       const S velocity = (end - before) / h_;
       Motion<S> motion{S(0.5) * (before + end), velocity, velocity, compliance_, h_, state.clock.at(h_, 0.5)};
       state.joint_force = sum_over<Site::mass_force>(parameters_.effects, acting_, state.effects, motion,
                                                      pass + 1 == kPasses ? Keep::yes : Keep::no);
     }
-    for (std::size_t k = 0; k < kRigModes; ++k) {
-      const Mode& mode = modes_[k];
-      const auto q = static_cast<Eigen::Index>(2 * k);
+    for (const Mode& mode : modes()) {
       for (Eigen::Index i = 0; i < 2; ++i) {
-        state.y(q + i) = free(q + i) - mode.hold.response(i) * mode.joint * state.joint_force;
+        state.y(mode.q + i) = free(mode.q + i) - mode.joined(i) * state.joint_force;
       }
     }
     state.clock.steps += 1.0;
-    measure(state, start);
   }
 
   /// Motion across the joint, and its rate.
-  S joint_position(const State& state) const noexcept { return across_joint(state.y); }
-  S joint_rate(const State& state) const noexcept {
-    S sum{0.0};
-    for (std::size_t k = 0; k < kRigModes; ++k) {
-      sum += modes_[k].joint * state.y(static_cast<Eigen::Index>(2 * k + 1));
-    }
-    return sum;
-  }
+  S joint_position(const State& state) const noexcept { return across_joint(state, 0); }
+  S joint_rate(const State& state) const noexcept { return across_joint(state, 1); }
 
   static const std::array<S, 9>& measured(const State& state) noexcept { return state.measured; }
 
  private:
   struct Mode {
-    ExactHold<S, 2, 1> hold{};
-    S drive{0.0};
+    Eigen::Index q = 0;  ///< of its coordinate in a state; its rate is the next one
+    Eigen::Matrix<S, 2, 2> transition{};
+    Eigen::Matrix<S, 2, 1> driven{};  ///< what a unit of the force adds over a step
+    Eigen::Matrix<S, 2, 1> joined{};  ///< what a unit of the joint's force takes away
     S joint{0.0};
     std::array<S, kPlaces> shape{};
   };
 
-  S across_joint(const Eigen::Matrix<S, 2 * kRigModes, 1>& y) const noexcept {
+  /// The modes that are there.
+  std::span<const Mode> modes() const noexcept { return std::span(modes_).first(count_); }
+
+  S across_joint(const State& state, Eigen::Index derivative) const noexcept {
     S sum{0.0};
-    for (std::size_t k = 0; k < kRigModes; ++k) {
-      sum += modes_[k].joint * y(static_cast<Eigen::Index>(2 * k));
+    for (const Mode& mode : modes()) {
+      sum += mode.joint * state.y(mode.q + derivative);
     }
     return sum;
   }
 
-  void measure(State& state, const Eigen::Matrix<S, 2 * kRigModes, 1>& start) const noexcept {
+  void read(State& state) const noexcept {
     for (std::size_t place = 0; place < kPlaces; ++place) {
       S position{0.0};
       S velocity{0.0};
       S change{0.0};
-      for (std::size_t k = 0; k < kRigModes; ++k) {
-        const S& shape = modes_[k].shape[place];
-        const auto q = static_cast<Eigen::Index>(2 * k);
-        position += shape * state.y(q);
-        velocity += shape * state.y(q + 1);
-        change += shape * (state.y(q + 1) - start(q + 1));
+      S change_before{0.0};
+      for (const Mode& mode : modes()) {
+        const S& shape = mode.shape[place];
+        const S& rate_before = state.before(mode.q + 1);
+        position += shape * state.y(mode.q);
+        velocity += shape * state.y(mode.q + 1);
+        change += shape * (state.y(mode.q + 1) - rate_before);
+        change_before += shape * (rate_before - state.rates_before_that(mode.q / 2));
       }
       const S acceleration = change / h_;
       state.measured[3 * place] = position;
       state.measured[3 * place + 1] = velocity;
-      state.measured[3 * place + 2] = acceleration + 0.5 * (acceleration - state.mean_acceleration[place]);
-      state.mean_acceleration[place] = acceleration;
+      state.measured[3 * place + 2] = acceleration + 0.5 * (acceleration - change_before / h_);
     }
   }
 
@@ -176,6 +196,7 @@ class Modal {
   ActingEffects<List> acting_;
   double h_;
   std::array<Mode, kRigModes> modes_{};
+  std::size_t count_ = 0;
   S compliance_{0.0};
 };
 

@@ -49,8 +49,17 @@ template <class Plant, class Sink>
 bool run(const Plant& plant, std::span<const double> input, typename Plant::State& state, int steps, Sink&& sink) {
   using S = typename Plant::Scalar;
   const Excitation excitation(input, steps, between_rows<Plant>());
-  return run_rows<Plant>(
-      input.size(), state, steps, [&](std::size_t row, int k) { plant.step(state, S(excitation(row, k))); }, sink);
+  const auto advance = [&](std::size_t row, int k) {
+    const S value(excitation(row, k));
+    if constexpr (requires { plant.step_unread(state, value); }) {
+      if (k + 1 < steps) {
+        plant.step_unread(state, value);
+        return;
+      }
+    }
+    plant.step(state, value);
+  };
+  return run_rows<Plant>(input.size(), state, steps, advance, sink);
 }
 
 /// Steps one hydraulic axis through its command while a measured torque [N m] turns its engine towards positive angles,
