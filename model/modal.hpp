@@ -25,8 +25,8 @@ namespace hotfire::model {
 ///     place 1: sum q_k,   place p: sum place_pk q_k,   joint: sum joint_k q_k
 ///
 /// The effects depend on the motion across the joint. Each mode is advanced by its exact hold, with the effects held at the
-/// mean of the step's ends, in two passes. The acceleration at the end of a step is that of the mean over the last two
-/// steps, continued by half a step. Second order where the motion is smooth.
+/// mean of the step's ends, in two passes. The acceleration at the end of a step is that of the equation, under forces that
+/// continue those of the last two steps by half a step. Second order where the motion is smooth.
 template <class S, class List = JointEffects>
 class Modal {
  public:
@@ -57,20 +57,21 @@ class Modal {
     S joint_force{0.0};
     Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
-    Eigen::Matrix<S, 2 * kRigModes, 1> before = Eigen::Matrix<S, 2 * kRigModes, 1>::Zero();  ///< a step ago
-    Eigen::Matrix<S, kRigModes, 1> rates_before_that = Eigen::Matrix<S, kRigModes, 1>::Zero();
+    S force{0.0};               ///< over the last step
+    S force_before{0.0};        ///< over the step before it
+    S joint_force_before{0.0};  ///< the same of the joint
     std::array<S, 9> measured{};
   };
 
-  /// The longest step [s] at these parameters: a tenth of a radian of the fastest mode, as of a `Direct` mass. A structure
-  /// has no oil mode, which alone limits the step of slower ones.
+  /// The longest step [s] at these parameters: a tenth of a radian of the fastest mode, as of a `Direct` mass.
   static double longest_step(const Parameters& parameters) noexcept {
     constexpr double kAngle = 0.1;
     double fastest = 0.0;
     Parameters::for_each_part(parameters, [&](const auto& mode) {
       fastest = value_of(mode.mobility) > 0.0 ? std::max(fastest, value_of(mode.frequency)) : fastest;
     });
-    return fastest > 0.0 ? std::max(kAngle / (2.0 * std::numbers::pi * fastest), kShortestStep) : kLongestStep;
+    return fastest > 0.0 ? std::clamp(kAngle / (2.0 * std::numbers::pi * fastest), kShortestStep, kLongestStep)
+                         : kLongestStep;
   }
 
   Modal(const Parameters& parameters, double h) : parameters_(parameters), acting_(parameters.effects.active), h_(h) {
@@ -94,7 +95,11 @@ class Modal {
                           {hold.response(0) * mode.drive, hold.response(1) * mode.drive},
                           {hold.response(0) * mode.joint, hold.response(1) * mode.joint},
                           mode.joint,
-                          {S{1.0}, mode.place2, mode.place3}};
+                          {S{1.0}, mode.place2, mode.place3},
+                          linear(1, 0),
+                          linear(1, 1),
+                          S(mode.mobility * mode.drive),
+                          S(mode.mobility * mode.joint)};
       compliance_ += mode.joint * mode.joint * hold.response(0) / h;
     });
   }
@@ -113,11 +118,10 @@ class Modal {
 
   /// The same without the readings, which cost more than the step: for a step that nobody reads at.
   void step_unread(State& state, const S& force) const noexcept {
-    for (const Mode& mode : modes()) {
-      state.rates_before_that(mode.q / 2) = state.before(mode.q + 1);
-    }
-    state.before = state.y;
-    const auto& start = state.before;
+    state.force_before = state.force;
+    state.force = force;
+    state.joint_force_before = state.joint_force;
+    const Eigen::Matrix<S, 2 * kRigModes, 1> start = state.y;
     Eigen::Matrix<S, 2 * kRigModes, 1> free;
     S before{0.0};
     S free_end{0.0};
@@ -158,6 +162,10 @@ class Modal {
     Eigen::Matrix<S, 2, 1> joined{};  ///< what a unit of the joint's force takes away
     S joint{0.0};
     std::array<S, kPlaces> shape{};
+    S stiffness{0.0};  ///< with the next three: acceleration for a unit of position, velocity, force and the joint's force
+    S damping{0.0};
+    S driven_by{0.0};
+    S joined_by{0.0};
   };
 
   /// The modes that are there.
@@ -172,23 +180,19 @@ class Modal {
   }
 
   void read(State& state) const noexcept {
-    for (std::size_t place = 0; place < kPlaces; ++place) {
-      S position{0.0};
-      S velocity{0.0};
-      S change{0.0};
-      S change_before{0.0};
-      for (const Mode& mode : modes()) {
-        const S& shape = mode.shape[place];
-        const S& rate_before = state.before(mode.q + 1);
-        position += shape * state.y(mode.q);
-        velocity += shape * state.y(mode.q + 1);
-        change += shape * (state.y(mode.q + 1) - rate_before);
-        change_before += shape * (rate_before - state.rates_before_that(mode.q / 2));
+    const S force = state.force + 0.5 * (state.force - state.force_before);
+    const S joint_force = state.joint_force + 0.5 * (state.joint_force - state.joint_force_before);
+    state.measured.fill(S{0.0});
+    for (const Mode& mode : modes()) {
+      const S& position = state.y(mode.q);
+      const S& velocity = state.y(mode.q + 1);
+      const S acceleration =
+          mode.stiffness * position + mode.damping * velocity + mode.driven_by * force - mode.joined_by * joint_force;
+      for (std::size_t place = 0; place < kPlaces; ++place) {
+        state.measured[3 * place] += mode.shape[place] * position;
+        state.measured[3 * place + 1] += mode.shape[place] * velocity;
+        state.measured[3 * place + 2] += mode.shape[place] * acceleration;
       }
-      const S acceleration = change / h_;
-      state.measured[3 * place] = position;
-      state.measured[3 * place + 1] = velocity;
-      state.measured[3 * place + 2] = acceleration + 0.5 * (acceleration - change_before / h_);
     }
   }
 

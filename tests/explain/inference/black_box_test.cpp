@@ -3,7 +3,9 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "tools/explain/fit/goodness.hpp"
@@ -61,7 +63,7 @@ Dataset lagging() {
 
 TEST_GROUP(BlackBox){};
 
-// The held lag is a difference equation of second order exactly, one row later than its delay: what is left is noise, told
+// The held lag is a difference equation of second order exactly, one row later than its delay: what is left is noise, known
 // to a fiftieth by 2000 rows, with a tenth for an order whose worth is a fiftieth.
 TEST(BlackBox, ALinearRigIsMetDownToItsNoiseWithItsOrderAndItsDelay) {
   const Dataset data = lagging();
@@ -85,6 +87,36 @@ TEST(BlackBox, AnOrderThatIsNotThereIsNotTaken) {
   const BlackBox box = black_box(data);
   LONGS_EQUAL(1, box.channels[0]->order());
   LONGS_EQUAL(3, box.channels[0]->delay);
+}
+
+// Three modes are of order six. With the best order of four, that of two modes, a third of the output is left.
+TEST(BlackBox, AStructureOfThreeModesHasThreeTimesTwoPoles) {
+  constexpr std::array kNatural{2.0 * std::numbers::pi * 4.0, 2.0 * std::numbers::pi * 9.0, 2.0 * std::numbers::pi * 15.0};
+  Dataset data = lagging();
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  for (Experiment& experiment : data.experiments) {
+    std::array<double, 3> x{};
+    std::array<double, 3> v{};
+    for (std::size_t i = 0; i < kBlackBoxRows; ++i) {
+      experiment.measured[0][i] = x[0] + x[1] + x[2] + kBlackBoxNoise * normal(generator);
+      experiment.input[i] = normal(generator);
+      constexpr int kSteps = 50;
+      for (int k = 0; k < kSteps; ++k) {
+        for (std::size_t mode = 0; mode < kNatural.size(); ++mode) {
+          v[mode] += kBlackBoxPeriod / kSteps *
+                     (kNatural[mode] * (experiment.input[i] - kNatural[mode] * x[mode]) - 0.1 * kNatural[mode] * v[mode]);
+          x[mode] += kBlackBoxPeriod / kSteps * v[mode];
+        }
+      }
+    }
+  }
+  const BlackBox box = black_box(data);
+  CHECK(box.channels[0].has_value());
+  LONGS_EQUAL(6, box.channels[0]->order());
+  const Goodness reached = goodness(data, simulated(box, data));
+  CHECK(reached.held_out[0].rms < 1.2 * kBlackBoxNoise);
+  CHECK(reached.held_out[0].rms > 0.9 * kBlackBoxNoise);
 }
 
 TEST(BlackBox, RecordsOfSeveralPeriodsHaveNone) {

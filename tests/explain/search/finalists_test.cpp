@@ -3,6 +3,8 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include <string>
+
 namespace {
 
 using namespace hotfire::explain;
@@ -31,6 +33,18 @@ TEST(Finalists, WhereNoneLooksStrongTheBestAreFittedAllTheSame) {
   CHECK_EQUAL(kUnlistedFinalists, unlisted_finalists(screened({-9.6, 23.0, 41.0, 42.0, 64.0})));
   CHECK_EQUAL(1U, unlisted_finalists(screened({5.0})));
   CHECK_EQUAL(0U, unlisted_finalists(screened({})));
+}
+
+TEST(Finalists, ASlowResidualKeepsNoNameThatLeavesClearlyLessFromTheJointFit) {
+  std::vector<Screened> all = screened({-9.0, -2.5, -1.0, 3.0});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].candidate.name = std::string(1, static_cast<char>('a' + i));
+  }
+  CHECK_TRUE(finalists_of(all).empty());
+  all[1].left = 0.2;
+  CHECK((finalists_of(all) == std::vector<std::size_t>{1}));
+  all[0].criterion = -50.0;
+  CHECK((finalists_of(all) == std::vector<std::size_t>{0, 1}));
 }
 
 TEST(Finalists, WhereNoneReachesTheNoiseTheClosestLawOfEachNameMayWinYet) {

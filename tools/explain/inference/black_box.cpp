@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "tools/simulate/path.hpp"
 
@@ -16,7 +18,11 @@ namespace {
 using Series = std::vector<double>;
 
 constexpr double kClosestRows = 2e-3;  // [s]
+/// Orders that are tried with every delay.
 constexpr std::size_t kHighestOrder = 4;
+/// Orders that are tried after these with delays near the best one, each as long as the one before was worth it.
+constexpr std::array<std::size_t, 3> kHigherOrders{6, 8, 12};
+constexpr std::size_t kNearDelay = 2;  // [rows]
 constexpr double kLongestDelay = 0.1;  // [s]
 constexpr int kPasses = 8;
 /// Share of the error that a further order has to take off.
@@ -112,13 +118,17 @@ bool is_stable(const Series& a) {
   return companion.eigenvalues().cwiseAbs().maxCoeff() <= 1.0 + kRounding;
 }
 
-/// One least-squares pass on signals that were put through 1 / `poles`. Nothing if they do not determine the coefficients.
-std::optional<LinearModel> least_squares(const std::vector<Signals>& all, std::size_t order, std::size_t delay,
-                                         const Series& poles) {
+/// One least-squares pass on signals that were put through 1 / `poles`, in scalars S. Nothing if they do not determine the
+/// coefficients.
+template <class S>
+std::optional<LinearModel> least_squares_in(const std::vector<Signals>& all, std::size_t order, std::size_t delay,
+                                            const Series& poles) {
+  using Vector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+  using Matrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
   const auto size = static_cast<Eigen::Index>(2 * order);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(size, size);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
-  Eigen::VectorXd row_of(size);
+  Matrix normal = Matrix::Zero(size, size);
+  Vector right = Vector::Zero(size);
+  Vector row_of(size);
   for (const Signals& signals : all) {
     const Series input = poles.empty() ? signals.input : through_poles(signals.input, poles);
     const Series output = poles.empty() ? signals.output : through_poles(signals.output, poles);
@@ -128,27 +138,35 @@ std::optional<LinearModel> least_squares(const std::vector<Signals>& all, std::s
           row_of(static_cast<Eigen::Index>(i)) = -output[row - 1 - i];
           row_of(static_cast<Eigen::Index>(order + i)) = at(input, row, delay + i);
         }
-        normal.selfadjointView<Eigen::Lower>().rankUpdate(row_of);
-        right += row_of * output[row];
+        normal.template selfadjointView<Eigen::Lower>().rankUpdate(row_of);
+        right += row_of * S(output[row]);
       }
     }
   }
-  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt();
-  if (!(scale.minCoeff() > 0.0)) {
+  const Vector scale = normal.diagonal().cwiseSqrt();
+  if (!(scale.minCoeff() > S(0))) {
     return std::nullopt;
   }
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
-  Eigen::MatrixXd scaled =
-      inverse.asDiagonal() * Eigen::MatrixXd(normal.selfadjointView<Eigen::Lower>()) * inverse.asDiagonal();
-  scaled.diagonal().array() += 1e-14 * static_cast<double>(size);  // rounding of the normal equations
-  const Eigen::VectorXd found = inverse.asDiagonal() * scaled.ldlt().solve(inverse.asDiagonal() * right);
+  const Vector inverse = scale.cwiseInverse();
+  Matrix scaled = inverse.asDiagonal() * Matrix(normal.template selfadjointView<Eigen::Lower>()) * inverse.asDiagonal();
+  // Rounding of the normal equations.
+  scaled.diagonal().array() += S(50) * std::numeric_limits<S>::epsilon() * static_cast<S>(size);
+  const Vector found = inverse.asDiagonal() * scaled.ldlt().solve(inverse.asDiagonal() * right);
   if (!found.allFinite()) {
     return std::nullopt;
   }
+  const Eigen::VectorXd coefficients = found.template cast<double>();
   LinearModel model{delay, {}, {}};
-  model.a.assign(found.data(), found.data() + order);
-  model.b.assign(found.data() + order, found.data() + 2 * order);
+  model.a.assign(coefficients.data(), coefficients.data() + order);
+  model.b.assign(coefficients.data() + order, coefficients.data() + 2 * order);
   return model;
+}
+
+/// In the normal equations of a high order, poles that are close together differ beyond the digits of a double.
+std::optional<LinearModel> least_squares(const std::vector<Signals>& all, std::size_t order, std::size_t delay,
+                                         const Series& poles) {
+  return order > kHighestOrder ? least_squares_in<long double>(all, order, delay, poles)
+                               : least_squares_in<double>(all, order, delay, poles);
 }
 
 /// Mean square of the simulation error on the rows that a fit sees; the constant of a record is free where it has a zero.
@@ -201,25 +219,59 @@ Scored steiglitz_mcbride(const std::vector<Signals>& all, std::size_t channel, s
   return best;
 }
 
+void keep_better(Scored& best, Scored tried) {
+  if (tried.model && (!best.model || tried.error < best.error)) {
+    best = std::move(tried);
+  }
+}
+
+/// The best of every delay about one.
+Scored near_delay(const std::vector<Signals>& all, std::size_t channel, std::size_t order, std::size_t middle,
+                  std::size_t longest) {
+  Scored best;
+  for (std::size_t delay = middle - std::min(middle, kNearDelay); delay <= std::min(middle + kNearDelay, longest); ++delay) {
+    keep_better(best, steiglitz_mcbride(all, channel, order, delay));
+  }
+  return best;
+}
+
 /// The best delay of an order: a grid of widening steps, then every delay about the best.
 Scored best_delay(const std::vector<Signals>& all, std::size_t channel, std::size_t order, std::size_t longest) {
   Scored best;
-  const auto look = [&](std::size_t delay) {
-    Scored tried = steiglitz_mcbride(all, channel, order, delay);
-    if (tried.model && (!best.model || tried.error < best.error)) {
-      best = std::move(tried);
-    }
-  };
   std::size_t step = 1;
   for (std::size_t delay = 0; delay <= longest; delay += step) {
-    look(delay);
+    keep_better(best, steiglitz_mcbride(all, channel, order, delay));
     step = std::max<std::size_t>(1, delay / 2);
   }
   if (best.model) {
-    const std::size_t middle = best.model->delay;
-    for (std::size_t delay = middle - std::min<std::size_t>(middle, 2); delay <= std::min(middle + 2, longest); ++delay) {
-      look(delay);
+    keep_better(best, near_delay(all, channel, order, best.model->delay, longest));
+  }
+  return best;
+}
+
+/// The best order and delay for one channel, whose noise has the variance `noise`.
+Scored best_order(const std::vector<Signals>& all, std::size_t channel, std::size_t longest, double noise) {
+  Scored best;
+  const auto is_worth_it = [&](const Scored& next) {
+    constexpr double kWorth = (1.0 - kWorthAnOrder) * (1.0 - kWorthAnOrder);
+    return next.model && (!best.model || next.error < kWorth * best.error);
+  };
+  const auto is_met = [&] { return best.model && best.error <= noise; };
+  for (std::size_t order = 1; order <= kHighestOrder && !is_met(); ++order) {
+    Scored next = best_delay(all, channel, order, longest);
+    if (is_worth_it(next)) {
+      best = std::move(next);
     }
+  }
+  for (const std::size_t order : kHigherOrders) {
+    if (is_met() || !best.model || best.model->order() < kHighestOrder) {
+      break;
+    }
+    Scored next = near_delay(all, channel, order, best.model->delay, longest);
+    if (!is_worth_it(next)) {
+      break;
+    }
+    best = std::move(next);
   }
   return best;
 }
@@ -254,16 +306,7 @@ BlackBox black_box(const Dataset& full) {
     if (all.empty()) {
       continue;
     }
-    Scored best;
-    const double noise = data.noise[c] * data.noise[c];
-    for (std::size_t order = 1; order <= kHighestOrder && !(best.model && best.error <= noise); ++order) {
-      Scored next = best_delay(all, c, order, longest);
-      const double worth = (1.0 - kWorthAnOrder) * (1.0 - kWorthAnOrder);
-      if (next.model && (!best.model || next.error < worth * best.error)) {
-        best = std::move(next);
-      }
-    }
-    box.channels[c] = std::move(best.model);
+    box.channels[c] = best_order(all, c, longest, data.noise[c] * data.noise[c]).model;
   }
   return box;
 }

@@ -19,7 +19,10 @@ void compare(Trial& trial, const Assessed& with, const Assessed& without, const 
 std::vector<std::size_t> finalists_of(const std::vector<Screened>& screened) {
   std::vector<std::pair<std::string, double>> best_of_name;
   std::vector<std::size_t> finalists;
-  for (std::size_t i = 0; i < screened.size() && screened[i].criterion < -policy().strong_evidence; ++i) {
+  for (std::size_t i = 0; i < screened.size(); ++i) {
+    if (screened[i].criterion >= -policy().strong_evidence && screened[i].left >= policy().clearly_less) {
+      continue;
+    }
     const std::string& name = screened[i].candidate.name;
     const auto known =
         std::find_if(best_of_name.begin(), best_of_name.end(), [&](const auto& n) { return n.first == name; });

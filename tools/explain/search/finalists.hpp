@@ -20,7 +20,9 @@ inline constexpr double kCloseVariant = 0.9;
 /// Sets how a model does against another, on given effective samples.
 void compare(Trial& trial, const Assessed& with, const Assessed& without, const std::vector<ChannelFit>& effective);
 
-/// The screened candidates that are fitted jointly: the best names, each with its close variants.
+/// The screened candidates that are fitted jointly: the best names, each with its close variants. They have evidence or
+/// leave clearly less: where the current model leaves a slow residual of few independent rows, nothing has evidence against
+/// it.
 std::vector<std::size_t> finalists_of(const std::vector<Screened>& screened);
 
 /// Names in the order of their best law, the laws of one name from the simplest on.

@@ -352,8 +352,10 @@ void Screening::improve(Screened& screened, Stage stage) const {
   residual += frozen_.jacobian * (Eigen::Map<const Eigen::VectorXd>(fitted.u.data(), count) -
                                   Eigen::Map<const Eigen::VectorXd>(frozen_.u.data(), count));
   fitted.temper = temper_of(evaluator_, residual);
-  screened.criterion = information_criterion(mean_squares(residual), goodness_.fitted, fitted.free.size()) -
-                       unaided_[static_cast<std::size_t>(stage)];
+  const std::vector<ChannelFit> left = mean_squares(residual);
+  screened.criterion =
+      information_criterion(left, goodness_.fitted, fitted.free.size()) - unaided_[static_cast<std::size_t>(stage)];
+  screened.left = Goodness::combined(left) / Goodness::combined(goodness_.fitted);
   screened.seconds += stopwatch.seconds();
 }
 

@@ -22,6 +22,7 @@ struct Screened {
   double seconds = 0.0;
   bool good = false;    ///< false: no start could be simulated
   bool scanned = true;  ///< false: still waits for a law that it contains, to start from there
+  double left = 1.0;    ///< rms error on the rows a fit sees, over that of the current model
 };
 
 /// Ranks candidates around one model. A candidate's own parameters are simulated with exact gradients; what was free before

@@ -69,7 +69,7 @@ std::string missing_start(const std::string& record, const std::string& channel)
       record, channel);
 }
 
-std::string drives_the_model() { return "it drives the model"; }
+std::string drives_the_model() { return "it drives the model, so rename the column that drives the rig to it"; }
 std::string drives_axes(const std::vector<std::string>& axes) {
   return fmt::format("the model is driven by the commands of its axes: {}", fmt::join(axes, ", "));
 }

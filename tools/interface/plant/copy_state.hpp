@@ -36,7 +36,7 @@ constexpr std::size_t members_of() {
 template <class T>
 constexpr auto tied(T& value) {
   constexpr std::size_t kMembers = members_of<std::remove_const_t<T>>();
-  static_assert(kMembers <= 7, "give `tied` a case for this many members");
+  static_assert(kMembers <= 8, "give `tied` a case for this many members");
   if constexpr (kMembers == 0) {
     return std::tuple<>();
   } else if constexpr (kMembers == 1) {
@@ -57,9 +57,12 @@ constexpr auto tied(T& value) {
   } else if constexpr (kMembers == 6) {
     auto& [a, b, c, d, e, f] = value;
     return std::tie(a, b, c, d, e, f);
-  } else {
+  } else if constexpr (kMembers == 7) {
     auto& [a, b, c, d, e, f, g] = value;
     return std::tie(a, b, c, d, e, f, g);
+  } else {
+    auto& [a, b, c, d, e, f, g, h] = value;
+    return std::tie(a, b, c, d, e, f, g, h);
   }
 }
 
