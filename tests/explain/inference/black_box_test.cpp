@@ -89,8 +89,9 @@ TEST(BlackBox, AnOrderThatIsNotThereIsNotTaken) {
   LONGS_EQUAL(3, box.channels[0]->delay);
 }
 
-// Three modes are of order six. With the best order of four, that of two modes, a third of the output is left.
-TEST(BlackBox, AStructureOfThreeModesHasThreeTimesTwoPoles) {
+// Three modes are of order six. With an order of four, that of two modes, the third one is left. Poles beyond the six take
+// up what the passes leave of them.
+TEST(BlackBox, AStructureOfThreeModesIsMetWithAHigherOrderThanFour) {
   constexpr std::array kNatural{2.0 * std::numbers::pi * 4.0, 2.0 * std::numbers::pi * 9.0, 2.0 * std::numbers::pi * 15.0};
   Dataset data = lagging();
   std::mt19937_64 generator(5);
@@ -100,7 +101,7 @@ TEST(BlackBox, AStructureOfThreeModesHasThreeTimesTwoPoles) {
     std::array<double, 3> v{};
     for (std::size_t i = 0; i < kBlackBoxRows; ++i) {
       experiment.measured[0][i] = x[0] + x[1] + x[2] + kBlackBoxNoise * normal(generator);
-      experiment.input[i] = normal(generator);
+      experiment.input[i] = i > 0 ? normal(generator) : 0.0;  // at rest under the first input
       constexpr int kSteps = 50;
       for (int k = 0; k < kSteps; ++k) {
         for (std::size_t mode = 0; mode < kNatural.size(); ++mode) {
@@ -113,9 +114,9 @@ TEST(BlackBox, AStructureOfThreeModesHasThreeTimesTwoPoles) {
   }
   const BlackBox box = black_box(data);
   CHECK(box.channels[0].has_value());
-  LONGS_EQUAL(6, box.channels[0]->order());
+  CHECK(box.channels[0]->order() >= 6);
   const Goodness reached = goodness(data, simulated(box, data));
-  CHECK(reached.held_out[0].rms < 1.2 * kBlackBoxNoise);
+  CHECK(reached.held_out[0].rms < 1.1 * kBlackBoxNoise);
   CHECK(reached.held_out[0].rms > 0.9 * kBlackBoxNoise);
 }
 

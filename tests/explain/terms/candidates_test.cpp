@@ -3,6 +3,7 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -60,6 +61,28 @@ TEST(Candidates, APointOfATableIsAddressedByItsNumberToo) {
     return;
   }
   FAIL("there is no such candidate");
+}
+
+// Friction in two directions is small only where both of its levels are, and its viscous parts.
+TEST(Candidates, AnEffectOfSeveralPartsHasOneStartAtWhichAllOfThemAreSmall) {
+  const hotfire::ModelParameters neutral = hotfire::DirectParameters{};
+  for (const Candidate& candidate : all_candidates(neutral, every_channel())) {
+    if (candidate.name != "sliding_friction" || candidate.option != 0) {
+      continue;
+    }
+    const std::vector<FreeParameter> own = effect_parameters(neutral, candidate, {});
+    CHECK_TRUE(own.size() > 1);
+    const auto is_small = [&](const std::vector<double>& start) {
+      std::size_t small = 0;
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        small += own[k].value(start[k]) < 0.1 * own[k].unit_size ? 1 : 0;
+      }
+      return small == own.size();
+    };
+    CHECK_EQUAL(1, std::ranges::count_if(start_points(own, {}), is_small));
+    return;
+  }
+  FAIL("no sliding_friction among the candidates");
 }
 
 TEST(Candidates, APositiveParameterAloneStartsOnACombFromASixteenthToSixteenTimesItsTypicalValue) {

@@ -76,6 +76,14 @@ void append_ordinates(const ModelParameters& base, const Candidate& candidate, c
   });
 }
 
+/// Share of its typical value at which a parameter is neutral to any sensor.
+constexpr double kNeutralShare = 1e-6;
+
+/// True for a parameter that may be as little as nothing.
+bool can_vanish(const FreeParameter& parameter) {
+  return parameter.scale == FreeParameter::Scale::logarithmic && parameter.lower <= kNeutralShare * parameter.unit_size;
+}
+
 bool is_frequency(const FreeParameter& parameter) { return parameter.unit == "Hz"; }
 
 /// Coordinate of a multiple of a parameter's typical value, within its bounds.
@@ -223,8 +231,8 @@ std::vector<FreeParameter> effect_parameters(const ModelParameters& base, const 
       parameter.upper = field.upper * size;
       if (model::searched_in_logarithms(field)) {
         parameter.scale = FreeParameter::Scale::logarithmic;
-        // A logarithm needs a floor; a millionth of the typical value is neutral to any sensor.
-        parameter.lower = std::max(parameter.lower, 1e-6 * parameter.unit_size);
+        // A logarithm needs a floor.
+        parameter.lower = std::max(parameter.lower, kNeutralShare * parameter.unit_size);
         parameter.prior_center = std::log(parameter.unit_size);
         parameter.prior_deviation = kWeakPrior;
       }
@@ -285,7 +293,16 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
   }
   if (!has_frequency && !all_ordinates && !own.empty()) {
     // Small ones: an effect far below its typical size shows from there, where from elsewhere it only overshoots. Of some
-    // effects the small ones have large values (a rate limit).
+    // effects the small ones have large values (a rate limit), and of some each parameter that can vanish adds its own part
+    // (friction in two directions).
+    if (std::ranges::count_if(own, can_vanish) > 1) {
+      starts.push_back(starts.front());
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        if (can_vanish(own[k])) {
+          starts.back()[k] = clamped_coordinate(own[k], 1.0 / kWhisper);
+        }
+      }
+    }
     for (const double factor : {1.0 / kWhisper, kWhisper}) {
       starts.push_back(starts.front());
       const FreeParameter& size = own.front();
