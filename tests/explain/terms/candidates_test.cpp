@@ -65,7 +65,7 @@ TEST(Candidates, APointOfATableIsAddressedByItsNumberToo) {
 
 // Friction in two directions is small only where both of its levels are, and its viscous parts.
 TEST(Candidates, AnEffectOfSeveralPartsHasOneStartAtWhichAllOfThemAreSmall) {
-  const hotfire::ModelParameters neutral = hotfire::DirectParameters{};
+  const ModelParameters neutral = hotfire::DirectParameters{};
   for (const Candidate& candidate : all_candidates(neutral, every_channel())) {
     if (candidate.name != "sliding_friction" || candidate.option != 0) {
       continue;
