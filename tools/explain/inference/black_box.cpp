@@ -135,8 +135,8 @@ std::optional<LinearModel> least_squares_in(const std::vector<Signals>& all, std
     for (const Block& block : signals.experiment->fitted) {
       for (std::size_t row = block.first + order; row < block.last; ++row) {
         for (std::size_t i = 0; i < order; ++i) {
-          row_of(static_cast<Eigen::Index>(i)) = -output[row - 1 - i];
-          row_of(static_cast<Eigen::Index>(order + i)) = at(input, row, delay + i);
+          row_of(static_cast<Eigen::Index>(i)) = S(-output[row - 1 - i]);
+          row_of(static_cast<Eigen::Index>(order + i)) = S(at(input, row, delay + i));
         }
         normal.template selfadjointView<Eigen::Lower>().rankUpdate(row_of);
         right += row_of * S(output[row]);
@@ -155,7 +155,7 @@ std::optional<LinearModel> least_squares_in(const std::vector<Signals>& all, std
   if (!found.allFinite()) {
     return std::nullopt;
   }
-  const Eigen::VectorXd coefficients = found.template cast<double>();
+  const Eigen::VectorXd coefficients(found.template cast<double>());
   LinearModel model{delay, {}, {}};
   model.a.assign(coefficients.data(), coefficients.data() + order);
   model.b.assign(coefficients.data() + order, coefficients.data() + 2 * order);

@@ -129,6 +129,27 @@ std::vector<std::vector<double>> starts_of_one(const FreeParameter& parameter) {
   return starts;
 }
 
+/// Appends starts that are small: an effect far below its typical size shows from there, where from elsewhere it only
+/// overshoots. Of some effects the small ones have large values (a rate limit), and of some each parameter that can vanish
+/// adds its own part (friction in two directions).
+void append_small_starts(const std::vector<FreeParameter>& own, std::vector<std::vector<double>>& starts) {
+  const std::vector<double> typical = starts.front();
+  if (std::ranges::count_if(own, can_vanish) > 1) {
+    starts.push_back(typical);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (can_vanish(own[k])) {
+        starts.back()[k] = clamped_coordinate(own[k], 1.0 / kWhisper);
+      }
+    }
+  }
+  for (const double factor : {1.0 / kWhisper, kWhisper}) {
+    starts.push_back(typical);
+    const FreeParameter& size = own.front();
+    starts.back().front() = size.scale == FreeParameter::Scale::linear ? (factor < 1.0 ? factor : -1.0 / factor)
+                                                                       : clamped_coordinate(size, factor);
+  }
+}
+
 }  // namespace
 
 std::vector<Candidate> all_candidates(const ModelParameters& plant, const Dataset& data) {
@@ -292,23 +313,7 @@ std::vector<std::vector<double>> start_points(const std::vector<FreeParameter>& 
     }
   }
   if (!has_frequency && !all_ordinates && !own.empty()) {
-    // Small ones: an effect far below its typical size shows from there, where from elsewhere it only overshoots. Of some
-    // effects the small ones have large values (a rate limit), and of some each parameter that can vanish adds its own part
-    // (friction in two directions).
-    if (std::ranges::count_if(own, can_vanish) > 1) {
-      starts.push_back(starts.front());
-      for (std::size_t k = 0; k < own.size(); ++k) {
-        if (can_vanish(own[k])) {
-          starts.back()[k] = clamped_coordinate(own[k], 1.0 / kWhisper);
-        }
-      }
-    }
-    for (const double factor : {1.0 / kWhisper, kWhisper}) {
-      starts.push_back(starts.front());
-      const FreeParameter& size = own.front();
-      starts.back().front() = size.scale == FreeParameter::Scale::linear ? (factor < 1.0 ? factor : -1.0 / factor)
-                                                                         : clamped_coordinate(size, factor);
-    }
+    append_small_starts(own, starts);
   }
   return starts;
 }
