@@ -155,10 +155,11 @@ std::optional<LinearModel> least_squares_in(const std::vector<Signals>& all, std
   if (!found.allFinite()) {
     return std::nullopt;
   }
-  const Eigen::VectorXd coefficients(found.template cast<double>());
   LinearModel model{delay, {}, {}};
-  model.a.assign(coefficients.data(), coefficients.data() + order);
-  model.b.assign(coefficients.data() + order, coefficients.data() + 2 * order);
+  for (std::size_t i = 0; i < order; ++i) {
+    model.a.push_back(static_cast<double>(found(static_cast<Eigen::Index>(i))));
+    model.b.push_back(static_cast<double>(found(static_cast<Eigen::Index>(order + i))));
+  }
   return model;
 }
 
