@@ -94,7 +94,7 @@ Explanation explain(const ModelFile& model, const std::vector<Record>& records, 
     refuse_turned_sign(data, model, search_options, found);
   }
   options.watch.progress({Work::concluding, "fitting a linear black box, to compare"});
-  const BlackBox box = black_box(data);
+  const BlackBox box = black_box(data, options.threads);
   if (!found.interrupted) {
     options.watch.progress({Work::concluding, "fitting what was found to all rows", SharesOfWork::kComparedWithBlackBox});
     fit_to_all_rows(data, options.threads, found);

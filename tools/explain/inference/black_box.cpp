@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/explain/fit/parallel.hpp"
 #include "tools/simulate/path.hpp"
 
 namespace hotfire::explain {
@@ -80,15 +81,17 @@ Series through_poles(const Series& values, const Series& a) {
     gain += coefficient;
   }
   const double before = std::abs(gain) > 1e-12 ? values.front() / gain : 0.0;
-  Series result(values.size());
+  Series padded(a.size(), before);
+  padded.resize(a.size() + values.size());
   for (std::size_t row = 0; row < values.size(); ++row) {
     double value = values[row];
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-      value -= a[i - 1] * (row >= i ? result[row - i] : before);
+    const double* earlier = padded.data() + a.size() + row;
+    for (const double coefficient : a) {
+      value -= coefficient * *--earlier;
     }
-    result[row] = value;
+    padded[a.size() + row] = value;
   }
-  return result;
+  return {padded.begin() + static_cast<std::ptrdiff_t>(a.size()), padded.end()};
 }
 
 /// The output from rest, or from the steady state under the first input if `steady`.
@@ -128,21 +131,33 @@ std::optional<LinearModel> least_squares_in(const std::vector<Signals>& all, std
   const auto size = static_cast<Eigen::Index>(2 * order);
   Matrix normal = Matrix::Zero(size, size);
   Vector right = Vector::Zero(size);
-  Vector row_of(size);
+  // A product of many rows takes a fraction of the time of as many outer products.
+  constexpr Eigen::Index kTogether = 64;
+  Matrix rows(size, kTogether);
+  Vector outputs(kTogether);
+  Eigen::Index waiting = 0;
+  const auto add_waiting = [&] {
+    normal.template selfadjointView<Eigen::Lower>().rankUpdate(rows.leftCols(waiting));
+    right.noalias() += rows.leftCols(waiting) * outputs.head(waiting);
+    waiting = 0;
+  };
   for (const Signals& signals : all) {
     const Series input = poles.empty() ? signals.input : through_poles(signals.input, poles);
     const Series output = poles.empty() ? signals.output : through_poles(signals.output, poles);
     for (const Block& block : signals.experiment->fitted) {
       for (std::size_t row = block.first + order; row < block.last; ++row) {
         for (std::size_t i = 0; i < order; ++i) {
-          row_of(static_cast<Eigen::Index>(i)) = S(-output[row - 1 - i]);
-          row_of(static_cast<Eigen::Index>(order + i)) = S(at(input, row, delay + i));
+          rows(static_cast<Eigen::Index>(i), waiting) = S(-output[row - 1 - i]);
+          rows(static_cast<Eigen::Index>(order + i), waiting) = S(at(input, row, delay + i));
         }
-        normal.template selfadjointView<Eigen::Lower>().rankUpdate(row_of);
-        right += row_of * S(output[row]);
+        outputs(waiting) = S(output[row]);
+        if (++waiting == kTogether) {
+          add_waiting();
+        }
       }
     }
   }
+  add_waiting();
   const Vector scale = normal.diagonal().cwiseSqrt();
   if (!(scale.minCoeff() > S(0))) {
     return std::nullopt;
@@ -220,38 +235,56 @@ Scored steiglitz_mcbride(const std::vector<Signals>& all, std::size_t channel, s
   return best;
 }
 
-void keep_better(Scored& best, Scored tried) {
-  if (tried.model && (!best.model || tried.error < best.error)) {
-    best = std::move(tried);
-  }
-}
+/// The records of one channel, and how its models are searched for.
+struct Search {
+  const std::vector<Signals>& all;
+  std::size_t channel;
+  std::size_t longest;  ///< delay [rows]
+  unsigned threads;
+};
 
-/// The best of every delay about one.
-Scored near_delay(const std::vector<Signals>& all, std::size_t channel, std::size_t order, std::size_t middle,
-                  std::size_t longest) {
+/// The best of some delays; the first of equal ones.
+Scored best_of_delays(const Search& search, std::size_t order, const std::vector<std::size_t>& delays) {
+  std::vector<Scored> tried(delays.size());
+  parallel_for(delays.size(), search.threads,
+               [&](std::size_t i) { tried[i] = steiglitz_mcbride(search.all, search.channel, order, delays[i]); });
   Scored best;
-  for (std::size_t delay = middle - std::min(middle, kNearDelay); delay <= std::min(middle + kNearDelay, longest); ++delay) {
-    keep_better(best, steiglitz_mcbride(all, channel, order, delay));
+  for (Scored& one : tried) {
+    if (one.model && (!best.model || one.error < best.error)) {
+      best = std::move(one);
+    }
   }
   return best;
 }
 
-/// The best delay of an order: a grid of widening steps, then every delay about the best.
-Scored best_delay(const std::vector<Signals>& all, std::size_t channel, std::size_t order, std::size_t longest) {
-  Scored best;
-  std::size_t step = 1;
-  for (std::size_t delay = 0; delay <= longest; delay += step) {
-    keep_better(best, steiglitz_mcbride(all, channel, order, delay));
-    step = std::max<std::size_t>(1, delay / 2);
+/// The best of every delay about one.
+Scored near_delay(const Search& search, std::size_t order, std::size_t middle) {
+  std::vector<std::size_t> delays;
+  for (std::size_t delay = middle - std::min(middle, kNearDelay); delay <= std::min(middle + kNearDelay, search.longest);
+       ++delay) {
+    delays.push_back(delay);
   }
+  return best_of_delays(search, order, delays);
+}
+
+/// The best delay of an order: a grid of widening steps, then every delay about the best.
+Scored best_delay(const Search& search, std::size_t order) {
+  std::vector<std::size_t> grid;
+  for (std::size_t delay = 0; delay <= search.longest; delay += std::max<std::size_t>(1, delay / 2)) {
+    grid.push_back(delay);
+  }
+  Scored best = best_of_delays(search, order, grid);
   if (best.model) {
-    keep_better(best, near_delay(all, channel, order, best.model->delay, longest));
+    Scored near = near_delay(search, order, best.model->delay);
+    if (near.model && near.error < best.error) {
+      best = std::move(near);
+    }
   }
   return best;
 }
 
 /// The best order and delay for one channel, whose noise has the variance `noise`.
-Scored best_order(const std::vector<Signals>& all, std::size_t channel, std::size_t longest, double noise) {
+Scored best_order(const Search& search, double noise) {
   Scored best;
   const auto is_worth_it = [&](const Scored& next) {
     constexpr double kWorth = (1.0 - kWorthAnOrder) * (1.0 - kWorthAnOrder);
@@ -259,7 +292,7 @@ Scored best_order(const std::vector<Signals>& all, std::size_t channel, std::siz
   };
   const auto is_met = [&] { return best.model && best.error <= noise; };
   for (std::size_t order = 1; order <= kHighestOrder && !is_met(); ++order) {
-    Scored next = best_delay(all, channel, order, longest);
+    Scored next = best_delay(search, order);
     if (is_worth_it(next)) {
       best = std::move(next);
     }
@@ -268,7 +301,7 @@ Scored best_order(const std::vector<Signals>& all, std::size_t channel, std::siz
     if (is_met() || !best.model || best.model->order() < kHighestOrder) {
       break;
     }
-    Scored next = near_delay(all, channel, order, best.model->delay, longest);
+    Scored next = near_delay(search, order, best.model->delay);
     if (!is_worth_it(next)) {
       break;
     }
@@ -291,7 +324,7 @@ Dataset for_black_box(const Dataset& data) {
   return thin;
 }
 
-BlackBox black_box(const Dataset& full) {
+BlackBox black_box(const Dataset& full, unsigned threads) {
   const Dataset data = for_black_box(full);
   BlackBox box;
   const double period = data.experiments.front().period;
@@ -307,7 +340,7 @@ BlackBox black_box(const Dataset& full) {
     if (all.empty()) {
       continue;
     }
-    box.channels[c] = best_order(all, c, longest, data.noise[c] * data.noise[c]).model;
+    box.channels[c] = best_order({all, c, longest, threads}, data.noise[c] * data.noise[c]).model;
   }
   return box;
 }

@@ -31,7 +31,7 @@ struct BlackBox {
 /// the next row (Steiglitz and McBride 1965, IEEE Trans. Automatic Control 10, 461); the best by its simulation error on the
 /// rows that a fit sees, a further order where that is more than noise and it takes a fiftieth off. Rows closer than 2 ms
 /// are `thinned`. Empty for records of several periods.
-BlackBox black_box(const Dataset& data);
+BlackBox black_box(const Dataset& data, unsigned threads = 1);
 
 /// What it predicts of records of the same rig, from the steady state under their first input, or for a force-driven mass
 /// from where it is; with the zeros that `add_zeros` gives them. `data` is thinned to its period.
