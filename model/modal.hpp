@@ -25,8 +25,9 @@ namespace hotfire::model {
 ///     place 1: sum q_k,   place p: sum place_pk q_k,   joint: sum joint_k q_k
 ///
 /// The effects depend on the motion across the joint. Each mode is advanced by its exact hold, with the effects held at the
-/// mean of the step's ends, in two passes. The acceleration at the end of a step is that of the equation, under forces that
-/// continue those of the last two steps by half a step. Second order where the motion is smooth.
+/// mean of the step's ends, in two passes. The acceleration at the end of a step is that of the equation there: the effects
+/// give their force under the motion at the end, and the driving force continues that of the last two steps by half a step.
+/// Second order where the motion is smooth.
 template <class S, class List = JointEffects>
 class Modal {
  public:
@@ -57,9 +58,8 @@ class Modal {
     S joint_force{0.0};
     Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
-    S force{0.0};               ///< over the last step
-    S force_before{0.0};        ///< over the step before it
-    S joint_force_before{0.0};  ///< the same of the joint
+    S force{0.0};         ///< over the last step
+    S force_before{0.0};  ///< over the step before it
     std::array<S, 9> measured{};
   };
 
@@ -120,7 +120,6 @@ class Modal {
   void step_unread(State& state, const S& force) const noexcept {
     state.force_before = state.force;
     state.force = force;
-    state.joint_force_before = state.joint_force;
     const Eigen::Matrix<S, 2 * kRigModes, 1> start = state.y;
     Eigen::Matrix<S, 2 * kRigModes, 1> free;
     S before{0.0};
@@ -181,7 +180,11 @@ class Modal {
 
   void read(State& state) const noexcept {
     const S force = state.force + 0.5 * (state.force - state.force_before);
-    const S joint_force = state.joint_force + 0.5 * (state.joint_force - state.joint_force_before);
+    // Dry friction jumps within a step where the motion turns: the mean over the step is not the force at its end.
+    EffectStates<S, List> at_end = state.effects;
+    const S rate = joint_rate(state);
+    Motion<S> motion{joint_position(state), rate, rate, compliance_, 0.0, state.clock.at(h_, 0.0)};
+    const S joint_force = sum_over<Site::mass_force>(parameters_.effects, acting_, at_end, motion, Keep::no);
     state.measured.fill(S{0.0});
     for (const Mode& mode : modes()) {
       const S& position = state.y(mode.q);

@@ -38,6 +38,14 @@ bool keeps_nothing(model::Memory kind) {
   }
 }
 
+/// The first forms of some that run side by side, or the first alone.
+std::span<const Form> side_by_side(std::span<const Form> forms) {
+  const bool together = forms.size() >= kSideBySide && !forms.front().is_stops() &&
+                        std::ranges::all_of(forms.first(kSideBySide),
+                                            [&](const Form& form) { return form.memory.kind == forms.front().memory.kind; });
+  return forms.first(together ? kSideBySide : 1);
+}
+
 }  // namespace
 
 double correlation_ratio(const std::vector<double>& x, const std::vector<double>& signal) {
@@ -76,7 +84,9 @@ SignalCorrelation::SignalCorrelation(const FormRegression& regression) : regress
   std::ranges::transform(signal_, signal_.begin(), [&](double value) { return value - mean; });
 }
 
-std::vector<double> SignalCorrelation::output(const Form& form) const { return output(form, arguments_of(form)); }
+std::vector<double> SignalCorrelation::output(const Form& form) const {
+  return outputs({&form, 1}, arguments_of(form)).front();
+}
 
 std::vector<Eigen::VectorXd> SignalCorrelation::arguments_of(const Form& form) const {
   std::vector<Eigen::VectorXd> arguments;
@@ -86,18 +96,28 @@ std::vector<Eigen::VectorXd> SignalCorrelation::arguments_of(const Form& form) c
   return arguments;
 }
 
-std::vector<double> SignalCorrelation::output(const Form& form, const std::vector<Eigen::VectorXd>& arguments) const {
-  std::vector<double> values;
-  values.reserve(signal_.size());
+std::vector<std::vector<double>> SignalCorrelation::outputs(std::span<const Form> forms,
+                                                            const std::vector<Eigen::VectorXd>& arguments) const {
+  std::vector<std::vector<double>> all(forms.size());
+  const bool at_rows = keeps_nothing(forms.front().memory.kind);
   for (std::size_t e = 0; e < arguments.size(); ++e) {
     const double period = regression_.problem().data.experiments[e].period;
-    if (keeps_nothing(form.memory.kind)) {
-      append(remembered(form, some_of(arguments[e]), period), values);
+    if (forms.size() == kSideBySide) {
+      const auto each =
+          remembered_side_by_side(forms.first<kSideBySide>(), at_rows ? some_of(arguments[e]) : arguments[e], period);
+      for (std::size_t k = 0; k < forms.size(); ++k) {
+        const Eigen::VectorXd own = each.row(static_cast<Eigen::Index>(k));
+        append(at_rows ? own : some_of(own), all[k]);
+      }
     } else {
-      append(some_of(remembered(form, arguments[e], period)), values);
+      for (std::size_t k = 0; k < forms.size(); ++k) {
+        append(at_rows ? remembered(forms[k], some_of(arguments[e]), period)
+                       : some_of(remembered(forms[k], arguments[e], period)),
+               all[k]);
+      }
     }
   }
-  return values;
+  return all;
 }
 
 std::vector<double> SignalCorrelation::explained_shares(std::span<const Form> forms) const {
@@ -107,12 +127,15 @@ std::vector<double> SignalCorrelation::explained_shares(std::span<const Form> fo
     append(some_of(whole), argument);
   }
   std::vector<double> shares;
-  for (const Form& form : forms) {
-    std::vector<double> values = output(form, arguments);
-    shares.push_back(correlation_ratio(values, signal_));
-    if (form.has_direct()) {
-      std::ranges::transform(values, argument, values.begin(), std::minus<>());
-      shares.back() = std::max(shares.back(), correlation_ratio(values, signal_));
+  while (shares.size() < forms.size()) {
+    const std::span<const Form> together = side_by_side(forms.subspan(shares.size()));
+    for (std::vector<double>& values : outputs(together, arguments)) {
+      const bool has_direct = forms[shares.size()].has_direct();
+      shares.push_back(correlation_ratio(values, signal_));
+      if (has_direct) {
+        std::ranges::transform(values, argument, values.begin(), std::minus<>());
+        shares.back() = std::max(shares.back(), correlation_ratio(values, signal_));
+      }
     }
   }
   return shares;

@@ -30,7 +30,8 @@ class SignalCorrelation {
  private:
   /// What the form is a law of, by experiment.
   std::vector<Eigen::VectorXd> arguments_of(const Form& form) const;
-  std::vector<double> output(const Form& form, const std::vector<Eigen::VectorXd>& arguments) const;
+  /// Of one form, or of forms that run side by side.
+  std::vector<std::vector<double>> outputs(std::span<const Form> forms, const std::vector<Eigen::VectorXd>& arguments) const;
 
   const FormRegression& regression_;
   std::vector<double> signal_;

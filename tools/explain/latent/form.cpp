@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -26,14 +27,35 @@ template <model::Memory kKind>
   }
 }
 
-template <std::size_t... kKinds>
-void run_kind(const model::MemoryParameters<double>& memory, const Eigen::VectorXd& argument, double period,
-              Eigen::VectorXd& output, std::index_sequence<kKinds...> /*all*/) {
-  ((static_cast<std::size_t>(memory.kind) == kKinds
-        ? run_memory<static_cast<model::Memory>(kKinds)>(memory, argument, period, output)
+template <model::Memory kKind>
+[[gnu::flatten]] void run_memory(std::array<model::MemoryParameters<double>, kSideBySide> memories,
+                                 const Eigen::VectorXd& argument, double period,
+                                 Eigen::Matrix<double, kSideBySide, Eigen::Dynamic>& output) {
+  std::array<model::MemoryState<double>, kSideBySide> states;
+  for (auto& memory : memories) {
+    memory.kind = kKind;
+  }
+  // Each memory by its own constants: in a loop over them the compiler computes these again in every row.
+  const auto step = [&]<std::size_t... kPlaces>(Eigen::Index row, std::index_sequence<kPlaces...> /*all*/) {
+    ((output(static_cast<Eigen::Index>(kPlaces), row) = states[kPlaces].step(memories[kPlaces], argument(row), period)),
+     ...);
+  };
+  for (Eigen::Index row = 0; row < argument.size(); ++row) {
+    step(row, std::make_index_sequence<kSideBySide>());
+  }
+}
+
+/// Runs one memory, or several, of the kind `kind`.
+template <class Memories, class Output, std::size_t... kKinds>
+void run_kind(model::Memory kind, const Memories& memories, const Eigen::VectorXd& argument, double period, Output& output,
+              std::index_sequence<kKinds...> /*all*/) {
+  ((static_cast<std::size_t>(kind) == kKinds
+        ? run_memory<static_cast<model::Memory>(kKinds)>(memories, argument, period, output)
         : void()),
    ...);
 }
+
+using AllKinds = std::make_index_sequence<model::kMemoryNames.size()>;
 
 }  // namespace
 
@@ -102,7 +124,16 @@ Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& entering, do
     }
     return output;
   }
-  run_kind(form.memory, entering, period, output, std::make_index_sequence<model::kMemoryNames.size()>());
+  run_kind(form.memory.kind, form.memory, entering, period, output, AllKinds());
+  return output;
+}
+
+Eigen::Matrix<double, kSideBySide, Eigen::Dynamic> remembered_side_by_side(std::span<const Form, kSideBySide> forms,
+                                                                           const Eigen::VectorXd& entering, double period) {
+  std::array<model::MemoryParameters<double>, kSideBySide> memories;
+  std::ranges::transform(forms, memories.begin(), &Form::memory);
+  Eigen::Matrix<double, kSideBySide, Eigen::Dynamic> output(kSideBySide, entering.size());
+  run_kind(memories.front().kind, memories, entering, period, output, AllKinds());
   return output;
 }
 

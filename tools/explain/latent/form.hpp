@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,14 @@ Eigen::VectorXd argument_of(const Form& form, const Eigen::MatrixXd& quantities)
 
 /// Output of the form's memory by row for what enters it; of stops that of the widest.
 Eigen::VectorXd remembered(const Form& form, const Eigen::VectorXd& entering, double period);
+
+/// Forms of one kind of memory that are run side by side: each step of a memory waits for the one before, and the processor
+/// computes that of another memory meanwhile.
+inline constexpr std::size_t kSideBySide = 4;
+
+/// Outputs of `remembered` for forms of one kind of memory, not stops, that the same enters: a row a form.
+Eigen::Matrix<double, kSideBySide, Eigen::Dynamic> remembered_side_by_side(std::span<const Form, kSideBySide> forms,
+                                                                           const Eigen::VectorXd& entering, double period);
 
 /// The form's regressors by row, a column a coefficient: what is added at its site for a coefficient of one.
 Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, double period);

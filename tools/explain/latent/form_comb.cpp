@@ -247,9 +247,9 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   for (const double time : comb(2.0 * period, kLongestWashout * servo, 7)) {
     add(Memory::washout, [&](auto& memory) { memory.time = time; });
   }
-  for (const double frequency : comb(kSlowestCycles / servo, kFastestCycles / servo, 12)) {
-    for (const double damping : {0.15, 0.5}) {
-      for (const Memory kind : {Memory::resonance, Memory::band_pass}) {
+  for (const Memory kind : {Memory::resonance, Memory::band_pass}) {
+    for (const double frequency : comb(kSlowestCycles / servo, kFastestCycles / servo, 12)) {
+      for (const double damping : {0.15, 0.5}) {
         add(kind, [&](auto& memory) {
           memory.frequency = frequency;
           memory.damping = damping;
