@@ -74,6 +74,9 @@ TEST(BlackBox, ALinearRigIsMetDownToItsNoiseWithItsOrderAndItsDelay) {
   const Goodness reached = goodness(data, simulated(box, data));
   CHECK(reached.held_out[0].rms < 1.1 * kBlackBoxNoise);
   CHECK(reached.held_out[0].rms > 0.9 * kBlackBoxNoise);
+  const BlackBox on_threads = black_box(data, 3);
+  CHECK(box.channels[0]->a == on_threads.channels[0]->a);
+  CHECK(box.channels[0]->b == on_threads.channels[0]->b);
 }
 
 // Fitted to the next row instead, the same equation with this noise has poles that are far too fast.

@@ -2,6 +2,7 @@
 #include "tools/explain/latent/form_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -65,6 +66,30 @@ struct Best {
 }  // namespace
 
 TEST_GROUP(FormSearch){};
+
+TEST(FormSearch, MemoriesThatRunSideBySideAreThoseOfEachAlone) {
+  Eigen::VectorXd entering(500);
+  for (Eigen::Index row = 0; row < entering.size(); ++row) {
+    entering(row) = std::sin(0.1 * static_cast<double>(row)) + 0.4 * std::sin(0.37 * static_cast<double>(row));
+  }
+  constexpr double kRow = 0.004;
+  for (std::size_t kind = 0; kind < model::kMemoryNames.size(); ++kind) {
+    if (static_cast<Memory>(kind) == Memory::stops) {
+      continue;
+    }
+    std::array<Form, explain::kSideBySide> forms;
+    double size = 1.0;
+    for (Form& form : forms) {
+      size *= 1.5;
+      form.memory = {static_cast<Memory>(kind), 0.01 * size, 2.0 * size, 0.2 * size, 0.1 * size, 0.3 * size};
+    }
+    const auto together = explain::remembered_side_by_side(forms, entering, kRow);
+    for (std::size_t k = 0; k < forms.size(); ++k) {
+      const Eigen::VectorXd alone = explain::remembered(forms[k], entering, kRow);
+      CHECK(together.row(static_cast<Eigen::Index>(k)).transpose() == alone);
+    }
+  }
+}
 
 // Eleven points over the range would put none inside of +-0.3 mrad, a twentieth of it.
 TEST(FormSearch, ANarrowKinkIsFoundWithItsWidth) {
