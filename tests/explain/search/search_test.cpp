@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tests/explain/latent/missing_effect.hpp"
 #include "tests/explain/oscillator.hpp"
 #include "tests/support/add_effect.hpp"
 
@@ -24,6 +25,24 @@ explain::SearchResult found_in(const Record& record, int most_effects = 4, doubl
 
 TEST_GROUP(Search){};
 TEST_GROUP(SearchAtLength){};
+
+// The reference axis has 2 ms: closer rows cost time and separate nothing, and there are no others to leave out.
+TEST(Search, CandidatesAreRankedOnRowsThatTheServoFollows) {
+  Record record = test::record_of(test::declared());
+  const auto period_of_ranks = [&](double period) {
+    record.period = period;
+    const auto data = explain::make_dataset(test::declared(), {record});
+    return explain::rows_for_ranks(data, test::declared()).experiments.front().period;
+  };
+  DOUBLES_EQUAL(2e-3, period_of_ranks(2e-4), 1e-9);
+  DOUBLES_EQUAL(2e-3, period_of_ranks(1e-3), 1e-9);
+  DOUBLES_EQUAL(2e-3, period_of_ranks(2e-3), 1e-9);
+  DOUBLES_EQUAL(5e-3, period_of_ranks(5e-3), 1e-9);
+  const ModelFile mass = declared_oscillator(97.0);
+  const auto of_mass = explain::make_dataset(mass, {oscillator(0.0, 1e-3)});
+  const double period = of_mass.experiments.front().period;
+  DOUBLES_EQUAL(period, explain::rows_for_ranks(of_mass, mass).experiments.front().period, 0.0);
+}
 
 TEST(Search, ACubicStiffnessNobodyDeclaredIsFoundWithItsValueAndNothingElse) {
   const auto found = found_in(oscillator(400.0, 1e-3));

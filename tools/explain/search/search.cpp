@@ -25,17 +25,12 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Rows no closer than this separate candidates [s]: the fastest that an axis does in its sensors is tens of hertz.
-constexpr double kRankingPeriod = 2e-3;
+/// Rows no closer than this separate candidates [time constants of the servo]: 2 ms of the reference axis. The fastest that
+/// an axis does in its sensors is tens of hertz.
+constexpr double kRankingPeriod = 0.034;
 /// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
 /// were thinned by.
 bool is_ranked_coarsely(const ModelFile& model) { return is_hydraulic_axis(model.parameters); }
-
-Dataset for_ranking(const Dataset& data, const ModelFile& model) {
-  return is_ranked_coarsely(model)
-             ? thinned(data, kRankingPeriod * servo_time(std::get<SimplexParameters>(model.parameters)))
-             : data;
-}
 
 /// The state of one search.
 class Search {
@@ -44,7 +39,7 @@ class Search {
       : data_(data),
         model_(model),
         options_(options),
-        thin_(for_ranking(data, model)),
+        thin_(rows_for_ranks(data, model)),
         fine_(data, Resolution::fine, is_ranked_coarsely(model) ? Resolution::coarse : Resolution::fine),
         coarse_(thin_, is_ranked_coarsely(model) ? Resolution::coarse : Resolution::fine,
                 is_ranked_coarsely(model) ? Resolution::rough : Resolution::fine),
@@ -364,6 +359,12 @@ class Search {
 };
 
 }  // namespace
+
+Dataset rows_for_ranks(const Dataset& data, const ModelFile& model) {
+  return is_ranked_coarsely(model)
+             ? thinned(data, kRankingPeriod * servo_time(std::get<SimplexParameters>(model.parameters)))
+             : data;
+}
 
 SearchResult search(const Dataset& data, const ModelFile& model, const SearchOptions& options) {
   return Search(data, model, options).run();

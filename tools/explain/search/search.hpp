@@ -41,4 +41,7 @@ struct SearchOptions {
 /// error on held-out blocks. An effect that a later one makes superfluous is taken out again.
 SearchResult search(const Dataset& data, const ModelFile& model, const SearchOptions& options);
 
+/// The rows on which candidates are ranked: those of an axis `thinned` to what its servo follows, of other plants all.
+Dataset rows_for_ranks(const Dataset& data, const ModelFile& model);
+
 }  // namespace hotfire::explain
