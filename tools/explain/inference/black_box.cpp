@@ -235,6 +235,12 @@ Scored steiglitz_mcbride(const std::vector<Signals>& all, std::size_t channel, s
   return best;
 }
 
+void keep_better(Scored& best, Scored tried) {
+  if (tried.model && (!best.model || tried.error < best.error)) {
+    best = std::move(tried);
+  }
+}
+
 /// The records of one channel, and how its models are searched for.
 struct Search {
   const std::vector<Signals>& all;
@@ -250,9 +256,7 @@ Scored best_of_delays(const Search& search, std::size_t order, const std::vector
                [&](std::size_t i) { tried[i] = steiglitz_mcbride(search.all, search.channel, order, delays[i]); });
   Scored best;
   for (Scored& one : tried) {
-    if (one.model && (!best.model || one.error < best.error)) {
-      best = std::move(one);
-    }
+    keep_better(best, std::move(one));
   }
   return best;
 }
@@ -275,10 +279,7 @@ Scored best_delay(const Search& search, std::size_t order) {
   }
   Scored best = best_of_delays(search, order, grid);
   if (best.model) {
-    Scored near = near_delay(search, order, best.model->delay);
-    if (near.model && near.error < best.error) {
-      best = std::move(near);
-    }
+    keep_better(best, near_delay(search, order, best.model->delay));
   }
   return best;
 }

@@ -99,6 +99,7 @@ std::vector<Eigen::VectorXd> SignalCorrelation::arguments_of(const Form& form) c
 std::vector<std::vector<double>> SignalCorrelation::outputs(std::span<const Form> forms,
                                                             const std::vector<Eigen::VectorXd>& arguments) const {
   std::vector<std::vector<double>> all(forms.size());
+  std::ranges::for_each(all, [&](std::vector<double>& values) { values.reserve(signal_.size()); });
   const bool at_rows = keeps_nothing(forms.front().memory.kind);
   for (std::size_t e = 0; e < arguments.size(); ++e) {
     const double period = regression_.problem().data.experiments[e].period;
