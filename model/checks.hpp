@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "model/keys.hpp"
 
@@ -35,20 +36,42 @@ constexpr bool rises(const Points& x, std::size_t i) {
   return is_inside(x[i], -kLargest, kLargest) && (i == 0 || x[i] > x[i - 1]);
 }
 
-/// An active effect whose values contradict each other, and how; both empty if there is none.
-struct BrokenEffect {
-  std::string_view effect;
+/// An active effect, or a part, whose values contradict each other, and how; both empty if there is none.
+struct Broken {
+  std::string_view name;
   std::string_view relation;
 };
 
-/// The first active effect of an axis whose values contradict each other (`broken_relation` in declaration/effect.hpp).
+/// The first active effect of a plant whose values contradict each other (`broken_relation` in declaration/effect.hpp), or
+/// that acts where this plant has nothing (`missing_place` of its parameters).
 template <class Parameters>
-BrokenEffect broken_effect(const Parameters& axis) {
-  BrokenEffect broken;
-  visit_effects(axis, [&]<class E>(std::size_t index, const auto& values) {
+Broken broken_effect(const Parameters& plant) {
+  Broken broken;
+  visit_effects(plant, [&]<class E>(std::size_t index, const auto& values) {
+    if (!broken.relation.empty() || !plant.effects.active[index]) {
+      return;
+    }
     if constexpr (requires { E::broken_relation(values); }) {
-      if (broken.relation.empty() && axis.effects.active[index]) {
-        broken = {E::name, E::broken_relation(values)};
+      broken = {E::name, E::broken_relation(values)};
+    }
+    if constexpr (requires { plant.missing_place(E::site); }) {
+      if (broken.relation.empty()) {
+        broken = {E::name, plant.missing_place(E::site)};
+      }
+    }
+  });
+  return broken;
+}
+
+/// The first declared part whose values contradict each other (`broken_relation` of the part).
+template <class Parameters>
+Broken broken_part(const Parameters& plant) {
+  Broken broken;
+  Parameters::for_each_part(plant, [&](const auto& part) {
+    using Part = std::remove_cvref_t<decltype(part)>;
+    if constexpr (requires { Part::broken_relation(part); }) {
+      if (broken.relation.empty()) {
+        broken = {Part::name, Part::broken_relation(part)};
       }
     }
   });

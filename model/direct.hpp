@@ -11,6 +11,7 @@
 #include "model/effects.hpp"
 #include "model/numerics/clock.hpp"
 #include "model/numerics/exact_hold.hpp"
+#include "model/numerics/interpolation.hpp"
 #include "model/numerics/step_size.hpp"
 
 namespace hotfire::model {
@@ -20,8 +21,8 @@ namespace hotfire::model {
 /// record has.
 ///
 /// Discretised as `Simplex` is: exact hold of the linear part, effects held at the mean of the step's ends, two passes. The
-/// acceleration at the end of a step is that of the mean over the last two steps, continued by half a step: second order
-/// where the motion is smooth.
+/// acceleration at the end of a step is that of the equation there: the effects give their force under the motion at the
+/// end, and the driving force continues that of the last two steps by half a step. Second order where the motion is smooth.
 template <class S, class List = DirectEffects>
 class Direct {
  public:
@@ -50,7 +51,8 @@ class Direct {
     Eigen::Matrix<S, 2, 1> inputs = Eigen::Matrix<S, 2, 1>::Zero();
     Clock<S> clock{};  ///< time of the record, for effects that depend on it
     EffectStates<S, List> effects{};
-    S mean_acceleration{0.0};  ///< over the last step
+    S force{0.0};         ///< of the drive, over the last step
+    S force_before{0.0};  ///< over the step before it
     std::array<S, 3> measured{};
   };
 
@@ -83,53 +85,66 @@ class Direct {
   /// At rest at a position.
   State at_rest(const S& position) const { return moving(position, S{0.0}); }
 
-  /// At a position with a velocity, without force.
-  State moving(const S& position, const S& velocity) const {
+  /// At a position with a velocity, under a force.
+  State moving(const S& position, const S& velocity, const S& force = S{0.0}) const {
     State state;
     state.y(0) = position;
     state.y(1) = velocity;
-    state.measured = {position, velocity, S{0.0}};
-    settle<Site::command>(parameters_.effects, state.effects, Signal<S>{S{0.0}, h_});
+    Signal<S> drive{force, h_};
+    settle<Site::command>(parameters_.effects, state.effects, drive);
+    pass_through<Site::command>(parameters_.effects, acting_, state.effects, drive, Keep::no);
+    state.force = state.force_before = drive.value;
+    read(state);
     return state;
   }
 
-  /// The same under a force: the acceleration is the mean over the step that this force begins.
-  State moving(const S& position, const S& velocity, const S& force) const {
-    State state = moving(position, velocity);
-    settle<Site::command>(parameters_.effects, state.effects, Signal<S>{force, h_});
-    State next = state;
-    step(next, force);
-    state.mean_acceleration = next.mean_acceleration;
-    state.measured[kAcceleration] = next.mean_acceleration;
-    return state;
-  }
-
-  /// Advances by one step with the force held.
+  /// Advances by one step with the force held, and reads.
   void step(State& state, const S& force) const noexcept {
+    step_unread(state, force);
+    read(state);
+  }
+
+  /// The same without the readings, for a step that nobody reads at.
+  void step_unread(State& state, const S& force) const noexcept {
     Signal<S> drive{force, h_, state.clock.at(h_, 0.5)};
     pass_through<Site::command>(parameters_.effects, acting_, state.effects, drive, Keep::yes);
+    state.force_before = state.force;
+    state.force = drive.value;
     state.inputs(0) = drive.value;
     const Eigen::Matrix<S, 2, 1> start = state.y;
     const Eigen::Matrix<S, 2, 1> free = times(hold_.transition, start);
     for (int pass = 0; pass < kPasses; ++pass) {
       const Eigen::Matrix<S, 2, 1> end = free + times(hold_.response, state.inputs);
       const S velocity = (end(0) - start(0)) / h_;
-      Motion<S> motion{S(0.5) * (start(0) + end(0)), velocity, velocity, compliance_, h_, state.clock.at(h_, 0.5)};
-      motion.declared_stiffness = parameters_.mass.stiffness;
-      motion.declared_damping = parameters_.mass.damping;
+      Motion<S> motion = motion_of(S(0.5) * (start(0) + end(0)), velocity, h_, state.clock.at(h_, 0.5));
       state.inputs(1) = sum_over<Site::mass_force>(parameters_.effects, acting_, state.effects, motion,
                                                    pass + 1 == kPasses ? Keep::yes : Keep::no);
     }
     state.y = free + times(hold_.response, state.inputs);
     state.clock.steps += 1.0;
-    const S acceleration = (state.y(1) - start(1)) / h_;
-    state.measured = {state.y(0), state.y(1), S(acceleration + 0.5 * (acceleration - state.mean_acceleration))};
-    state.mean_acceleration = acceleration;
   }
 
   static const std::array<S, 3>& measured(const State& state) noexcept { return state.measured; }
 
  private:
+  Motion<S> motion_of(const S& position, const S& velocity, double h, const Precise<S>& time) const noexcept {
+    Motion<S> motion{position, velocity, velocity, compliance_, h, time};
+    motion.declared_stiffness = parameters_.mass.stiffness;
+    motion.declared_damping = parameters_.mass.damping;
+    return motion;
+  }
+
+  void read(State& state) const noexcept {
+    const S& position = state.y(0);
+    const S& velocity = state.y(1);
+    // Dry friction jumps within a step where the motion turns: the mean over the step is not the force at its end.
+    const S against = sum_at_instant<Site::mass_force>(parameters_.effects, acting_, state.effects,
+                                                       motion_of(position, velocity, 0.0, state.clock.at(h_, 0.0)));
+    const S carried = parameters_.mass.damping * velocity + parameters_.mass.stiffness * position + against;
+    state.measured = {position, velocity,
+                      S((end_of_step(state.force, state.force_before) - carried) / parameters_.mass.inertia)};
+  }
+
   Parameters parameters_;
   ActingEffects<List> acting_;
   double h_;

@@ -77,4 +77,10 @@ using DirectEffects =
     EffectList<DriveSaturation, CommandDelay, DriveDeadband, SlidingFriction, ForceOffset, QuadraticStiffness,
                CubicStiffness, FreePlay, PositionDamping, QuadraticDamping, UnlistedMotion<Site::mass_force>>;
 
+/// Every effect of an electromechanical actuator: along its signal path, of its motor, of its transmission, of its load.
+using ElectromechanicalEffects =
+    EffectList<CommandScale, CommandDelay, DriveDeadbandAt<Site::drive>, DriveSaturationAt<Site::drive>, MotorFriction,
+               BacklashAt<Site::transmission>, SlidingFriction, ForceOffset, QuadraticStiffness, CubicStiffness, ElasticStop,
+               PositionDamping, QuadraticDamping, UnlistedMotion<Site::mass_force>>;
+
 }  // namespace hotfire::model

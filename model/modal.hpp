@@ -13,6 +13,7 @@
 #include "model/effects.hpp"
 #include "model/numerics/clock.hpp"
 #include "model/numerics/exact_hold.hpp"
+#include "model/numerics/interpolation.hpp"
 #include "model/numerics/step_size.hpp"
 #include "model/rig_mode.hpp"
 
@@ -179,12 +180,12 @@ class Modal {
   }
 
   void read(State& state) const noexcept {
-    const S force = state.force + 0.5 * (state.force - state.force_before);
+    const S force = end_of_step(state.force, state.force_before);
     // Dry friction jumps within a step where the motion turns: the mean over the step is not the force at its end.
-    EffectStates<S, List> at_end = state.effects;
     const S rate = joint_rate(state);
-    Motion<S> motion{joint_position(state), rate, rate, compliance_, 0.0, state.clock.at(h_, 0.0)};
-    const S joint_force = sum_over<Site::mass_force>(parameters_.effects, acting_, at_end, motion, Keep::no);
+    const S joint_force = sum_at_instant<Site::mass_force>(
+        parameters_.effects, acting_, state.effects,
+        Motion<S>{joint_position(state), rate, rate, compliance_, 0.0, state.clock.at(h_, 0.0)});
     state.measured.fill(S{0.0});
     for (const Mode& mode : modes()) {
       const S& position = state.y(mode.q);

@@ -45,6 +45,8 @@ template <>
 struct PlantOf<model::ImposedMotion<double>::Parameters> : PlantOfAxes<model::ImposedMotion<double>> {};
 template <>
 struct PlantOf<model::Modal<double>::Parameters> : PlantOfAxes<model::Modal<double>> {};
+template <>
+struct PlantOf<model::Electromechanical<double>::Parameters> : PlantOfAxes<model::Electromechanical<double>> {};
 
 }  // namespace detail
 

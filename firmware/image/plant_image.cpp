@@ -205,8 +205,10 @@ void refuse_broken(Entries& entries, const std::string& key, std::string_view br
 
 template <class Parameters>
 void refuse_broken_effects(Entries& entries, const std::string& prefix, const Parameters& axis) {
-  const model::BrokenEffect broken = model::broken_effect(axis);
-  refuse_broken(entries, prefix + "effects." + std::string(broken.effect), broken.relation);
+  const model::Broken part = model::broken_part(axis);
+  refuse_broken(entries, prefix + std::string(part.name), part.relation);
+  const model::Broken effect = model::broken_effect(axis);
+  refuse_broken(entries, prefix + "effects." + std::string(effect.name), effect.relation);
 }
 
 template <class Model>
@@ -285,13 +287,16 @@ PlantImage parse_plant_image(const std::string& text, const std::string& name) {
   if (topology->value == model::Modal<double>::topology) {
     return fill<model::Modal<double>>(entries);
   }
+  if (topology->value == model::Electromechanical<double>::topology) {
+    return fill<model::Electromechanical<double>>(entries);
+  }
   if (topology->value == model::Taos<double>::topology) {
     return fill_vehicle<model::Taos<double>>(entries);
   }
   if (topology->value == model::Masv<double>::topology) {
     return fill_vehicle<model::Masv<double>>(entries);
   }
-  entries.refuse(*topology, "allowed are direct imposed_motion modal simplex taos masv");
+  entries.refuse(*topology, "allowed are direct electromechanical imposed_motion modal simplex taos masv");
   return {std::nullopt, entries.error()};
 }
 

@@ -9,6 +9,7 @@
 #include "firmware/plant/declared_faults.hpp"
 #include "firmware/plant/recorded_loads.hpp"
 #include "model/direct.hpp"
+#include "model/electromechanical.hpp"
 #include "model/imposed_motion.hpp"
 #include "model/modal.hpp"
 #include "model/sensors/vehicle_sensors.hpp"
@@ -19,9 +20,9 @@ namespace hotfire::firmware {
 
 using TaosRig = model::InstrumentedVehicle<model::Taos<double>>;
 using MasvRig = model::InstrumentedVehicle<model::Masv<double>>;
-using PlantParameters =
-    std::variant<model::Simplex<double>::Parameters, model::Direct<double>::Parameters,
-                 model::ImposedMotion<double>::Parameters, model::Modal<double>::Parameters, TaosRig, MasvRig>;
+using PlantParameters = std::variant<model::Simplex<double>::Parameters, model::Direct<double>::Parameters,
+                                     model::ImposedMotion<double>::Parameters, model::Modal<double>::Parameters,
+                                     model::Electromechanical<double>::Parameters, TaosRig, MasvRig>;
 
 /// A plant, or why there is none: file, line, key, value and what is allowed.
 struct PlantImage {

@@ -294,6 +294,19 @@ template <Site site, class S, class List>
                                      : S{0.0};
 }
 
+/// The same at an instant between two steps (`input.h` = 0), from the motion there: the effects move on by nothing.
+template <Site site, class S, class List>
+S sum_at_instant(const EffectParameters<S, List>& parameters, const ActingEffects<List>& acting,
+                 EffectStates<S, List>& states, typename SiteInput<site, S>::type input) noexcept {
+  if (!acting.template any<site>()) {
+    return S{0.0};
+  }
+  const auto outputs = states.outputs;
+  const S total = detail::sum_over_acting<site, S, List>(parameters, acting, states, input, Keep::no);
+  states.outputs = outputs;
+  return total;
+}
+
 /// Passes a measured value through the active sensor effects of one channel.
 template <class S, class List>
 S pass_through_sensor(int channel, const EffectParameters<S, List>& parameters, const ActingEffects<List>& acting,

@@ -20,27 +20,30 @@ enum class Site {
   structure,
   engine_torque,
   mass_force,
+  drive,
+  motor,
+  transmission,
   sensor
 };
 
 constexpr std::string_view site_name(Site site) noexcept {
-  constexpr std::array<std::string_view, 11> names{"command",       "valve_command", "valve",       "flow",
-                                                   "pressure",      "piston",        "load_spring", "structure",
-                                                   "engine_torque", "mass_force",    "sensor"};
+  constexpr std::array<std::string_view, 14> names{"command", "valve_command", "valve",        "flow",          "pressure",
+                                                   "piston",  "load_spring",   "structure",    "engine_torque", "mass_force",
+                                                   "drive",   "motor",         "transmission", "sensor"};
   return names[static_cast<std::size_t>(site)];
 }
 
 /// Sites at which effects are applied one after the other, in the order of the effect list. At all other sites they add up.
 constexpr bool is_serial(Site site) noexcept {
   return site == Site::command || site == Site::valve_command || site == Site::valve || site == Site::load_spring ||
-         site == Site::sensor;
+         site == Site::drive || site == Site::transmission || site == Site::sensor;
 }
 
 template <class S>
 struct Surroundings;
 
-/// Input of an effect at the sites `command`, `valve_command`, `valve` and `sensor`, over one step of `h` [s]. The effect
-/// returns the new value.
+/// Input of an effect at the sites `command`, `valve_command`, `valve`, `drive` and `sensor`, over one step of `h` [s]. The
+/// effect returns the new value.
 template <class S>
 struct Signal {
   using Scalar = S;
@@ -78,8 +81,8 @@ struct Compression {
   double h;
 };
 
-/// Input of an effect at the sites `piston`, `engine_torque` and `mass_force`. The effect returns the force or torque that
-/// opposes the motion, mean over the step.
+/// Input of an effect at the sites `piston`, `engine_torque`, `mass_force` and `motor`. The effect returns the force or
+/// torque that opposes the motion, mean over the step.
 ///
 /// `velocity` is the mean velocity over the step from the last pass. `free_velocity` is its value without this effect.
 /// `compliance` is the reduction of the velocity by a unit of mean force. A stiff law can therefore solve velocity =
@@ -101,8 +104,8 @@ struct Motion {
   const Surroundings<S>* seen = nullptr;  ///< the axis around it
 };
 
-/// Input of an effect at the site `load_spring`. The effect returns it with its change. The spring's force is `stiffness *
-/// deflection`, so a nonlinear spring returns the deflection that gives its force.
+/// Input of an effect at the sites `load_spring` and `transmission`. The effect returns it with its change. The spring's
+/// force is `stiffness * deflection`, so a nonlinear spring returns the deflection that gives its force.
 template <class S>
 struct Spring {
   using Scalar = S;
@@ -153,7 +156,15 @@ struct SiteInput<Site::mass_force, S> {
   using type = Motion<S>;
 };
 template <class S>
+struct SiteInput<Site::motor, S> {
+  using type = Motion<S>;
+};
+template <class S>
 struct SiteInput<Site::load_spring, S> {
+  using type = Spring<S>;
+};
+template <class S>
+struct SiteInput<Site::transmission, S> {
   using type = Spring<S>;
 };
 template <class S>

@@ -92,12 +92,14 @@ struct BristleStep {
   S per_velocity;
 };
 
-/// The exact hold of z' = v - sigma0 |v| z / g over h: with a = sigma0 speed h / level, decay = e^-a, psi = (1 - e^-a)/a and
-/// chi = (1 - psi)/a the end and the mean of z are z decay + v h psi and z psi + v h chi.
+/// The exact hold of z' = v - sigma0 |v| z / g over h; with h = 0 the force at an instant. With a = sigma0 speed h / level,
+/// decay = e^-a, psi = (1 - e^-a)/a and chi = (1 - psi)/a the end and the mean of z are z decay + v h psi and z psi + v h
+/// chi.
 template <class S>
 BristleStep<S> bristle_step(const S& speed, const S& level, const Bristle<S>& bristle, double h) noexcept {
   constexpr double kSmall = 0.02;
-  const S exponent = bristle.stiffness * speed * h / level;
+  const S relaxation = bristle.stiffness * speed / level;
+  const S exponent = relaxation * h;
   // Below `kSmall` the quotients lose digits and the series is exact to 2e-15. Both are computed at every step and blended
   // by a weight of 0 or 1, which changes no bit, so that sticking and slipping cost the same: a choice would become a
   // branch.
@@ -112,7 +114,7 @@ BristleStep<S> bristle_step(const S& speed, const S& level, const Bristle<S>& br
   const S chi = small * series + large * ((1.0 - quotient) / divisor);
   const S psi = small * (1.0 - within * series) + large * quotient;
   const S decay = small * (1.0 - within * psi) + large * exact;
-  return {decay, psi, S(bristle.stiffness * psi + bristle.damping * (decay - 1.0) / h),
+  return {decay, psi, S((bristle.stiffness - bristle.damping * relaxation) * psi),
           S(bristle.stiffness * h * chi + bristle.damping * psi + bristle.viscous)};
 }
 

@@ -116,4 +116,10 @@ class Interpolation {
   int nodes_;  ///< neighbouring rows from which a value between two of them is interpolated
 };
 
+/// The end of a step of a signal from its means over this step and the one before it: second order where it is smooth.
+template <class S>
+S end_of_step(const S& mean, const S& mean_before) noexcept {
+  return mean + 0.5 * (mean - mean_before);
+}
+
 }  // namespace hotfire::model

@@ -154,6 +154,26 @@ Case modal(std::size_t rows) {
   return made;
 }
 
+/// The setpoint is held between rows.
+Case electromechanical(std::size_t rows) {
+  Case made{"electromechanical",
+            kHead +
+                "\"electromechanical\"\n[controller]\nproportional_gain = 200\nintegral_gain = 500\nposition_feedback = 1\n"
+                "velocity_feedback = 0.02\nlimit = 24\n[motor]\ntorque_constant = 0.1\ninertia = 1e-4\nresistance = 1\n"
+                "inductance = 1e-3\n[transmission]\nratio = 100\nstiffness = 2e4\ndamping = 5\n[mass]\ninertia = 2\n"
+                "[effects.backlash]\nhalf_width = 1e-3\n[effects.motor_friction]\nlaw = \"lugre\"\ncoulomb_forward = 4.0\n"
+                "coulomb_backward = 3.0\n",
+            1e-3,
+            1,
+            {"setpoint"},
+            {},
+            {}};
+  const Record record = record_of(rows, {channel("setpoint", "", rows, 0, 0.05)});
+  made.driven = {record.channels[0].values};
+  made.simulated = simulate(parse_model(made.text, "case.toml"), record);
+  return made;
+}
+
 /// A measured load, constant: `simulate` interpolates most loads between rows, and a plant holds its inputs.
 struct Load {
   std::string name;
@@ -219,6 +239,9 @@ Case case_of(const std::string& topology, std::size_t rows) {
   if (topology == "modal") {
     return modal(rows);
   }
+  if (topology == "electromechanical") {
+    return electromechanical(rows);
+  }
   if (topology == "taos") {
     return vehicle("taos", kEffects + kGimbal + kStrings, {"pitch", "yaw"},
                    {{"force.x", "N", 26e4},
@@ -245,7 +268,7 @@ std::vector<Case> cases(std::size_t rows) {
   for (const char* topology : kTopologies) {
     all.push_back(case_of(topology, rows));
   }
-  for (const char* topology : {"imposed_motion", "modal"}) {
+  for (const char* topology : {"imposed_motion", "modal", "electromechanical"}) {
     all.push_back(case_of(topology, rows));
   }
   return all;

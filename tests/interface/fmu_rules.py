@@ -82,9 +82,11 @@ NEEDED = {"fmiModelDescription": ["ModelVariables", "ModelStructure", "CoSimulat
 # Section 2.2.7 of 2.0 and 2.4.7.4 of 3.0: causality, variability and initial as they stand in the file.
 ROLES = {("parameter", "fixed", "exact"), ("parameter", "tunable", "exact"), ("input", "continuous", None),
          ("output", "continuous", "calculated"), ("independent", "continuous", None)}
-# The SI units of section 2.2.2 as exponents of kg, m, s and rad.
-FACTORS = {"1": (0, 0, 0, 0), "kg": (1, 0, 0, 0), "m": (0, 1, 0, 0), "s": (0, 0, 1, 0), "rad": (0, 0, 0, 1), "N": (1, 1, -2, 0),
-           "Pa": (1, -1, -2, 0), "Hz": (0, 0, -1, 0), "J": (1, 2, -2, 0)}
+# The SI units of section 2.2.2 as exponents of kg, m, s, A and rad.
+BASE_UNITS = ("kg", "m", "s", "A", "rad")
+FACTORS = {"1": (0, 0, 0, 0, 0), "kg": (1, 0, 0, 0, 0), "m": (0, 1, 0, 0, 0), "s": (0, 0, 1, 0, 0), "A": (0, 0, 0, 1, 0),
+           "rad": (0, 0, 0, 0, 1), "N": (1, 1, -2, 0, 0), "Pa": (1, -1, -2, 0, 0), "Hz": (0, 0, -1, 0, 0), "J": (1, 2, -2, 0, 0),
+           "ohm": (1, 2, -3, -2, 0), "H": (1, 2, -2, -2, 0)}
 
 # The functions that a binary exports: section 2.1 and 4.2 of 2.0 for co-simulation; appendix of 3.0, where an FMU has all.
 TYPES_2 = ["Real", "Integer", "Boolean", "String"]
@@ -188,7 +190,8 @@ def units(root, version):
     for variable in variables_of(root):
         if variable.get("unit") is not None and variable["unit"] not in defined:
             yield f"{variable['name']}: unit {variable['unit']} is not defined"
-        of_record = any("topology " + name in root.get("description") for name in ("direct", "imposed_motion", "modal"))
+        kinds = ("direct", "imposed_motion", "modal", "electromechanical")
+        of_record = any("topology " + name in root.get("description") for name in kinds)
         if not of_record and (variable.get("unit") is None or defined.get(variable["unit"]) is None):
             yield f"{variable['name']}: a unit with a base unit is missing"
     for name, base in defined.items():
@@ -196,8 +199,8 @@ def units(root, version):
         if base is None or any(word not in FACTORS for _, word, _ in factors):
             continue
         expected = [sum((-1 if sign == "/" else 1) * int(power or 1) * FACTORS[word][i] for sign, word, power in factors)
-                    for i in range(4)]
-        if [int(base.get(key, 0)) for key in ("kg", "m", "s", "rad")] != expected:
+                    for i in range(len(BASE_UNITS))]
+        if [int(base.get(key, 0)) for key in BASE_UNITS] != expected:
             yield f"unit {name}: its base unit is not kg, m, s, rad to the powers {expected}"
 
 

@@ -89,11 +89,12 @@ std::string main_source(std::string_view topology, const FmuIdentity& identity, 
     text += "#include \"tools/interface/fmu/fmi3_unsupported.cpp\"\n";
   }
   text += "\nnamespace hotfire::plant {\n\n// The plant below has one topology; the others are not compiled.\n";
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kTopologies{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kTopologies{
       {{"simplex", "model::Simplex<double>::Parameters"},
        {"direct", "model::Direct<double>::Parameters"},
        {"imposed_motion", "model::ImposedMotion<double>::Parameters"},
        {"modal", "model::Modal<double>::Parameters"},
+       {"electromechanical", "model::Electromechanical<double>::Parameters"},
        {"taos", "model::InstrumentedVehicle<model::Taos<double>>"},
        {"masv", "model::InstrumentedVehicle<model::Masv<double>>"}}};
   for (const auto& [name, parameters] : kTopologies) {

@@ -9,15 +9,18 @@ namespace hotfire {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, BaseUnit>, 9> kUnits{{{"1", {}},
-                                                                       {"kg", {1}},
-                                                                       {"m", {0, 1}},
-                                                                       {"s", {0, 0, 1}},
-                                                                       {"rad", {0, 0, 0, 0, 0, 0, 0, 1}},
-                                                                       {"N", {1, 1, -2}},
-                                                                       {"Pa", {1, -1, -2}},
-                                                                       {"Hz", {0, 0, -1}},
-                                                                       {"J", {1, 2, -2}}}};
+constexpr std::array<std::pair<std::string_view, BaseUnit>, 12> kUnits{{{"1", {}},
+                                                                        {"kg", {1}},
+                                                                        {"m", {0, 1}},
+                                                                        {"s", {0, 0, 1}},
+                                                                        {"rad", {0, 0, 0, 0, 0, 0, 0, 1}},
+                                                                        {"N", {1, 1, -2}},
+                                                                        {"Pa", {1, -1, -2}},
+                                                                        {"Hz", {0, 0, -1}},
+                                                                        {"J", {1, 2, -2}},
+                                                                        {"A", {0, 0, 0, 1}},
+                                                                        {"ohm", {1, 2, -3, -2}},
+                                                                        {"H", {1, 2, -2, -2}}}};
 
 /// Adds a factor with its exponent, "m^3"; false if it is not known.
 bool add(std::string_view factor, int sign, BaseUnit& sum) {

@@ -10,19 +10,21 @@
 
 namespace hotfire {
 
+/// The values of a channel of a record; empty if it has no such channel.
+inline std::span<const double> values_of(const Record& inputs, std::string_view name) {
+  const Channel* channel = inputs.find(std::string(name));
+  return channel != nullptr ? std::span<const double>(channel->values) : std::span<const double>();
+}
+
 /// Piston position at the first row of a record of a hydraulic axis, if it is measured there [m]; otherwise 0.
 inline double first_piston(const Record& inputs, double moment_arm) {
-  const auto values = [&](const char* name) {
-    const Channel* channel = inputs.find(name);
-    return channel != nullptr ? std::span<const double>(channel->values) : std::span<const double>();
-  };
-  return first_piston(values("piston"), values("engine"), moment_arm);
+  return first_piston(values_of(inputs, "piston"), values_of(inputs, "engine"), moment_arm);
 }
 
 /// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command
 /// (without position feedback at the first row of its piston or engine), a driven mass at the first row of its position and
 /// velocity, each zero where the record does not have it, a moved body on its path, a structure in modal coordinates at
-/// rest.
+/// rest, an electromechanical actuator at rest where its first row is (`at_first_row`).
 template <class Plant>
 typename Plant::State start_of(const Plant& plant, const Record& inputs) {
   using S = typename Plant::Scalar;
@@ -39,6 +41,10 @@ typename Plant::State start_of(const Plant& plant, const Record& inputs) {
                             first(Plant::input_channel));
       } else if constexpr (Plant::topology == "modal") {
         return plant.at_rest(S(0.0));
+      } else if constexpr (Plant::topology == "electromechanical") {
+        return at_first_row(plant, inputs.find(std::string(Plant::input_channel))->values.front(),
+                            values_of(inputs, Plant::channels[Plant::kPosition]),
+                            values_of(inputs, Plant::channels[Plant::kMotorPosition]));
       } else {
         return plant.resting(S(inputs.find(std::string(Plant::input_channel))->values.front()),
                              S(first_piston(inputs, model::value_of(plant.parameters().actuator.moment_arm))));

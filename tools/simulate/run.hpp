@@ -9,6 +9,7 @@
 
 #include "hal/arithmetic/denormals.hpp"
 #include "model/actuator/axis.hpp"
+#include "model/electromechanical.hpp"
 #include "model/numerics/scalar.hpp"
 #include "tools/simulate/excitation.hpp"
 
@@ -20,6 +21,18 @@ inline constexpr double kRunaway = 1e12;
 /// Piston position at the first row of a hydraulic axis, by what is measured there [m]; 0 where neither is.
 inline double first_piston(std::span<const double> piston, std::span<const double> engine, double moment_arm) {
   return !piston.empty() ? piston.front() : !engine.empty() ? moment_arm * engine.front() : 0.0;
+}
+
+/// An electromechanical actuator at rest under its first setpoint: where its load, or its motor, is measured at the first
+/// row, and otherwise where its linear part rests.
+template <class S>
+typename model::Electromechanical<S>::State at_first_row(const model::Electromechanical<S>& plant, double setpoint,
+                                                         std::span<const double> position,
+                                                         std::span<const double> motor_position) {
+  const S first = !position.empty()         ? S(position.front())
+                  : !motor_position.empty() ? S(motor_position.front() / plant.parameters().transmission.ratio)
+                                            : plant.resting_position(S(setpoint));
+  return plant.resting(S(setpoint), first);
 }
 
 /// Steps a plant through `rows` rows, `steps` plant steps a row by `advance(row, step)`, and hands every row's readings to

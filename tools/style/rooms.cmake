@@ -27,7 +27,7 @@ room(model numerics "scalars, exact steps of linear systems, delay lines, memori
 room(model declaration "how an effect declares itself: fields, sites, the list of effects" numerics)
 room(model friction "friction laws: Coulomb, Stribeck, Dahl, LuGre, in one direction and in two" declaration numerics)
 room(model structure "structural modes and the flexibility of a vehicle" numerics)
-room(model actuator "one hydraulic axis: its parameters, its states, its step" declaration numerics)
+room(model actuator "one hydraulic axis: its parameters, its states, its step; the parts of a motor's actuator" declaration numerics)
 room(model engine "the engine on its gimbal: attach points, moment arms, the bearing and its block" friction structure declaration numerics)
 room(model effects "the effects, one file each" actuator friction structure declaration numerics)
 room(model sensors "string potentiometers and what else reads a vehicle" effects engine declaration numerics)
@@ -37,7 +37,7 @@ room(model/effects valve "effects in the servovalve: bias, hysteresis, dead band
 room(model/effects actuator "effects in the cylinder: leakage, friction of the piston")
 room(model/effects load "effects between piston and engine: play, soft stiffness, moment arm, a structural mode")
 room(model/effects gimbal "torques on the engine: friction of the bearing, ducts, offset, the other axis")
-room(model/effects mass "forces on a mass or in a joint (`direct`, `imposed_motion`, `modal`)")
+room(model/effects mass "forces on a mass or in a joint (`direct`, `electromechanical`, `imposed_motion`, `modal`)")
 room(model/effects sensor "effects in a sensor: scale, nonlinearity, lag, delay")
 room(model/effects unlisted "terms of unknown law: the grammar, tables, short laws" command)
 

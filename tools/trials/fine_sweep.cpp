@@ -40,6 +40,8 @@ double half_dwell_for(const ImposedMotionParameters&) { return half_dwell_for(0.
 
 double half_dwell_for(const ModalParameters&) { return half_dwell_for(0.0); }
 
+double half_dwell_for(const ElectromechanicalParameters&) { return half_dwell_for(0.0); }
+
 /// What a fit of a sine of `frequency` over the second half of a dwell takes from a mode that began with it.
 double taken_from(const Mode& mode, double frequency, double half) {
   const double overlap = std::numbers::pi * half * std::abs(frequency - mode.frequency);

@@ -6,11 +6,13 @@
 
 namespace hotfire::model {
 
-/// Dead band of the drive of a mass: no force until its input is beyond half_width, and the input less half_width from there
-/// on (the overlap of a spool, the starting voltage of an amplifier).
-struct DriveDeadband {
+/// Dead band of a drive (`at`: of a mass, `command`; of a motor, `drive`): nothing until its input is beyond half_width, and
+/// the input less half_width from there on (the overlap of a spool, the starting voltage of an amplifier).
+template <Site at>
+struct DriveDeadbandAt {
   static constexpr std::string_view name = "drive_deadband";
-  static constexpr Site site = Site::command;
+  static constexpr Site site = at;
+  static constexpr std::string_view unit = at == Site::drive ? "command" : "force";
   static constexpr NoOptions options{};
 
   template <class S>
@@ -19,7 +21,7 @@ struct DriveDeadband {
     int option = 0;
     S half_width{0.0};
     static constexpr auto fields() {
-      return std::array{Field<Params>{"half_width", "force", 0.0, 1e9, 0.2, "half of the dead band", &Params::half_width}};
+      return std::array{Field<Params>{"half_width", unit, 0.0, 1e9, 0.2, "half of the dead band", &Params::half_width}};
     }
   };
 
@@ -31,5 +33,8 @@ struct DriveDeadband {
     return input.value - clamp_symmetric<S>(input.value, params.half_width);
   }
 };
+
+/// Of a mass that a force drives.
+using DriveDeadband = DriveDeadbandAt<Site::command>;
 
 }  // namespace hotfire::model

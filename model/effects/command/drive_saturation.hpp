@@ -6,11 +6,13 @@
 
 namespace hotfire::model {
 
-/// Limit of the drive of a mass: the force follows its input up to `limit` in either direction. A limit beyond every input
-/// has no action.
-struct DriveSaturation {
+/// Limit of a drive (`at`: of a mass, `command`; of a motor, `drive`): the force, or the voltage or current, follows its
+/// input up to `limit` in either direction. A limit beyond every input has no action.
+template <Site at>
+struct DriveSaturationAt {
   static constexpr std::string_view name = "drive_saturation";
-  static constexpr Site site = Site::command;
+  static constexpr Site site = at;
+  static constexpr std::string_view unit = at == Site::drive ? "command" : "force";
   static constexpr NoOptions options{};
 
   template <class S>
@@ -19,8 +21,7 @@ struct DriveSaturation {
     int option = 0;
     S limit{1e12};
     static constexpr auto fields() {
-      return std::array{
-          Field<Params>{"limit", "force", 0.0, 1e12, 1.0, "largest force in either direction", &Params::limit}};
+      return std::array{Field<Params>{"limit", unit, 0.0, 1e12, 1.0, "largest force in either direction", &Params::limit}};
     }
   };
 
@@ -32,5 +33,8 @@ struct DriveSaturation {
     return clamp_symmetric<S>(input.value, params.limit);
   }
 };
+
+/// Of a mass that a force drives.
+using DriveSaturation = DriveSaturationAt<Site::command>;
 
 }  // namespace hotfire::model

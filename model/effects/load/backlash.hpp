@@ -6,10 +6,13 @@
 
 namespace hotfire::model {
 
-/// Free play between piston and engine: no force while abs(deflection) < half_width, the spring beyond it.
-struct Backlash {
+/// Free play between piston and engine, or in the transmission of a motor (`at`): no force while abs(deflection) <
+/// half_width, the spring beyond it.
+template <Site at>
+struct BacklashAt {
   static constexpr std::string_view name = "backlash";
-  static constexpr Site site = Site::load_spring;
+  static constexpr Site site = at;
+  static constexpr bool is_of_axis = at == Site::load_spring;
   static constexpr NoOptions options{};
 
   template <class S>
@@ -18,7 +21,8 @@ struct Backlash {
     int option = 0;
     S half_width{0.0};
     static constexpr auto fields() {
-      return std::array{Field<Params>{"half_width", "m", 0.0, 0.01, 1e-4, "half of the free play", &Params::half_width}};
+      return std::array{Field<Params>{"half_width", is_of_axis ? "m" : "position", 0.0, is_of_axis ? 0.01 : 1e9,
+                                      is_of_axis ? 1e-4 : 0.02, "half of the free play", &Params::half_width}};
     }
   };
 
@@ -32,5 +36,8 @@ struct Backlash {
     return output;
   }
 };
+
+/// Of a hydraulic axis.
+using Backlash = BacklashAt<Site::load_spring>;
 
 }  // namespace hotfire::model

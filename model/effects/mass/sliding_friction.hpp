@@ -6,13 +6,15 @@
 
 namespace hotfire::model {
 
-/// Friction of a guided mass with its own values per direction: Coulomb level and viscous slope forward and backward, by
-/// `coulomb` (rigid), `dahl` (bristle) or `lugre` (bristle with Stribeck level and bristle damping).
-/// Source of the laws: friction.hpp; per-direction values as in [Janot, Gautier and Brunot 2019] Data Set and Reference
-/// Models of EMPS, eq. 6.
-struct SlidingFriction {
-  static constexpr std::string_view name = "sliding_friction";
-  static constexpr Site site = Site::mass_force;
+/// Friction of a guided mass (`at`: `mass_force`), or of a motor and its bearings, counted at the load (`motor`: torque
+/// times the ratio of the transmission). It has its own values per direction: Coulomb level and viscous slope forward and
+/// backward, by `coulomb` (rigid), `dahl` (bristle) or `lugre` (bristle with Stribeck level and bristle damping). Source of
+/// the laws: friction.hpp; per-direction values as in [Janot, Gautier and Brunot 2019] Data Set and Reference Models of
+/// EMPS, eq. 6.
+template <Site at>
+struct FrictionAt {
+  static constexpr std::string_view name = at == Site::motor ? "motor_friction" : "sliding_friction";
+  static constexpr Site site = at;
   enum class Law { coulomb, dahl, lugre };  ///< in the order of `options`
   static constexpr std::array<std::string_view, 3> options{"coulomb", "dahl", "lugre"};
   static constexpr std::string_view option_key = "law";
@@ -60,7 +62,7 @@ struct SlidingFriction {
     // A body at rest takes the direction in which it is about to move.
     const bool forward =
         value_of(input.velocity) > 0.0 || (value_of(input.velocity) == 0.0 && value_of(input.free_velocity) >= 0.0);
-    const Law law = law_of<SlidingFriction>(params);
+    const Law law = law_of<FrictionAt>(params);
     const S& coulomb = forward ? params.coulomb_forward : params.coulomb_backward;
     const S& viscous = forward ? params.viscous_forward : params.viscous_backward;
     if (law == Law::coulomb) {
@@ -88,5 +90,8 @@ struct SlidingFriction {
     return dry + viscous * (reduced.free_velocity - reduced.compliance * dry);
   }
 };
+
+using SlidingFriction = FrictionAt<Site::mass_force>;
+using MotorFriction = FrictionAt<Site::motor>;
 
 }  // namespace hotfire::model

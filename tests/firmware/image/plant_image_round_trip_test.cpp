@@ -72,6 +72,21 @@ stiffness = 8003.0
 forward = 0.0021
 )";
 
+const char* const kElectromechanical = R"(schema = 1
+topology = "electromechanical"
+[motor]
+torque_constant = 0.103
+inertia = 1.1e-4
+current_corner = 3001.0
+[transmission]
+ratio = 99.1
+stiffness = 2.03e4
+[mass]
+inertia = 2.01
+[effects.backlash]
+half_width = 0.00103
+)";
+
 template <class Parameters>
 std::vector<std::uint64_t> bits_of(const Parameters& parameters) {
   std::vector<std::uint64_t> bits;
@@ -112,5 +127,7 @@ TEST(PlantImageRoundTrip, DirectMassOfAModelFileArrivesBitForBit) { check<Direct
 TEST(PlantImageRoundTrip, MovedBodyOfAModelFileArrivesBitForBit) { check<ImposedMotionParameters>(kMoved); }
 
 TEST(PlantImageRoundTrip, StructureOfAModelFileArrivesBitForBit) { check<ModalParameters>(kModal); }
+
+TEST(PlantImageRoundTrip, MotorOfAModelFileArrivesBitForBit) { check<ElectromechanicalParameters>(kElectromechanical); }
 
 }  // namespace hotfire

@@ -96,7 +96,8 @@ TEST(PlantImage, ActiveEffectNeedsEveryParameterAndAKnownLaw) {
 TEST(PlantImage, WrongSchemaTopologyAndLineAreRefused) {
   refused("", "missing key schema");
   refused("schema 2\ntopology direct\n", "schema = 2: this build reads schema 1");
-  refused("schema 1\ntopology wheel\n", "topology = wheel: allowed are direct imposed_motion modal simplex");
+  refused("schema 1\ntopology wheel\n",
+          "topology = wheel: allowed are direct electromechanical imposed_motion modal simplex");
   refused(kMass + "mass.inertia\n", "line 6: \"mass.inertia\": expected `key value`");
   refused(kMass + "\n", "line 6: \"\": expected `key value`");
 }

@@ -21,7 +21,7 @@ constexpr double kPeriod = 1.0;
 template <class E>
 constexpr bool is_dissipative = std::is_same_v<E, model::Leakage> || std::is_same_v<E, model::PistonFriction> ||
                                 std::is_same_v<E, model::GimbalFriction> || std::is_same_v<E, model::SlidingFriction> ||
-                                std::is_same_v<E, model::QuadraticDamping>;
+                                std::is_same_v<E, model::MotorFriction> || std::is_same_v<E, model::QuadraticDamping>;
 template <class E>
 constexpr bool is_conservative = std::is_same_v<E, model::DuctHardening> || std::is_same_v<E, model::QuadraticStiffness> ||
                                  std::is_same_v<E, model::CubicStiffness>;
@@ -48,7 +48,7 @@ ParamsOf<E, double> near_typical(Random& random, int option) {
     }
   }
   // The textbook LuGre law makes energy where its viscous slope is too small; [Astrom and Canudas de Wit 2008] p. 107.
-  if constexpr (std::is_same_v<E, model::SlidingFriction>) {
+  if constexpr (std::is_same_v<E, model::SlidingFriction> || std::is_same_v<E, model::MotorFriction>) {
     const double needed = params.damping * (params.static_ratio - 1.0);
     params.viscous_forward = std::max(params.viscous_forward, 1.01 * needed);
     params.viscous_backward = std::max(params.viscous_backward, 1.01 * needed);

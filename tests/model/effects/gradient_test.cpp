@@ -26,6 +26,10 @@ struct DirectIn {
   template <class S>
   using Plant = model::Direct<S>;
 };
+struct MotorIn {
+  template <class S>
+  using Plant = model::Electromechanical<S>;
+};
 
 /// The reference plant in the scalar S with one law active at 3 % above its typical values; none if `E` is void. At the
 /// typical values themselves a delay is a whole number of steps, where its interpolation has a corner.
@@ -150,6 +154,7 @@ TEST_GROUP(Gradient){};
 TEST(Gradient, IsExactForEveryDeclaredParameter) {
   check_gradients<SimplexIn, void>(0);
   check_gradients<DirectIn, void>(0);
+  check_gradients<MotorIn, void>(0);
 }
 
 TEST(Gradient, IsExactForEveryFieldOfEveryEffect) {
@@ -159,8 +164,10 @@ TEST(Gradient, IsExactForEveryFieldOfEveryEffect) {
     }
     if constexpr (index_in<E>(model::SimplexEffects{}) < model::SimplexEffects::size) {
       check_gradients<SimplexIn, E>(option);
-    } else {
+    } else if constexpr (index_in<E>(model::DirectEffects{}) < model::DirectEffects::size) {
       check_gradients<DirectIn, E>(option);
+    } else {
+      check_gradients<MotorIn, E>(option);
     }
   });
 }

@@ -121,6 +121,7 @@ TEST(EffectInPlant, AddsUpInAnyOrderAtAdditiveSites) {
 TEST(EffectInPlant, TakesNothingFromTheHeapWhileThePlantSteps) {
   LONGS_EQUAL(0, allocations_of_stepping<model::Simplex<double>>());
   LONGS_EQUAL(0, allocations_of_stepping<model::Direct<double>>());
+  LONGS_EQUAL(0, allocations_of_stepping<model::Electromechanical<double>>());
 }
 
 }  // namespace hotfire::test

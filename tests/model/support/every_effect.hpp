@@ -12,7 +12,13 @@
 
 namespace hotfire::test {
 
-/// Calls `f.template operator()<E>(option)` for every effect of both plants and every law or channel it can be set to.
+/// The effects that an electromechanical actuator has and no other plant.
+using EffectsOfMotors =
+    model::EffectList<model::DriveDeadbandAt<model::Site::drive>, model::DriveSaturationAt<model::Site::drive>,
+                      model::MotorFriction, model::BacklashAt<model::Site::transmission>>;
+
+/// Calls `f.template operator()<E>(option)` for every effect of a hydraulic axis, a mass and a motor, and every law or
+/// channel it can be set to.
 template <class F>
 void for_each_law(F&& f) {
   const auto visit = [&]<class E, std::size_t>() {
@@ -23,6 +29,7 @@ void for_each_law(F&& f) {
   };
   model::SimplexEffects::for_each(visit);
   model::DirectEffects::for_each(visit);
+  EffectsOfMotors::for_each(visit);
 }
 
 /// "gimbal_friction lugre": what a failed check is reported with.
@@ -316,7 +323,10 @@ InputOf<E, double> smooth_input(double t, double h) {
   InputOf<E, double> input{};
   input.h = h;
   move(t, input);
-  if constexpr (std::is_same_v<E, model::DriveDeadband>) {
+  if constexpr (E::site == model::Site::transmission) {
+    input.deflection *= 100.0;  // of the order of its load's motion, where a load spring gives way by micrometres
+  }
+  if constexpr (E::name == model::DriveDeadband::name) {
     input.value *= 10.0;  // a force of the order of one, where a command is an angle
   }
   return input;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/direct.hpp"
+#include "model/electromechanical.hpp"
 #include "model/simplex.hpp"
 #include "tests/model/support/every_effect.hpp"
 
@@ -39,6 +40,16 @@ typename model::Direct<S, List>::Parameters reference_parameters(const model::Di
   parameters.mass = {S(1.0), S(0.5), S(40.0)};
   return parameters;
 }
+/// A motor in a position loop with a mass of one on a soft transmission.
+template <class S, class List>
+typename model::Electromechanical<S, List>::Parameters reference_parameters(const model::Electromechanical<S, List>*) {
+  typename model::Electromechanical<S, List>::Parameters parameters;
+  parameters.controller = {S(40.0), S(5.0), S(8.0), S(1.0), S(0.0), S(0.5), S(0.0)};
+  parameters.motor = {S(1.0), S(0.5), S(0.2), S(500.0), S(0.0), S(0.0)};
+  parameters.transmission = {S(1.0), S(400.0), S(1.0)};
+  parameters.mass = {S(1.0), S(0.5), S(0.0)};
+  return parameters;
+}
 template <class Plant>
 typename Plant::Parameters reference_parameters() {
   return reference_parameters(static_cast<const Plant*>(nullptr));
@@ -68,6 +79,11 @@ typename model::Direct<S, List>::State rest(const model::Direct<S, List>& plant)
   return plant.at_rest(S(0.0));
 }
 
+template <class S, class List>
+typename model::Electromechanical<S, List>::State rest(const model::Electromechanical<S, List>& plant) {
+  return plant.steady(S(0.0));
+}
+
 /// An input that wakes every effect at its typical values: angles of a few hundredths [rad], forces that move the mass by
 /// about one.
 template <class S, class List>
@@ -77,6 +93,10 @@ double lively_input(const model::Simplex<S, List>&, double t) {
 template <class S, class List>
 double lively_input(const model::Direct<S, List>&, double t) {
   return 40.0 * std::sin(4.0 * t) + 30.0 * std::sin(9.0 * t);
+}
+template <class S, class List>
+double lively_input(const model::Electromechanical<S, List>&, double t) {
+  return 0.6 * std::sin(4.0 * t) + 0.4 * std::sin(9.0 * t);
 }
 
 /// One step under an input. A hydraulic axis has another one beside it, on the same engine and in motion.
@@ -90,6 +110,11 @@ void step_beside(const model::Simplex<S, List>& plant, typename model::Simplex<S
 }
 template <class S, class List>
 void step_beside(const model::Direct<S, List>& plant, typename model::Direct<S, List>::State& state, const S& input) {
+  plant.step(state, input);
+}
+template <class S, class List>
+void step_beside(const model::Electromechanical<S, List>& plant, typename model::Electromechanical<S, List>::State& state,
+                 const S& input) {
   plant.step(state, input);
 }
 
@@ -132,8 +157,10 @@ void for_each_planted_law(F&& f) {
   for_each_law([&]<class E>(int option) {
     if constexpr (index_in<E>(model::SimplexEffects{}) < model::SimplexEffects::size) {
       f.template operator()<model::Simplex<double>, E>(option);
-    } else {
+    } else if constexpr (index_in<E>(model::DirectEffects{}) < model::DirectEffects::size) {
       f.template operator()<model::Direct<double>, E>(option);
+    } else {
+      f.template operator()<model::Electromechanical<double>, E>(option);
     }
   });
 }

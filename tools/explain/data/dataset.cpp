@@ -193,6 +193,11 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
     for (Experiment& experiment : data.experiments) {
       experiment.first_scored = rows_to_forget_start(*modes, experiment.rows(), experiment.period);
     }
+  } else if (const auto* motor = std::get_if<ElectromechanicalParameters>(&model.parameters)) {
+    for (Experiment& experiment : data.experiments) {
+      experiment.first_scored =
+          rows_to_forget_start(*motor, experiment.input, experiment.measured, experiment.period, experiment.noise);
+    }
   } else if (const auto* axis = std::get_if<SimplexParameters>(&model.parameters)) {
     for (Experiment& experiment : data.experiments) {
       experiment.first_scored =

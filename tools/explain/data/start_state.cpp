@@ -3,9 +3,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "model/numerics/step_size.hpp"
@@ -30,6 +32,28 @@ Eigen::VectorXd response(const Mass& mass, Mass::State state, std::span<const do
   run(mass, force, state, steps,
       [&](std::size_t row, const auto& readings) { values(static_cast<Eigen::Index>(row)) = readings[channel]; });
   return values;
+}
+
+/// True if measured minus simulated readings of the first rows have no slope that their noise does not explain.
+template <std::size_t channels>
+bool is_steady(const std::vector<std::array<double, channels>>& simulated, std::span<const std::vector<double>> measured,
+               std::span<const double> noise) {
+  bool steady = true;
+  const double middle = 0.5 * static_cast<double>(simulated.size() - 1);
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (measured[c].empty()) {
+      continue;
+    }
+    double slope = 0.0;
+    double spread = 0.0;
+    for (std::size_t row = 0; row < simulated.size(); ++row) {
+      const double place = static_cast<double>(row) - middle;
+      slope += place * (measured[c][row] - simulated[row][c]);
+      spread += place * place;
+    }
+    steady = steady && std::abs(slope) <= kSlopeStandardErrors * noise[c] * std::sqrt(spread);
+  }
+  return steady;
 }
 
 }  // namespace
@@ -107,28 +131,40 @@ std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<
   run(axis, command.first(rows), state, steps, [&](std::size_t, const auto& readings) {
     simulated.push_back({readings[0], readings[1]});
   });
-  bool steady = true;
-  const double middle = 0.5 * static_cast<double>(rows - 1);
-  for (std::size_t c = 0; c < kMotionChannels && simulated.size() == rows; ++c) {
-    if (measured[c].empty()) {
-      continue;
-    }
-    double slope = 0.0;
-    double spread = 0.0;
-    for (std::size_t row = 0; row < rows; ++row) {
-      const double place = static_cast<double>(row) - middle;
-      slope += place * (measured[c][row] - simulated[row][c]);
-      spread += place * place;
-    }
-    steady = steady && std::abs(slope) <= kSlopeStandardErrors * noise[c] * std::sqrt(spread);
-  }
-  if (steady) {
+  if (simulated.size() < rows || is_steady(simulated, measured, noise)) {
     return 0;
   }
   const double loop_gain =
       valve.rated_flow * valve.position_gain * valve.position_feedback / parameters.actuator.piston_area;
   const double seconds = -std::log(kForgotten) * (1.0 / loop_gain + 1.0 / valve.pressure_feedback_corner);
   return std::min(command.size() / 4, static_cast<std::size_t>(seconds / period));
+}
+
+std::size_t rows_to_forget_start(const ElectromechanicalParameters& parameters, std::span<const double> setpoint,
+                                 std::span<const std::vector<double>> measured, double period,
+                                 std::span<const double> noise) {
+  using Actuator = model::Electromechanical<double>;
+  const std::size_t rows = std::min(kRows, setpoint.size());
+  if (rows < 4) {
+    return 0;
+  }
+  const int steps = model::steps_per_period<Actuator>(parameters, period);
+  const Actuator actuator(parameters, period / steps);
+  auto state = at_first_row(actuator, setpoint.front(), measured[Actuator::kPosition], measured[Actuator::kMotorPosition]);
+  std::vector<std::array<double, Actuator::channels.size()>> simulated;
+  run(actuator, setpoint.first(rows), state, steps,
+      [&](std::size_t, const auto& readings) { simulated.push_back(readings); });
+  if (simulated.size() < rows || is_steady(simulated, measured, noise)) {
+    return 0;
+  }
+  double slowest = 0.0;
+  for (const std::complex<double>& root : actuator.transition().eigenvalues()) {
+    constexpr double kIntegrates = 1e-9;
+    const double size = std::abs(root);
+    slowest = size < 1.0 - kIntegrates ? std::max(slowest, size) : slowest;
+  }
+  const double seconds = slowest > 0.0 ? std::log(kForgotten) / std::log(slowest) * actuator.step_size() : 0.0;
+  return std::min(setpoint.size() / 4, static_cast<std::size_t>(seconds / period));
 }
 
 std::size_t rows_to_forget_start(const ModalParameters& parameters, std::size_t rows, double period) {

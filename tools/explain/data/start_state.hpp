@@ -36,6 +36,11 @@ std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<
                                  std::span<const std::vector<double>> measured, double period,
                                  std::span<const double> noise);
 
+/// The same of an electromechanical actuator: until all of its linear part that decays has done so, to a ten-thousandth.
+std::size_t rows_to_forget_start(const ElectromechanicalParameters& parameters, std::span<const double> setpoint,
+                                 std::span<const std::vector<double>> measured, double period,
+                                 std::span<const double> noise);
+
 /// The same of a structure in modal coordinates, whose start is not known: until each mode has decayed to a ten-thousandth,
 /// but at most a quarter of the rows.
 std::size_t rows_to_forget_start(const ModalParameters& parameters, std::size_t rows, double period);

@@ -30,6 +30,9 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
         return plant.moving(start.values[0], start.values[1], S(experiment.input.front()));
       } else if constexpr (Plant::topology == "modal") {
         return plant.at_rest(S(0.0));
+      } else if constexpr (Plant::topology == "electromechanical") {
+        return at_first_row(plant, experiment.input.front(), experiment.measured[Plant::kPosition],
+                            experiment.measured[Plant::kMotorPosition]);
       } else if (experiment.other.is_there()) {
         const Beside<S> beside(data.geometry, plant.parameters().actuator.moment_arm);
         const OtherAxis& other = experiment.other;

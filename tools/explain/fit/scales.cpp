@@ -86,6 +86,21 @@ Scales scales_of_joint(const ModalParameters& declared, const Dataset& data) {
   return sums.scales(0);
 }
 
+Scales scales_of_load(const ElectromechanicalParameters& declared, const Dataset& data) {
+  MotionSums sums;
+  double command = 0.0;
+  for (const Experiment& experiment : data.experiments) {
+    const LoadMotion load = load_motion(data, experiment, declared);
+    if (load.position.size() == experiment.rows()) {
+      sums.take(load.force, load.position, experiment.period);
+      command += std::inner_product(load.command.begin(), load.command.end(), load.command.begin(), 0.0);
+    }
+  }
+  Scales scales = sums.scales(0);
+  scales.command = command > 0.0 ? std::sqrt(command / sums.rows) : 1.0;
+  return scales;
+}
+
 Scales scales_of_rig(const SimplexParameters& declared) {
   const SimplexParameters reference;
   Scales scales;
@@ -105,6 +120,9 @@ Scales scales_of(const ModelParameters& declared, const Dataset& data) {
   if (const auto* modes = std::get_if<ModalParameters>(&declared)) {
     return scales_of_joint(*modes, data);
   }
+  if (const auto* motor = std::get_if<ElectromechanicalParameters>(&declared)) {
+    return scales_of_load(*motor, data);
+  }
   return std::holds_alternative<ImposedMotionParameters>(declared) ? scales_of_paths(data) : scales_of_records(data);
 }
 
@@ -114,10 +132,11 @@ double servo_time(const SimplexParameters& declared) {
 
 double size_of_unit(std::string_view unit, const Scales& scales) {
   const double newton = scales.pascal * scales.metre * scales.metre;
-  const std::array<std::pair<std::string_view, double>, 10> sizes{
+  const std::array<std::pair<std::string_view, double>, 11> sizes{
       {{"force", scales.force},
        {"position", scales.position},
        {"time", scales.time},
+       {"command", scales.command},
        {"m", scales.metre},
        {"s", scales.second},
        {"Hz", 1.0 / scales.second},
@@ -132,6 +151,22 @@ double size_of_unit(std::string_view unit, const Scales& scales) {
                return found != sizes.end() ? std::optional(found->second) : word == "1" ? std::optional(1.0) : std::nullopt;
              })
       .value_or(1.0);
+}
+
+LoadMotion load_motion(const Dataset& data, const Experiment& experiment, const ElectromechanicalParameters& parameters) {
+  using Plant = model::Electromechanical<double>;
+  const int steps = model::steps_per_period<Plant>(parameters, experiment.period);
+  const Plant plant(parameters, experiment.period / steps);
+  Plant::State state = initial_state(plant, data, experiment, Start<double>{});
+  LoadMotion motion;
+  run_experiment(plant, data, experiment, state, steps, [&](std::size_t, const auto&) {
+    motion.position.push_back(plant.load_position(state));
+    motion.rate.push_back(plant.load_rate(state));
+    motion.force.push_back(plant.motor_force(state));
+    motion.command.push_back(plant.motor_command(state));
+    motion.twist.push_back(plant.twist(state));
+  });
+  return motion;
 }
 
 JointMotion joint_motion(const Dataset& data, const Experiment& experiment, const ModalParameters& parameters) {

@@ -37,12 +37,12 @@ std::vector<Combination> combinations(const ModelParameters& plant) {
   using Axis = SimplexParameters;
   using Mass = DirectParameters;
   using enum words::Combination;
-  if (std::holds_alternative<ImposedMotionParameters>(plant) || std::holds_alternative<ModalParameters>(plant)) {
-    return {};
-  }
-  if (!is_hydraulic_axis(plant)) {
+  if (std::holds_alternative<Mass>(plant)) {
     return {combination_of<Mass>(natural_frequency, [](const Mass& p) { return p.mass.stiffness / p.mass.inertia; }),
             combination_of<Mass>(mass_damping, [](const Mass& p) { return p.mass.damping / p.mass.inertia; })};
+  }
+  if (!is_hydraulic_axis(plant)) {
+    return {};
   }
   return {combination_of<Axis>(notch,
                                [](const Axis& p) {

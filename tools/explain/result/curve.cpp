@@ -214,12 +214,29 @@ Curve effect_curve(const SimplexParameters& p, const Params& params, const Reach
   }
 }
 
+/// The deflection that a transmission still has after its effect.
+template <class E, class Params>
+Curve play_curve(const Params& params, double reach) {
+  typename E::template State<double> state{};
+  CurveSeries drawn{"as found", {}, {}};
+  for (int i = 0; i <= kPoints; ++i) {
+    const double x = reach * (2.0 * i / kPoints - 1.0);
+    drawn.x.push_back(x);
+    drawn.y.push_back(E::step(params, state, model::Spring<double>{x, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, kStep}).deflection);
+  }
+  return {{"motor less load", "position", "deflection of the transmission", "position"}, {drawn}};
+}
+
 /// Of every plant but a hydraulic axis.
 template <class E, class Parameters, class Params>
 requires(!std::same_as<Parameters, SimplexParameters>) Curve
     effect_curve(const Parameters&, const Params& params, const Reach& reach) {
   if constexpr (E::site == Site::command) {
     return signal_curve<E>(params, reach.input, "input of the drive", "force");
+  } else if constexpr (E::site == Site::drive) {
+    return signal_curve<E>(params, reach.drive, "motor command", "command");
+  } else if constexpr (E::site == Site::transmission) {
+    return play_curve<E>(params, reach.deflection);
   } else {
     return motion_curve<E>(params, reach.position, reach.position_rate, "mass", "position", "force against the motion",
                            "force");
@@ -289,6 +306,19 @@ Reach reach_in(const Dataset& data, const ModalParameters& parameters) {
     reach.input = std::max(reach.input, largest(e.input));
     reach.position = std::max(reach.position, largest(joint.position));
     reach.position_rate = std::max(reach.position_rate, largest(joint.rate));
+  }
+  return reach;
+}
+
+Reach reach_in(const Dataset& data, const ElectromechanicalParameters& parameters) {
+  Reach reach;
+  for (const Experiment& e : data.experiments) {
+    const LoadMotion load = load_motion(data, e, parameters);
+    reach.input = std::max(reach.input, largest(e.input));
+    reach.drive = std::max(reach.drive, largest(load.command));
+    reach.position = std::max(reach.position, largest(load.position));
+    reach.position_rate = std::max(reach.position_rate, largest(load.rate));
+    reach.deflection = std::max(reach.deflection, largest(load.twist));
   }
   return reach;
 }

@@ -14,7 +14,8 @@ struct Reach {
   double position_rate = 0.0;
   double angle = 0.0;
   double angle_rate = 0.0;
-  double deflection = 0.0;  ///< largest |piston - R angle|
+  double deflection = 0.0;  ///< largest |piston - R angle|, or twist of a transmission
+  double drive = 0.0;       ///< largest command of a motor
   double pressure = 0.0;
   double other_angle = 0.0;  ///< largest angle of the engine about its other axis [rad]
   double other_rate = 0.0;

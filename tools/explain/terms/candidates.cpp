@@ -150,6 +150,19 @@ void append_small_starts(const std::vector<FreeParameter>& own, std::vector<std:
   }
 }
 
+/// True if the plant has the place where an effect acts.
+bool has_place(const ModelParameters& plant, model::Site site) {
+  return std::visit(
+      [&](const auto& own) {
+        if constexpr (requires { own.missing_place(site); }) {
+          return own.missing_place(site).empty();
+        } else {
+          return true;
+        }
+      },
+      plant);
+}
+
 }  // namespace
 
 std::vector<Candidate> all_candidates(const ModelParameters& plant, const Dataset& data) {
@@ -163,7 +176,7 @@ std::vector<Candidate> all_candidates(const ModelParameters& plant, const Datase
     }
     const int variants = std::max<int>(1, static_cast<int>(E::options.size()));
     for (int option = 0; option < variants; ++option) {
-      if (model::needs_other_axis<E>(option) && !data.has_other_axis()) {
+      if ((model::needs_other_axis<E>(option) && !data.has_other_axis()) || !has_place(plant, E::site)) {
         continue;
       }
       Candidate candidate{index, option, std::string(E::name), "", std::string(model::site_name(E::site))};

@@ -88,6 +88,13 @@ void take_state(Extents& extents, const model::Modal<double>& plant, const model
   extents.rate.take(plant.joint_rate(state));
 }
 
+/// Of the load.
+void take_state(Extents& extents, const model::Electromechanical<double>& plant,
+                const model::Electromechanical<double>::State& state) {
+  extents.position.take(plant.load_position(state));
+  extents.rate.take(plant.load_rate(state));
+}
+
 /// Of a driven mass or a moved body.
 template <class Plant>
 void take_state(Extents& extents, const Plant&, const typename Plant::State& state) {
@@ -109,6 +116,9 @@ Extents extents_under(const Dataset& data, const Parameters& parameters) {
         return plant.moving(experiment.start_state.position, experiment.start_state.velocity, experiment.input.front());
       } else if constexpr (Plant::topology == "modal") {
         return plant.at_rest(0.0);
+      } else if constexpr (Plant::topology == "electromechanical") {
+        return at_first_row(plant, experiment.input.front(), experiment.measured[Plant::kPosition],
+                            experiment.measured[Plant::kMotorPosition]);
       } else {
         return plant.resting(experiment.input.front(),
                              first_piston(experiment.measured[0], experiment.measured[1], parameters.actuator.moment_arm));

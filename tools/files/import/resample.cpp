@@ -161,7 +161,7 @@ void require_good(const Series& times, const std::vector<Series>& columns) {
 
 bool is_held_input(std::string_view channel) {
   const std::string_view own = own_name(channel);
-  return own == "command" || own == "current";
+  return own == "command" || own == "current" || own == "setpoint";
 }
 
 Resampled resampled(const Series& times, const std::vector<Series>& columns, const std::vector<bool>& held, double period) {

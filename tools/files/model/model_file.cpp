@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 
+#include "model/checks.hpp"
 #include "tools/files/model/model_group.hpp"
 #include "tools/files/model/model_layout.hpp"
 #include "tools/files/model/plant_of.hpp"
@@ -67,6 +69,15 @@ void read_effects(const TomlSource& source, const ModelLayout& layout) {
   }
 }
 
+/// Refuses an effect that acts where the plant has nothing, and values of an effect that contradict each other.
+void refuse_broken_effect(const TomlSource& source, const ModelFile& model) {
+  const model::Broken broken = std::visit([](const auto& plant) { return model::broken_effect(plant); }, model.parameters);
+  if (!broken.relation.empty()) {
+    const std::string key = fmt::format("effects.{}", broken.name);
+    source.refuse_missing(source.table(*source.root().get("effects"), "effects"), key, std::string(broken.relation));
+  }
+}
+
 /// The table of that name, if the file has one.
 const toml::table* table_of(const TomlSource& source, std::string_view name) {
   const toml::node* node = source.root().get(name);
@@ -114,6 +125,7 @@ ModelFile read_model(const TomlSource& source, const std::filesystem::path& path
   model.name = name != nullptr ? source.text(*name, "name") : path.stem().string();
   read_parts(source, layout, model);
   read_effects(source, layout);
+  refuse_broken_effect(source, model);
   if (const toml::table* sensors = table_of(source, "sensors")) {
     read_noise(source, *sensors, "sensors.", layout.channels, {}, model.noise);
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/direct.hpp"
+#include "model/electromechanical.hpp"
 #include "model/imposed_motion.hpp"
 #include "model/modal.hpp"
 #include "model/simplex.hpp"
@@ -18,12 +19,14 @@ using SimplexParameters = model::Simplex<double>::Parameters;
 using DirectParameters = model::Direct<double>::Parameters;
 using ImposedMotionParameters = model::ImposedMotion<double>::Parameters;
 using ModalParameters = model::Modal<double>::Parameters;
+using ElectromechanicalParameters = model::Electromechanical<double>::Parameters;
 
 /// A model as its TOML file declares it, in SI.
 struct ModelFile {
   std::filesystem::path path;
   std::string name;
-  std::variant<SimplexParameters, DirectParameters, ImposedMotionParameters, ModalParameters> parameters;
+  std::variant<SimplexParameters, DirectParameters, ImposedMotionParameters, ModalParameters, ElectromechanicalParameters>
+      parameters;
   std::map<std::string, double> noise;      ///< rms by channel ("piston"), in the channel's SI unit; absent: estimated
   std::map<std::string, double> tolerance;  ///< relative one-sigma by key ("engine.inertia"); absent: exact
   std::vector<std::string> left_out = {};   ///< declared parameters the file does not give: they have their reference value

@@ -30,6 +30,11 @@ struct PlantOfParameters<ModalParameters> {
   template <class S>
   using Plant = model::Modal<S>;
 };
+template <>
+struct PlantOfParameters<ElectromechanicalParameters> {
+  template <class S>
+  using Plant = model::Electromechanical<S>;
+};
 
 /// `PlantOf<SimplexParameters, S>` is `model::Simplex<S>`.
 template <class Parameters, class S>

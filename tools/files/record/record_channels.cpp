@@ -19,12 +19,32 @@ struct KnownChannel {
   std::string_view unit;  ///< empty: the channel keeps the unit it has
 };
 
-constexpr std::array<KnownChannel, 23> kKnownChannels{
-    {{"time", "s"},           {"command", "rad"}, {"current", "A"},      {"piston", "m"},   {"engine", "rad"},
-     {"load_pressure", "Pa"}, {"force", ""},      {"position", ""},      {"velocity", ""},  {"acceleration", ""},
-     {"position2", ""},       {"velocity2", ""},  {"acceleration2", ""}, {"position3", ""}, {"velocity3", ""},
-     {"acceleration3", ""},   {"string1", "m"},   {"string2", "m"},      {"string3", "m"},  {"string4", "m"},
-     {"vibration", "m/s^2"},  {"torque", "N.m"},  {"thrust", "N"}}};
+constexpr std::array<KnownChannel, 26> kKnownChannels{{{"time", "s"},
+                                                       {"command", "rad"},
+                                                       {"current", "A"},
+                                                       {"piston", "m"},
+                                                       {"engine", "rad"},
+                                                       {"load_pressure", "Pa"},
+                                                       {"force", ""},
+                                                       {"position", ""},
+                                                       {"velocity", ""},
+                                                       {"acceleration", ""},
+                                                       {"position2", ""},
+                                                       {"velocity2", ""},
+                                                       {"acceleration2", ""},
+                                                       {"position3", ""},
+                                                       {"velocity3", ""},
+                                                       {"acceleration3", ""},
+                                                       {"string1", "m"},
+                                                       {"string2", "m"},
+                                                       {"string3", "m"},
+                                                       {"string4", "m"},
+                                                       {"vibration", "m/s^2"},
+                                                       {"torque", "N.m"},
+                                                       {"thrust", "N"},
+                                                       {"setpoint", ""},
+                                                       {"motor_position", "rad"},
+                                                       {"motor_velocity", "rad/s"}}};
 
 std::vector<std::string_view> known_names() {
   std::vector<std::string_view> names;

@@ -107,7 +107,7 @@ bool follows_record(std::string_view unit) {
   if (unit.empty()) {
     return true;
   }
-  constexpr std::array<std::string_view, 3> kPatterns{"force", "position", "time"};
+  constexpr std::array<std::string_view, 4> kPatterns{"force", "position", "time", "command"};
   for (const std::string_view pattern : kPatterns) {
     if (unit.find(pattern) != std::string_view::npos) {
       return true;

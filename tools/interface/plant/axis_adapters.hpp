@@ -22,13 +22,16 @@ inline constexpr double kLargest = std::numeric_limits<double>::max();
 
 inline std::string_view meaning_of_channel(std::string_view channel) {
   const std::string_view kind = channel.substr(0, channel.find_last_not_of("23") + 1);
-  return kind == "piston"         ? "piston position as its sensor reads it"
-         : kind == "engine"       ? "engine angle as its sensor reads it"
-         : kind == "position"     ? "position as its sensor reads it"
-         : kind == "velocity"     ? "velocity as its sensor reads it"
-         : kind == "acceleration" ? "acceleration as its sensor reads it"
-         : kind == "force"        ? "force that the motion takes, of the period before, as its sensor reads it"
-                                  : "pressure across the piston as its sensor reads it";
+  return kind == "piston"           ? "piston position as its sensor reads it"
+         : kind == "engine"         ? "engine angle as its sensor reads it"
+         : kind == "position"       ? "position as its sensor reads it"
+         : kind == "velocity"       ? "velocity as its sensor reads it"
+         : kind == "acceleration"   ? "acceleration as its sensor reads it"
+         : kind == "motor_position" ? "angle of the motor as its sensor reads it"
+         : kind == "motor_velocity" ? "speed of the motor as its sensor reads it"
+         : kind == "current"        ? "current of the motor as its sensor reads it"
+         : kind == "force"          ? "force that the motion takes, of the period before, as its sensor reads it"
+                                    : "pressure across the piston as its sensor reads it";
 }
 
 /// What both models have in common for `PlantOf`: their keys, channels and readings.
@@ -55,7 +58,10 @@ struct ModelAdapter {
     model::visit_keys(parameters, visitor);
   }
 
-  static std::string_view broken(const Parameters& parameters) { return model::broken_effect(parameters).relation; }
+  static std::string_view broken(const Parameters& parameters) {
+    const model::Broken part = model::broken_part(parameters);
+    return part.relation.empty() ? model::broken_effect(parameters).relation : part.relation;
+  }
 
   static const Parameters& of_model(const Parameters& parameters) { return parameters; }
 
@@ -90,6 +96,10 @@ void step_mass(const model::Direct<double>& model, model::Direct<double>::State&
 
 /// Advances a structure in modal coordinates by one step with a force that is held.
 void step_modes(const model::Modal<double>& model, model::Modal<double>::State& state, const double& force) noexcept;
+
+/// Advances an electromechanical actuator by one step with a setpoint that is held.
+void step_motor(const model::Electromechanical<double>& model, model::Electromechanical<double>::State& state,
+                const double& setpoint) noexcept;
 
 /// Moves a body by one step that ends at a position.
 void move_body(const model::ImposedMotion<double>& model, model::ImposedMotion<double>::State& state,
@@ -188,6 +198,38 @@ struct ModalAdapter : ModelAdapter<S, model::Modal<S>> {
   static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
     if constexpr (std::same_as<S, double>) {
       step_modes(model, state.plant, inputs[0]);
+    } else {
+      model.step(state.plant, inputs[0]);
+    }
+  }
+};
+
+/// An electromechanical actuator. Input: setpoint, in the record's own units.
+template <class S>
+struct ElectromechanicalAdapter : ModelAdapter<S, model::Electromechanical<S>> {
+  using typename ModelAdapter<S, model::Electromechanical<S>>::Model;
+  using typename ModelAdapter<S, model::Electromechanical<S>>::Parameters;
+  using typename ModelAdapter<S, model::Electromechanical<S>>::State;
+
+  static int steps(const typename Model::Parameters& parameters, double period) {
+    return model::steps_per_period<Model>(parameters, period);
+  }
+
+  static std::vector<Variable> inputs(const Parameters&) {
+    return {{"setpoint", "", "setpoint of the controller, held over a period", 0.0, -kLargest, kLargest}};
+  }
+
+  static std::vector<Variable> further_parameters() { return {}; }
+
+  static void settle(const Model& model, State& state, std::span<const S> inputs, const Parameters&, std::span<const S>,
+                     double time) {
+    state.plant = model.steady(inputs[0]);
+    state.plant.clock = {model::Precise<S>(time)};
+  }
+
+  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
+    if constexpr (std::same_as<S, double>) {
+      step_motor(model, state.plant, inputs[0]);
     } else {
       model.step(state.plant, inputs[0]);
     }

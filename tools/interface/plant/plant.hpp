@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/direct.hpp"
+#include "model/electromechanical.hpp"
 #include "model/imposed_motion.hpp"
 #include "model/modal.hpp"
 #include "model/sensors/vehicle_sensors.hpp"
@@ -26,7 +27,8 @@ inline constexpr double kRunaway = 1e12;
 using AnyParameters =
     std::variant<model::Simplex<double>::Parameters, model::Direct<double>::Parameters,
                  model::ImposedMotion<double>::Parameters, model::Modal<double>::Parameters,
-                 model::InstrumentedVehicle<model::Taos<double>>, model::InstrumentedVehicle<model::Masv<double>>>;
+                 model::Electromechanical<double>::Parameters, model::InstrumentedVehicle<model::Taos<double>>,
+                 model::InstrumentedVehicle<model::Masv<double>>>;
 
 /// How a plant is run.
 struct Setup {
@@ -142,6 +144,7 @@ std::unique_ptr<Plant> make_plant(const model::Simplex<double>::Parameters& para
 std::unique_ptr<Plant> make_plant(const model::Direct<double>::Parameters& parameters, const Setup& setup);
 std::unique_ptr<Plant> make_plant(const model::ImposedMotion<double>::Parameters& parameters, const Setup& setup);
 std::unique_ptr<Plant> make_plant(const model::Modal<double>::Parameters& parameters, const Setup& setup);
+std::unique_ptr<Plant> make_plant(const model::Electromechanical<double>::Parameters& parameters, const Setup& setup);
 std::unique_ptr<Plant> make_plant(const model::InstrumentedVehicle<model::Taos<double>>& parameters, const Setup& setup);
 std::unique_ptr<Plant> make_plant(const model::InstrumentedVehicle<model::Masv<double>>& parameters, const Setup& setup);
 

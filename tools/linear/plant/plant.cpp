@@ -5,6 +5,7 @@
 
 #include <variant>
 
+#include "tools/files/model/plant_of.hpp"
 #include "tools/files/text/error.hpp"
 
 namespace hotfire::linear {
@@ -12,16 +13,15 @@ namespace hotfire::linear {
 std::unique_ptr<Plant> make_plant(const plant::AnyParameters& parameters, double period, const OperatingPoint& point) {
   return std::visit(
       [&]<class Parameters>(const Parameters& own) -> std::unique_ptr<Plant> {
-        constexpr bool is_moved = std::is_same_v<Parameters, model::ImposedMotion<double>::Parameters>;
-        constexpr bool is_modal = std::is_same_v<Parameters, model::Modal<double>::Parameters>;
-        if constexpr (is_moved || is_modal || std::is_same_v<Parameters, model::Direct<double>::Parameters>) {
+        constexpr bool is_hydraulic = std::is_same_v<Parameters, model::Simplex<double>::Parameters> || requires {
+          typename Parameters::Vehicle;
+        };
+        if constexpr (is_hydraulic) {
+          return make_plant(own, period, point);
+        } else {
           throw UsageError(
               fmt::format("a model of topology {} is linear as it is declared; allowed topologies: simplex, taos, masv",
-                          is_moved   ? "imposed_motion"
-                          : is_modal ? "modal"
-                                     : "direct"));
-        } else {
-          return make_plant(own, period, point);
+                          PlantOf<Parameters, double>::topology));
         }
       },
       parameters);

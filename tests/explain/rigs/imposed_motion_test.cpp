@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "tests/explain/moved_damper.hpp"
+#include "tests/explain/rigs/moved_damper.hpp"
 #include "tests/support/refusal.hpp"
 #include "tools/explain/explain.hpp"
 #include "tools/simulate/path.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "tests/explain/jointed_structure.hpp"
+#include "tests/explain/rigs/jointed_structure.hpp"
 #include "tools/explain/explain.hpp"
 
 namespace hotfire::test {

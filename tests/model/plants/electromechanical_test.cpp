@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/electromechanical.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "model/checks.hpp"
+#include "tests/model/support/plants.hpp"
+#include "tests/model/support/servo_reference.hpp"
+
+namespace hotfire::test {
+namespace {
+
+using Actuator = model::Electromechanical<double>;
+
+/// The largest difference of each reading from the reference over half a second under a setpoint that steps, over the
+/// largest reading. `h`: step of the plant.
+std::array<double, 5> worst_error(const Actuator::Parameters& parameters, const ServoReference& reference, double h) {
+  constexpr int kFine = 50;
+  const Actuator plant(parameters, h);
+  Actuator::State state = plant.steady(0.0);
+  ServoReference::Vector y{};
+  std::array<double, 5> worst{};
+  std::array<double, 5> largest{};
+  const int steps = static_cast<int>(std::lround(0.5 / h));
+  for (int k = 0; k < steps; ++k) {
+    const double setpoint = k * h < 0.2499 ? 0.3 : -0.1;
+    plant.step(state, setpoint);
+    for (int i = 0; i < kFine; ++i) {
+      reference.advance(y, setpoint, h / kFine);
+    }
+    const std::array<double, 5> expected = ServoReference::readings(y);
+    for (std::size_t c = 0; c < expected.size(); ++c) {
+      worst[c] = std::max(worst[c], std::abs(Actuator::measured(state)[c] - expected[c]));
+      largest[c] = std::max(largest[c], std::abs(expected[c]));
+    }
+  }
+  for (std::size_t c = 0; c < worst.size(); ++c) {
+    worst[c] /= largest[c];
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_GROUP(Electromechanical){};
+
+// The linear part is held exactly; the reference is off by (w h / 50)^4 of its fastest part, the winding's 1,000 rad/s.
+TEST(Electromechanical, IsExactWhereItIsLinear) {
+  const auto voltage = servo();
+  auto current = servo();
+  current.motor = {0.1, 1e-4, 1e-4, 3000.0, 0.0, 0.0};
+  current.controller = {8.0, 20.0, 0.1, 1.0, 0.02, 0.0, 0.0};
+  for (const auto& parameters : {voltage, current}) {
+    const ServoReference reference(parameters);
+    for (const double error : worst_error(parameters, reference, 5e-4)) {
+      CHECK_TRUE(error < 1e-7);
+    }
+  }
+}
+
+// Laws that are smooth: a cubic spring and a damping by position at the load.
+TEST(Electromechanical, IsSecondOrderUnderEffects) {
+  auto parameters = servo();
+  ParamsOf<model::CubicStiffness, double> cubic;
+  cubic.stiffness = 8e3;
+  activate<model::CubicStiffness, Actuator>(parameters, cubic);
+  const ServoReference reference(parameters, {.on_load = [](double x, double) { return 8e3 * x * x * x; }});
+  const auto coarse = worst_error(parameters, reference, 5e-4);
+  const auto fine = worst_error(parameters, reference, 2.5e-4);
+  for (std::size_t c = 0; c < coarse.size(); ++c) {
+    CHECK_TRUE(coarse[c] < 2e-4);
+    CHECK_TRUE(coarse[c] > 3.3 * fine[c]);
+    CHECK_TRUE(coarse[c] < 4.7 * fine[c]);
+  }
+}
+
+// Dry friction on both sides of the transmission, against the reference with the sign of the speed spread over 1e-4 of the
+// largest: the plant's own jump falls anywhere in a step, so the speeds are right to a step's change of it.
+TEST(Electromechanical, TakesFrictionOnBothSidesOfTheTransmission) {
+  auto parameters = servo();
+  ParamsOf<model::MotorFriction, double> of_motor;
+  of_motor.coulomb_forward = of_motor.coulomb_backward = 40.0;
+  ParamsOf<model::SlidingFriction, double> of_load;
+  of_load.coulomb_forward = of_load.coulomb_backward = 25.0;
+  activate<model::MotorFriction, Actuator>(parameters, of_motor);
+  activate<model::SlidingFriction, Actuator>(parameters, of_load);
+  const auto dry = [](double level) { return [=](double, double v) { return level * std::tanh(v / 1e-3); }; };
+  const ServoReference both(parameters, {.on_motor = dry(40.0), .on_load = dry(25.0)});
+  const ServoReference one(parameters, {.on_motor = dry(40.0)});
+  const auto error = worst_error(parameters, both, 1e-4);
+  CHECK_TRUE(error[Actuator::kPosition] < 1e-3);
+  CHECK_TRUE(error[Actuator::kMotorPosition] < 1e-3);
+  CHECK_TRUE(worst_error(parameters, one, 1e-4)[Actuator::kPosition] > 5e-3);
+}
+
+// The spring that play takes out is that at the mean of the step's ends: (w h)^2 / 12 of it remains, 4e-5.
+TEST(Electromechanical, PlayLeavesTheLoadWhereItIsUntilItIsTakenUp) {
+  auto parameters = servo();
+  parameters.controller = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  parameters.mass.stiffness = 0.0;
+  ParamsOf<model::BacklashAt<model::Site::transmission>, double> play;
+  play.half_width = 0.01;
+  activate<model::BacklashAt<model::Site::transmission>, Actuator>(parameters, play);
+  parameters.transmission.damping = 0.0;
+  const Actuator plant(parameters, 1e-4);
+  Actuator::State state = plant.steady(0.0);
+  double before = 0.0;
+  while (Actuator::measured(state)[Actuator::kMotorPosition] / 100.0 < 0.0099) {
+    plant.step(state, 2.0);
+    before = std::max(before, std::abs(Actuator::measured(state)[Actuator::kPosition]));
+  }
+  for (int k = 0; k < 5000; ++k) {
+    plant.step(state, 2.0);
+  }
+  DOUBLES_EQUAL(0.0, before, 1e-6);
+  CHECK_TRUE(Actuator::measured(state)[Actuator::kPosition] > 0.05);
+}
+
+// A stiff transmission is nearly a rigid one: their readings differ by its deflection, load over stiffness.
+TEST(Electromechanical, RigidTransmissionIsTheLimitOfAStiffOne) {
+  auto stiff = servo();
+  stiff.transmission.stiffness = 2e7;
+  stiff.transmission.damping = 50.0;
+  auto rigid = servo();
+  rigid.transmission.stiffness = 0.0;
+  rigid.transmission.damping = 0.0;
+  const Actuator elastic(stiff, 1e-5);
+  const Actuator one(rigid, 1e-5);
+  Actuator::State a = elastic.steady(0.0);
+  Actuator::State b = one.steady(0.0);
+  for (int k = 0; k < 30000; ++k) {
+    elastic.step(a, 0.3);
+    one.step(b, 0.3);
+    DOUBLES_EQUAL(Actuator::measured(b)[Actuator::kPosition], Actuator::measured(a)[Actuator::kPosition], 1e-4);
+  }
+  DOUBLES_EQUAL(100.0 * Actuator::measured(b)[Actuator::kPosition], Actuator::measured(b)[Actuator::kMotorPosition], 1e-12);
+}
+
+// The drive can give 24 V. An error of some 3 would add 1.5e-3 a step to the integral. While it waits, what it stops is the
+// error at the mean of the step's ends, which is its mean over the step but for (w h)^2 / 12.
+TEST(Electromechanical, IntegralWaitsWhileTheCommandIsLimited) {
+  auto limited = servo();
+  limited.controller.limit = 24.0;
+  const Actuator plant(limited, 5e-4);
+  Actuator::State state = plant.steady(0.0);
+  double stored = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    plant.step(state, 3.0);
+    if (std::abs(plant.motor_command(state)) >= 24.0 && k > 0) {
+      DOUBLES_EQUAL(stored, state.y(Actuator::kIntegral), 1e-6);
+    }
+    stored = state.y(Actuator::kIntegral);
+    CHECK_TRUE(std::abs(plant.motor_command(state)) <= 24.0);
+  }
+  CHECK_TRUE(std::abs(stored) < 0.01);
+}
+
+TEST(Electromechanical, RestsWhereItIsSetUp) {
+  auto parameters = servo();
+  ParamsOf<model::ForceOffset, double> offset;
+  offset.force = 12.0;
+  activate<model::ForceOffset, Actuator>(parameters, offset);
+  auto open = servo();
+  open.controller = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  open.mass.stiffness = 0.0;
+  auto proportional = servo();
+  proportional.controller.integral_gain = 0.0;
+  for (const auto& [given, setpoint] : {std::pair{parameters, 0.2}, std::pair{open, 0.0}, std::pair{proportional, 0.2}}) {
+    for (const bool rigid : {false, true}) {
+      auto own = given;
+      own.transmission.stiffness *= rigid ? 0.0 : 1.0;
+      own.transmission.damping *= rigid ? 0.0 : 1.0;
+      // Without an integral the loop on the motor's side carries the twist of the transmission.
+      own.controller.load_feedback = 1.0;
+      const Actuator plant(own, 5e-4);
+      Actuator::State state = plant.steady(setpoint);
+      const auto start = Actuator::measured(state);
+      for (int k = 0; k < 1000; ++k) {
+        plant.step(state, setpoint);
+      }
+      for (std::size_t c = 0; c < start.size(); ++c) {
+        DOUBLES_EQUAL(start[c], Actuator::measured(state)[c], 1e-9 * (1.0 + std::abs(start[c])));
+      }
+    }
+  }
+}
+
+TEST(Electromechanical, RefusesAMotorWithoutADriveAndPlayInARigidTransmission) {
+  auto parameters = servo();
+  CHECK_TRUE(model::broken_part(parameters).relation.empty());
+  CHECK_TRUE(model::broken_effect(parameters).relation.empty());
+  parameters.motor.current_corner = 100.0;
+  CHECK_TRUE(model::broken_part(parameters).name == "motor");
+  parameters.motor = {0.1, 1e-4, 1e-4, 0.0, 1.0, 0.0};
+  CHECK_TRUE(model::broken_part(parameters).name == "motor");
+  parameters = servo();
+  parameters.transmission.stiffness = 0.0;
+  activate<model::MotorFriction, Actuator>(parameters, {});
+  CHECK_TRUE(model::broken_effect(parameters).name == "motor_friction");
+}
+
+}  // namespace hotfire::test

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/interface/plant/axis_adapters.hpp"
+#include "tools/interface/plant/for_each_processor.hpp"
+#include "tools/interface/plant/plant_of.hpp"
+
+namespace hotfire::plant {
+
+HOTFIRE_FOR_EACH_PROCESSOR void step_motor(const model::Electromechanical<double>& model,
+                                           model::Electromechanical<double>::State& state, const double& setpoint) noexcept {
+  model.step(state, setpoint);
+}
+
+std::unique_ptr<Plant> make_plant(const model::Electromechanical<double>::Parameters& parameters, const Setup& setup) {
+  return PlantOf<ElectromechanicalAdapter>::make(parameters, setup);
+}
+
+}  // namespace hotfire::plant
