@@ -138,11 +138,13 @@ class Direct {
     const S& position = state.y(0);
     const S& velocity = state.y(1);
     // Dry friction jumps within a step where the motion turns: the mean over the step is not the force at its end.
-    const S against = sum_at_instant<Site::mass_force>(parameters_.effects, acting_, state.effects,
-                                                       motion_of(position, velocity, 0.0, state.clock.at(h_, 0.0)));
-    const S carried = parameters_.mass.damping * velocity + parameters_.mass.stiffness * position + against;
-    state.measured = {position, velocity,
-                      S((end_of_step(state.force, state.force_before) - carried) / parameters_.mass.inertia)};
+    const S acceleration = (end_of_step(state.force, state.force_before) - parameters_.mass.damping * velocity -
+                            parameters_.mass.stiffness * position) /
+                           parameters_.mass.inertia;
+    Motion<S> body = motion_of(position, velocity, h_, state.clock.at(h_, 0.0));
+    body.compliance = 1.0 / parameters_.mass.inertia;
+    const S against = sum_at_end<Site::mass_force>(parameters_.effects, acting_, state.effects, body, acceleration);
+    state.measured = {position, velocity, S(acceleration - against / parameters_.mass.inertia)};
   }
 
   Parameters parameters_;

@@ -13,6 +13,7 @@
 #include "model/effects.hpp"
 #include "model/numerics/clock.hpp"
 #include "model/numerics/exact_hold.hpp"
+#include "model/numerics/root.hpp"
 #include "model/numerics/step_size.hpp"
 
 namespace hotfire::model {
@@ -80,17 +81,29 @@ class Electromechanical {
     std::array<S, 5> measured{};
   };
 
-  /// The longest step [s] at these parameters: a fifth of a cycle of motor and load on the transmission, as of a `Simplex`.
+  /// The longest step [s] at these parameters: a fifth of a cycle of motor and load on the transmission, as of a `Simplex`,
+  /// and a fifth of a radian of the crossover of the speed and position loops, in which a limit or play is held.
   static double longest_step(const Parameters& parameters) noexcept {
     constexpr double kStepsInCycle = 5.0;
-    if (parameters.transmission.is_rigid()) {
-      return kLongestStep;
-    }
+    constexpr double kAngle = 0.2;
+    const Controller<S>& controller = parameters.controller;
     const double ratio = value_of(parameters.transmission.ratio);
-    const double softness =
-        1.0 / (value_of(parameters.motor.inertia) * ratio * ratio) + 1.0 / value_of(parameters.mass.inertia);
-    const double turn = std::sqrt(value_of(parameters.transmission.stiffness) * softness);
-    return std::clamp(2.0 * std::numbers::pi / turn / kStepsInCycle, kShortestStep, kLongestStep);
+    const double rotor = value_of(parameters.motor.inertia) * ratio * ratio;
+    const double load = value_of(parameters.mass.inertia);
+    const bool rigid = parameters.transmission.is_rigid();
+    const double per_command = value_of(parameters.motor.torque_constant) * ratio /
+                               (parameters.motor.has_current_drive() ? 1.0 : value_of(parameters.motor.resistance)) /
+                               (rigid ? rotor + load : rotor);
+    const double proportional = value_of(controller.proportional_gain);
+    const double speed_loop =
+        per_command * (proportional * value_of(controller.velocity_feedback) + value_of(controller.derivative_gain));
+    const double position_loop = std::sqrt(per_command * proportional * value_of(controller.position_feedback));
+    double step = kAngle / std::max({speed_loop, position_loop, kAngle / kLongestStep});
+    if (!rigid) {
+      const double turn = std::sqrt(value_of(parameters.transmission.stiffness) * (1.0 / rotor + 1.0 / load));
+      step = std::min(step, 2.0 * std::numbers::pi / turn / kStepsInCycle);
+    }
+    return std::clamp(step, kShortestStep, kLongestStep);
   }
 
   Electromechanical(const Parameters& parameters, double h)
@@ -110,11 +123,14 @@ class Electromechanical {
     const S per_command = motor.has_current_drive() ? motor.current_corner : S(1.0 / motor.inductance);
 
     Eigen::Matrix<S, 6, 6> linear = Eigen::Matrix<S, 6, 6>::Zero();
-    const Eigen::Matrix<S, 1, 6> error = error_row();
-    linear.row(kIntegral) = error;
-    linear.row(kAmperes) = S(per_command * controller.proportional_gain) * error;
-    linear(kAmperes, kIntegral) += per_command * controller.integral_gain;
-    linear(kAmperes, kMotorRate) -= per_command * controller.derivative_gain;
+    error_(load_) -= controller.position_feedback * controller.load_feedback;
+    error_(kMotor) -= controller.position_feedback * (1.0 - controller.load_feedback);
+    error_(kMotorRate) -= controller.velocity_feedback;
+    asked_ = controller.proportional_gain * error_;
+    asked_(kIntegral) += controller.integral_gain;
+    asked_(kMotorRate) -= controller.derivative_gain;
+    linear.row(kIntegral) = error_;
+    linear.row(kAmperes) = per_command * asked_;
     linear(kAmperes, kAmperes) -= motor.has_current_drive() ? motor.current_corner : S(motor.resistance / motor.inductance);
     linear(kAmperes, kMotorRate) -= motor.has_current_drive() ? S{0.0} : S(force_constant_ / motor.inductance);
     linear(kMotor, kMotorRate) = S{1.0};
@@ -147,6 +163,7 @@ class Electromechanical {
     hold_ = exact_hold<S, 6, 6>(linear, driven, h);
     motor_compliance_ = -hold_.response(kMotor, kMotorForce) / h;
     load_compliance_ = -hold_.response(load_, kLoadForce) / h;
+    command_relief_ = -0.5 * times(asked_, Eigen::Matrix<S, 6, 1>(hold_.response.col(kMotorCommand)))(0);
   }
 
   const Parameters& parameters() const noexcept { return parameters_; }
@@ -155,44 +172,52 @@ class Electromechanical {
   /// What a step makes of the continuous states without inputs.
   const Eigen::Matrix<S, 6, 6>& transition() const noexcept { return hold_.transition; }
 
-  /// Where the actuator rests under a constant command, by its linear part: with a position loop where the command, or the
-  /// spring to ground, leaves it; without one at zero.
-  S resting_position(const S& command) const noexcept {
+  /// At rest under a constant setpoint: where the position loop, or the spring to ground, holds the load; without either at
+  /// zero. Set-up only.
+  State steady(const S& setpoint) const { return resting(setpoint, resting_position(setpoint)); }
+
+  /// Where that is.
+  S resting_position(const S& setpoint) const {
     const Controller<S>& controller = parameters_.controller;
-    if (!(value_of(controller.position_feedback) > 0.0)) {
+    State state;
+    set_command(state, setpoint);
+    const S softness = parameters_.transmission.is_rigid() ? S{0.0} : S(1.0 / parameters_.transmission.stiffness);
+    const S feedback =
+        controller.position_feedback * (1.0 + (1.0 - controller.load_feedback) * parameters_.mass.stiffness * softness);
+    const S gain = controller.proportional_gain * amperes(S{1.0}) * force_constant_;
+    const bool has_integral = value_of(controller.integral_gain) > 0.0 && value_of(feedback) > 0.0;
+    const S holds = has_integral ? feedback : S(gain * feedback + parameters_.mass.stiffness);
+    if (!(value_of(holds) > 0.0)) {
       return S{0.0};
     }
-    if (value_of(controller.integral_gain) > 0.0) {
-      return command / controller.position_feedback;
-    }
-    const S gain = controller.proportional_gain * amperes(S{1.0}) * force_constant_;
-    return gain * command / (gain * controller.position_feedback + parameters_.mass.stiffness);
+    const S linear = (has_integral ? S{1.0} : gain) * state.inputs(kCommand) / holds;
+    const double width = 1e-6 * std::abs(value_of(linear)) + 1e-9;
+    return root_of_decreasing<S>(linear, width, [&](const S& position) {
+      const S load = put_at(state, position);
+      const S left = error(state, state.y);
+      return has_integral ? left
+                          : S(force_constant_ * amperes(driven_by(state, controller.proportional_gain * left)) - load);
+    });
   }
 
-  /// At rest there.
-  State steady(const S& command) const { return resting(command, resting_position(command)); }
-
-  /// At rest under a constant command with the load at `position`: set-up only. A controller with an integral holds it,
+  /// At rest under a constant setpoint with the load at `position`: set-up only. A controller with an integral holds it,
   /// without one the friction does. The transmission is loaded by what holds the load.
-  State resting(const S& command, const S& position) const {
+  State resting(const S& setpoint, const S& position) const {
     State state;
-    Signal<S> commanded{command, h_};
-    settle<Site::command>(parameters_.effects, state.effects, commanded);
-    pass_through<Site::command>(parameters_.effects, acting_, state.effects, commanded, Keep::no);
-    state.inputs(kCommand) = commanded.value;
-    Motion<S> still = motion_of(position, S{0.0}, load_compliance_, state.clock.at(h_));
-    const S load = parameters_.mass.stiffness * position +
-                   sum_over<Site::mass_force>(parameters_.effects, acting_, state.effects, still, Keep::no);
-    const bool rigid = parameters_.transmission.is_rigid();
-    state.y(load_) = position;
-    state.y(kMotor) = rigid ? position : S(position + load / parameters_.transmission.stiffness);
+    set_command(state, setpoint);
+    const S load = put_at(state, position);
     const Controller<S>& controller = parameters_.controller;
     const S proportional = controller.proportional_gain * error(state, state.y);
     if (value_of(controller.integral_gain) > 0.0) {
       state.y(kAmperes) = load / force_constant_;
-      state.y(kIntegral) = (state.y(kAmperes) / amperes(S{1.0}) - proportional) / controller.integral_gain;
+      const S needed = state.y(kAmperes) / amperes(S{1.0});
+      const S asked = acting_.template any<Site::drive>()
+                          ? root_of_decreasing<S>(needed, 1e-6 * std::abs(value_of(needed)) + 1e-9,
+                                                  [&](const S& command) { return needed - driven_by(state, command); })
+                          : needed;
+      state.y(kIntegral) = (asked - proportional) / controller.integral_gain;
     } else {
-      state.y(kAmperes) = amperes(limited(proportional));
+      state.y(kAmperes) = amperes(driven_by(state, proportional));
     }
     measure(state);
     return state;
@@ -229,26 +254,15 @@ class Electromechanical {
   S motor_command(const State& state) const noexcept { return limited(linear_command(state, state.y)); }
 
  private:
-  /// The error per state, without the command.
-  Eigen::Matrix<S, 1, 6> error_row() const noexcept {
-    const Controller<S>& controller = parameters_.controller;
-    Eigen::Matrix<S, 1, 6> row = Eigen::Matrix<S, 1, 6>::Zero();
-    row(load_) -= controller.position_feedback * controller.load_feedback;
-    row(kMotor) -= controller.position_feedback * (1.0 - controller.load_feedback);
-    row(kMotorRate) -= controller.velocity_feedback;
-    return row;
-  }
+  /// A loop that is faster than the step would undo nearly all of a change of the motor's command within it.
+  static constexpr double kLeastSteepness = 0.1;
 
+  /// The error of the controller at `y`, and the motor command that it asks for, before the limit.
   S error(const State& state, const Eigen::Matrix<S, 6, 1>& y) const noexcept {
-    const Controller<S>& controller = parameters_.controller;
-    const S position = controller.load_feedback * y(load_) + (1.0 - controller.load_feedback) * y(kMotor);
-    return state.inputs(kCommand) - controller.position_feedback * position - controller.velocity_feedback * y(kMotorRate);
+    return state.inputs(kCommand) + times(error_, y)(0);
   }
-
   S linear_command(const State& state, const Eigen::Matrix<S, 6, 1>& y) const noexcept {
-    const Controller<S>& controller = parameters_.controller;
-    return controller.proportional_gain * error(state, y) + controller.integral_gain * y(kIntegral) -
-           controller.derivative_gain * y(kMotorRate);
+    return parameters_.controller.proportional_gain * state.inputs(kCommand) + times(asked_, y)(0);
   }
 
   S limited(const S& command) const noexcept {
@@ -259,6 +273,68 @@ class Electromechanical {
   /// The current of a motor command on a motor at rest.
   S amperes(const S& command) const noexcept {
     return parameters_.motor.has_current_drive() ? command : S(command / parameters_.motor.resistance);
+  }
+
+  /// What the drive makes of the controller's command at rest.
+  S driven_by(State& state, const S& command) const noexcept {
+    Signal<S> drive{limited(command), h_};
+    pass_through<Site::drive>(parameters_.effects, acting_, state.effects, drive, Keep::no);
+    return drive.value;
+  }
+
+  /// Settles the effects on the setpoint and holds what they make of it.
+  void set_command(State& state, const S& setpoint) const {
+    Signal<S> commanded{setpoint, h_};
+    settle<Site::command>(parameters_.effects, state.effects, commanded);
+    pass_through<Site::command>(parameters_.effects, acting_, state.effects, commanded, Keep::no);
+    state.inputs(kCommand) = commanded.value;
+  }
+
+  /// Puts load and motor at rest, the load at `position`. Returns the force that holds it there.
+  S put_at(State& state, const S& position) const {
+    const auto& effects = parameters_.effects;
+    Motion<S> still = motion_of(position, S{0.0}, load_compliance_, state.clock.at(h_));
+    const S load =
+        parameters_.mass.stiffness * position + sum_over<Site::mass_force>(effects, acting_, state.effects, still, Keep::no);
+    state.effects.outputs.fill(S{0.0});
+    state.y(load_) = position;
+    if (parameters_.transmission.is_rigid()) {
+      return load;
+    }
+    const S twist = load / parameters_.transmission.stiffness;
+    state.y(kMotor) = position + twist;
+    if (acting_.template any<Site::transmission>()) {
+      state.y(kMotor) =
+          position + root_of_decreasing<S>(twist, 1e-6 * std::abs(value_of(twist)) + 1e-9, [&](const S& whole) {
+            Spring<S> spring = spring_of(whole, position, state.clock.at(h_));
+            pass_through<Site::transmission>(effects, acting_, state.effects, spring, Keep::no);
+            return S(twist - spring.deflection);
+          });
+    }
+    return load;
+  }
+
+  Spring<S> spring_of(const S& deflection, const S& position, const Precise<S>& time) const noexcept {
+    const S& stiffness = parameters_.transmission.stiffness;
+    return {deflection, position, S{1.0}, S{1.0}, stiffness, stiffness, stiffness, h_, time};
+  }
+
+  /// The motor command beyond the linear one over a step: r(n) = D(asked - relief n) - (asked - relief n) - n = 0 by one
+  /// step of Newton's method from the last n, with D what limit and drive make of a command, which is linear in parts.
+  void drive_motor(State& state, const S& asked, const Precise<S>& time, Keep keep) const noexcept {
+    const S allowed = limited(asked);
+    Signal<S> drive{allowed, h_, time};
+    double slope = value_of(allowed) == value_of(asked) ? 1.0 : 0.0;
+    if (acting_.template any<Site::drive>()) {
+      const S step = 1e-6 * (allowed + sign_of(allowed));
+      Signal<S> further{allowed + step, h_, time};
+      pass_through<Site::drive>(parameters_.effects, acting_, state.effects, further, Keep::no);
+      pass_through<Site::drive>(parameters_.effects, acting_, state.effects, drive, keep);
+      slope *= value_of((further.value - drive.value) / step);
+    }
+    const S steepness = 1.0 - (1.0 - slope) * command_relief_;
+    const S bounded = value_of(steepness) > kLeastSteepness ? steepness : S{kLeastSteepness};
+    state.inputs(kMotorCommand) += (drive.value - asked - state.inputs(kMotorCommand)) / bounded;
   }
 
   Motion<S> motion_of(const S& position, const S& rate, const S& compliance, const Precise<S>& time) const noexcept {
@@ -274,12 +350,9 @@ class Electromechanical {
     const auto& effects = parameters_.effects;
     const Eigen::Matrix<S, 6, 1> mean = S(0.5) * (start + end);
     const S wanted = linear_command(state, mean);
-    const S allowed = limited(wanted);
-    Signal<S> drive{allowed, h_, time};
-    pass_through<Site::drive>(effects, acting_, state.effects, drive, keep);
-    state.inputs(kMotorCommand) = drive.value - wanted;
+    drive_motor(state, wanted, time, keep);
     const S left = error(state, mean);
-    const bool waits = value_of(allowed) != value_of(wanted) && value_of(left) * value_of(wanted) > 0.0;
+    const bool waits = value_of(limited(wanted)) != value_of(wanted) && value_of(left) * value_of(wanted) > 0.0;
     state.inputs(kIntegralRate) = waits ? S(-left) : S{0.0};
 
     const S motor_rate = (end(kMotor) - start(kMotor)) / h_;
@@ -289,7 +362,7 @@ class Electromechanical {
     if (acting_.template any<Site::transmission>()) {
       const S& stiffness = parameters_.transmission.stiffness;
       const S deflection = mean(kMotor) - mean(kLoad);
-      Spring<S> spring{deflection, mean(kLoad), S{1.0}, S{1.0}, stiffness, stiffness, stiffness, h_, time};
+      Spring<S> spring = spring_of(deflection, mean(kLoad), time);
       pass_through<Site::transmission>(effects, acting_, state.effects, spring, keep);
       state.inputs(kSpringForce) = stiffness * (spring.deflection - deflection);
     }
@@ -313,6 +386,9 @@ class Electromechanical {
   ExactHold<S, 6, 6> hold_;
   S motor_compliance_{0.0};
   S load_compliance_{0.0};
+  S command_relief_{0.0};  ///< by how much a unit of motor command over a step lowers what is asked at its mean
+  Eigen::Matrix<S, 1, 6> error_ = Eigen::Matrix<S, 1, 6>::Zero();  ///< by the states, without the setpoint
+  Eigen::Matrix<S, 1, 6> asked_ = Eigen::Matrix<S, 1, 6>::Zero();  ///< the same of the motor command
 };
 
 }  // namespace hotfire::model

@@ -182,10 +182,16 @@ class Modal {
   void read(State& state) const noexcept {
     const S force = end_of_step(state.force, state.force_before);
     // Dry friction jumps within a step where the motion turns: the mean over the step is not the force at its end.
+    S across{0.0};
+    S mobility{0.0};
+    for (const Mode& mode : modes()) {
+      across +=
+          mode.joint * (mode.stiffness * state.y(mode.q) + mode.damping * state.y(mode.q + 1) + mode.driven_by * force);
+      mobility += mode.joint * mode.joined_by;
+    }
     const S rate = joint_rate(state);
-    const S joint_force = sum_at_instant<Site::mass_force>(
-        parameters_.effects, acting_, state.effects,
-        Motion<S>{joint_position(state), rate, rate, compliance_, 0.0, state.clock.at(h_, 0.0)});
+    const Motion<S> joint{joint_position(state), rate, rate, mobility, h_, state.clock.at(h_, 0.0)};
+    const S joint_force = sum_at_end<Site::mass_force>(parameters_.effects, acting_, state.effects, joint, across);
     state.measured.fill(S{0.0});
     for (const Mode& mode : modes()) {
       const S& position = state.y(mode.q);

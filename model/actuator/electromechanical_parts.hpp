@@ -9,8 +9,8 @@
 
 namespace hotfire::model {
 
-/// The declared parameters of the parts of an electromechanical actuator. Motor and drive are in SI; the load is in whatever
-/// consistent set the record has, with torque over the ratio of the transmission as its force.
+/// The declared parameters of the parts of an electromechanical actuator. Motor and drive are in SI. The load is in the
+/// consistent set of the record, in which a force is a torque [N m] times the ratio of the transmission [rad/position].
 
 /// The controller of the actuator, continuous in time: the motor's command is
 ///     proportional_gain error + integral_gain integral(error) - derivative_gain motor speed,

@@ -294,15 +294,31 @@ template <Site site, class S, class List>
                                      : S{0.0};
 }
 
-/// The same at an instant between two steps (`input.h` = 0), from the motion there: the effects move on by nothing.
+/// Share of a step after which the effects give their force at its end: short enough that nothing else moves, long enough
+/// that a body at rest shows where it would go.
+inline constexpr double kInstant = 1e-3;
+
+/// The force at the end of a step: that of a short further step from the motion there. `body`: that motion, with the change
+/// of velocity by a unit of force in a second as its compliance. `acceleration`: without the effects. Friction that holds a
+/// body balances the other forces at that instant.
 template <Site site, class S, class List>
-S sum_at_instant(const EffectParameters<S, List>& parameters, const ActingEffects<List>& acting,
-                 EffectStates<S, List>& states, typename SiteInput<site, S>::type input) noexcept {
+S sum_at_end(const EffectParameters<S, List>& parameters, const ActingEffects<List>& acting, EffectStates<S, List>& states,
+             Motion<S> body, const S& acceleration) noexcept {
   if (!acting.template any<site>()) {
     return S{0.0};
   }
   const auto outputs = states.outputs;
-  const S total = detail::sum_over_acting<site, S, List>(parameters, acting, states, input, Keep::no);
+  S last{0.0};
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site) {
+      last += acting.template has<I>() ? outputs[I] : S{0.0};
+    }
+  });
+  body.h *= kInstant;
+  body.velocity += body.h * (acceleration - body.compliance * last);
+  body.free_velocity = body.velocity;
+  body.compliance *= body.h;
+  const S total = detail::sum_over_acting<site, S, List>(parameters, acting, states, body, Keep::no);
   states.outputs = outputs;
   return total;
 }

@@ -92,7 +92,7 @@ struct BristleStep {
   S per_velocity;
 };
 
-/// The exact hold of z' = v - sigma0 |v| z / g over h; with h = 0 the force at an instant. With a = sigma0 speed h / level,
+/// The exact hold of z' = v - sigma0 |v| z / g over h: with a = sigma0 speed h / level,
 /// decay = e^-a, psi = (1 - e^-a)/a and chi = (1 - psi)/a the end and the mean of z are z decay + v h psi and z psi + v h
 /// chi.
 template <class S>

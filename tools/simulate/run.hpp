@@ -23,6 +23,11 @@ inline double first_piston(std::span<const double> piston, std::span<const doubl
   return !piston.empty() ? piston.front() : !engine.empty() ? moment_arm * engine.front() : 0.0;
 }
 
+/// True if the setpoint is a position: then it has the unit of the load's.
+inline bool has_position_loop(const model::Electromechanical<double>::Parameters& parameters) {
+  return parameters.controller.position_feedback > 0.0;
+}
+
 /// An electromechanical actuator at rest under its first setpoint: where its load, or its motor, is measured at the first
 /// row, and otherwise where its linear part rests.
 template <class S>

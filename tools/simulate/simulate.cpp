@@ -75,7 +75,8 @@ std::pair<double, double> fitted_start(const DirectParameters& parameters, const
 
 /// The unit of a channel of a mass or a moved body: that of the record, or one that goes with its position, which goes with
 /// a force or torque in SI.
-std::string unit_of_motion(const Record& inputs, std::string_view channel, const std::string& unit_of_input) {
+std::string unit_of_motion(const Record& inputs, std::string_view channel, const std::string& unit_of_input,
+                           bool input_is_position) {
   if (const Channel* measured = inputs.find(std::string(channel))) {
     return measured->unit;
   }
@@ -84,6 +85,7 @@ std::string unit_of_motion(const Record& inputs, std::string_view channel, const
   }
   const Channel* position = inputs.find("position");
   const std::string unit = position != nullptr      ? position->unit
+                           : input_is_position      ? unit_of_input
                            : unit_of_input == "N"   ? "m"
                            : unit_of_input == "N.m" ? "rad"
                                                     : "1";
@@ -98,9 +100,14 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
   outputs.period = inputs.period;
   outputs.rows = inputs.rows;
   outputs.channels.push_back(input);
+  bool input_is_position = false;
+  if constexpr (std::is_same_v<typename Plant::Parameters, ElectromechanicalParameters>) {
+    input_is_position = has_position_loop(plant.parameters());
+  }
   for (std::size_t c = 0; c < Plant::channels.size(); ++c) {
-    const std::string unit = Plant::channel_units[c].empty() ? unit_of_motion(inputs, Plant::channels[c], input.unit)
-                                                             : std::string(Plant::channel_units[c]);
+    const std::string unit = Plant::channel_units[c].empty()
+                                 ? unit_of_motion(inputs, Plant::channels[c], input.unit, input_is_position)
+                                 : std::string(Plant::channel_units[c]);
     outputs.channels.push_back({std::string(Plant::channels[c]), unit, {}});
     outputs.channels.back().values.reserve(inputs.rows);
   }
@@ -122,14 +129,20 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
 Record simulate(const ModelFile& model, const Record& inputs, std::size_t fit_start_rows) {
   if (fit_start_rows > 0 && !std::holds_alternative<DirectParameters>(model.parameters)) {
     throw UsageError(
-        "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command, and a body "
-        "of imposed_motion on its path");
+        "--fit-start is for a direct model; a hydraulic axis starts in the steady state under its first command, a body of "
+        "imposed_motion on its path, a modal structure at rest, and an electromechanical actuator at rest where it is first "
+        "measured");
   }
   return std::visit(
       [&]<class Parameters>(const Parameters& parameters) {
         using Plant = PlantOf<Parameters, double>;
         require_channel(inputs, std::string(Plant::input_channel), "the model is driven by it");
         require_units_of_one_motion(inputs);
+        if constexpr (std::is_same_v<Parameters, ElectromechanicalParameters>) {
+          if (has_position_loop(parameters)) {
+            require_same_unit(inputs, "setpoint", "position");
+          }
+        }
         const int steps = steps_in_row<Plant>(parameters, inputs.period);
         const Plant plant(parameters, inputs.period / steps);
         auto state = start_of(plant, inputs);

@@ -21,7 +21,7 @@ struct DriveSaturationAt {
     int option = 0;
     S limit{1e12};
     static constexpr auto fields() {
-      return std::array{Field<Params>{"limit", unit, 0.0, 1e12, 1.0, "largest force in either direction", &Params::limit}};
+      return std::array{Field<Params>{"limit", unit, 0.0, 1e12, 1.0, "largest output in either direction", &Params::limit}};
     }
   };
 

@@ -7,7 +7,7 @@
 namespace hotfire::model {
 
 /// Free play between piston and engine, or in the transmission of a motor (`at`): no force while abs(deflection) <
-/// half_width, the spring beyond it.
+/// half_width, the spring beyond it. A damper beside the spring of a transmission acts in the play too.
 template <Site at>
 struct BacklashAt {
   static constexpr std::string_view name = "backlash";

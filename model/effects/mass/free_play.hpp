@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cmath>
-
 #include "model/declaration/effect.hpp"
 #include "model/numerics/operators.hpp"
 
@@ -44,11 +42,6 @@ struct FreePlay {
       return -input.declared_stiffness * clamp_symmetric<S>(input.position, params.half_width);
     }
     const S before = state.taken_up;
-    if (!(input.h > 0.0)) {
-      const bool follows =
-          std::abs(value_of(before)) >= value_of(params.half_width) && value_of(before) * value_of(input.velocity) >= 0.0;
-      return follows ? S{0.0} : S(-input.declared_damping * input.velocity);
-    }
     state.taken_up = stop_after<S>(before, S(input.velocity * input.h), params.half_width);
     return -input.declared_damping * (state.taken_up - before) / input.h;
   }

@@ -254,24 +254,4 @@ TEST(EveryEffect, OfAWiperThatSticksTheReadingFollowsAtTheHalfWidthOfItsPlay) {
   DOUBLES_EQUAL(params.half_width, reading, 1e-15);
 }
 
-// A mass or a joint reads its acceleration at the end of a step: the force there is that of a step without a length. A
-// millionth of a step longer, friction moves on by a millionth of what it does in a step.
-TEST(EveryEffect, GivesItsForceAtAnInstantAsTheLimitOfAShortStep) {
-  constexpr double kShort = 1e-6 * kStep;
-  for_each_law([]<class E>(int option) {
-    if constexpr (E::site == model::Site::mass_force) {
-      const auto params = typical<E, double>(option);
-      StateOf<E, double> state{};
-      for (int k = 0; k < 400; ++k) {
-        static_cast<void>(E::step(params, state, smooth_input<E>(k * kStep, kStep)));
-        StateOf<E, double> at_instant = state;
-        StateOf<E, double> after = state;
-        const double force = E::step(params, at_instant, smooth_input<E>(k * kStep, 0.0));
-        const double limit = E::step(params, after, smooth_input<E>(k * kStep, kShort));
-        CHECK_TRUE_TEXT(std::abs(force - limit) <= 1e-5 * (1.0 + std::abs(limit)), label<E>(option).c_str());
-      }
-    }
-  });
-}
-
 }  // namespace hotfire::test

@@ -113,6 +113,56 @@ TEST(Direct, KeepsItsEnergyWithoutDamping) {
   DOUBLES_EQUAL(first, energy(), 1e-10 * first);
 }
 
+// Friction that holds the mass balances the force at each instant: at the start, after a step and on a ramp.
+TEST(Direct, ReadsNoAccelerationWhileFrictionHoldsIt) {
+  Plant::Parameters parameters;
+  parameters.mass = {1.0, 0.2, 0.0};
+  ParamsOf<model::SlidingFriction, double> friction;
+  friction.coulomb_forward = friction.coulomb_backward = 10.0;
+  activate<model::SlidingFriction, Plant>(parameters, friction);
+  const Plant plant(parameters, 5e-4);
+  DOUBLES_EQUAL(0.0, Plant::measured(plant.moving(0.0, 0.0, 5.0))[Plant::kAcceleration], 1e-9);
+  Plant::State state = plant.at_rest(0.0);
+  for (int k = 0; k < 400; ++k) {
+    plant.step(state, k < 100 ? 0.0 : k < 200 ? 5.0 : 5.0 * std::sin(0.03 * k));
+    DOUBLES_EQUAL(0.0, Plant::measured(state)[Plant::kAcceleration], 1e-9);
+  }
+  // Just before it breaks away it reads nothing, just after that what the force has more than the friction.
+  for (const double force : {9.99, 10.5}) {
+    state = plant.at_rest(0.0);
+    plant.step(state, force);
+    plant.step(state, force);
+    DOUBLES_EQUAL(std::max(0.0, force - 10.0), Plant::measured(state)[Plant::kAcceleration], 1e-3);
+  }
+}
+
+// The difference of the velocities over two steps is the acceleration between them, to second order: also of a bristle.
+TEST(Direct, ReadsTheAccelerationThatItsVelocityHasUnderEveryLawOfFriction) {
+  constexpr double h = 2e-4;
+  for (int law = 0; law < static_cast<int>(model::SlidingFriction::options.size()); ++law) {
+    Plant::Parameters parameters;
+    parameters.mass = {1.0, 0.5, 40.0};
+    activate<model::SlidingFriction, Plant>(parameters, typical<model::SlidingFriction, double>(law));
+    const Plant plant(parameters, h);
+    Plant::State state = plant.at_rest(0.0);
+    std::vector<double> velocity;
+    std::vector<double> acceleration;
+    for (int k = 0; k < 5000; ++k) {
+      plant.step(state, 40.0 * std::sin(4.0 * h * k));
+      velocity.push_back(state.y(1));
+      acceleration.push_back(Plant::measured(state)[Plant::kAcceleration]);
+    }
+    double error = 0.0;
+    double size = 0.0;
+    for (std::size_t k = 2; k + 1 < velocity.size(); ++k) {
+      const double mean = (velocity[k + 1] - velocity[k - 1]) / (2.0 * h);
+      error += (acceleration[k] - mean) * (acceleration[k] - mean);
+      size += mean * mean;
+    }
+    CHECK_TRUE(std::sqrt(error / size) < 2e-3);
+  }
+}
+
 // A body that slides on rigid Coulomb friction with 2 m/s^2 stops after v^2 / (2 a), and stays.
 TEST(Direct, StopsUnderCoulombFrictionAndStays) {
   Plant::Parameters parameters;

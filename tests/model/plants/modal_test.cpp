@@ -66,8 +66,8 @@ TEST(Modal, AnswersASineAsTheSumOfItsModesAtEveryPlaceAndInEveryDerivative) {
   CHECK_TRUE(worst < (w * h) * (w * h));
 }
 
-// One mode with everything at one place is a mass on a spring: J = 1 / mobility: the same equation, read
-// in the same way.
+// One mode with everything at one place is a mass on a spring: J = 1 / mobility. Both read the same
+// equation in the same way.
 TEST(Modal, OneModeIsADirectMassWithTheSameEffect) {
   constexpr double h = 5e-4;
   Structure::Parameters one;

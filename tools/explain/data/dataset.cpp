@@ -177,7 +177,11 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   data.used.assign(data.channels.size(), false);
 
   data.experiments.reserve(records.size());
+  const auto* motor = std::get_if<ElectromechanicalParameters>(&model.parameters);
   for (const Record& record : records) {
+    if (motor != nullptr && has_position_loop(*motor)) {
+      require_same_unit(record, "setpoint", "position");
+    }
     data.experiments.push_back(experiment_of(record, input, exclusions, data));
   }
   hold_out(data.experiments);
@@ -193,7 +197,7 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
     for (Experiment& experiment : data.experiments) {
       experiment.first_scored = rows_to_forget_start(*modes, experiment.rows(), experiment.period);
     }
-  } else if (const auto* motor = std::get_if<ElectromechanicalParameters>(&model.parameters)) {
+  } else if (motor != nullptr) {
     for (Experiment& experiment : data.experiments) {
       experiment.first_scored =
           rows_to_forget_start(*motor, experiment.input, experiment.measured, experiment.period, experiment.noise);

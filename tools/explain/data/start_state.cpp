@@ -158,10 +158,11 @@ std::size_t rows_to_forget_start(const ElectromechanicalParameters& parameters, 
     return 0;
   }
   double slowest = 0.0;
+  // What does not fall to a third within the record stays.
+  const double integrates = std::exp(-1.0 / (static_cast<double>(setpoint.size()) * steps));
   for (const std::complex<double>& root : actuator.transition().eigenvalues()) {
-    constexpr double kIntegrates = 1e-9;
     const double size = std::abs(root);
-    slowest = size < 1.0 - kIntegrates ? std::max(slowest, size) : slowest;
+    slowest = size < integrates ? std::max(slowest, size) : slowest;
   }
   const double seconds = slowest > 0.0 ? std::log(kForgotten) / std::log(slowest) * actuator.step_size() : 0.0;
   return std::min(setpoint.size() / 4, static_cast<std::size_t>(seconds / period));

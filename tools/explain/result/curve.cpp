@@ -231,7 +231,9 @@ Curve play_curve(const Params& params, double reach) {
 template <class E, class Parameters, class Params>
 requires(!std::same_as<Parameters, SimplexParameters>) Curve
     effect_curve(const Parameters&, const Params& params, const Reach& reach) {
-  if constexpr (E::site == Site::command) {
+  if constexpr (E::site == Site::command && std::same_as<Parameters, ElectromechanicalParameters>) {
+    return signal_curve<E>(params, reach.input, "setpoint", "");
+  } else if constexpr (E::site == Site::command) {
     return signal_curve<E>(params, reach.input, "input of the drive", "force");
   } else if constexpr (E::site == Site::drive) {
     return signal_curve<E>(params, reach.drive, "motor command", "command");

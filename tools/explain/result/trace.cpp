@@ -249,7 +249,7 @@ std::vector<Trace> reconstruct_with(const Dataset& data, const ImposedMotionPara
 /// What acts in a joint does not follow from the motion of other places without the modes.
 std::vector<Trace> reconstruct_with(const Dataset&, const ModalParameters&) { return {}; }
 
-/// Motor and load need not be measured both.
+/// Motor and load need not both be measured.
 std::vector<Trace> reconstruct_with(const Dataset&, const ElectromechanicalParameters&) { return {}; }
 
 }  // namespace

@@ -210,6 +210,17 @@ void require_units_of_one_motion(const Record& record) {
   }
 }
 
+void require_same_unit(const Record& record, const std::string& channel, const std::string& other) {
+  const Channel* one = record.find(channel);
+  const Channel* two = record.find(other);
+  if (one != nullptr && two != nullptr && one->unit != two->unit && one->unit != "1" && two->unit != "1") {
+    throw FileError(
+        fmt::format("{}:1: {} has the unit {} and {} the unit {}: the model compares their numbers; convert one, "
+                    "for example with hotfire import",
+                    record.path.string(), channel, one->unit, other, two->unit));
+  }
+}
+
 void require_channel(const Record& record, const std::string& channel, const std::string& reason) {
   if (record.find(channel) != nullptr) {
     return;

@@ -52,6 +52,10 @@ Record load_record(const std::filesystem::path& path, const std::vector<DropOut>
 /// is compared in the numbers that the record has. Throws FileError.
 void require_units_of_one_motion(const Record& record);
 
+/// Refuses a record in which two channels have different units: the model compares their numbers. A unit of 1 may be any.
+/// Throws FileError.
+void require_same_unit(const Record& record, const std::string& channel, const std::string& other);
+
 /// Throws FileError unless the record has the channel; the message lists the channels it has and what the model needs.
 void require_channel(const Record& record, const std::string& channel, const std::string& reason);
 

@@ -18,7 +18,7 @@ Values = npt.NDArray[np.float64]
 Given = Union[npt.ArrayLike, "tuple[npt.ArrayLike, str]"]
 
 _SI = {"command": "rad", "current": "A", "piston": "m", "engine": "rad", "load_pressure": "Pa", "torque": "N.m",
-       "thrust": "N", "string1": "m", "string2": "m", "string3": "m", "string4": "m"}
+       "thrust": "N", "motor_position": "rad", "motor_velocity": "rad/s", "string1": "m", "string2": "m", "string3": "m", "string4": "m"}
 
 
 def _unit_of(name: str) -> str:

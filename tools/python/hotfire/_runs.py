@@ -111,6 +111,9 @@ def gradients(
         "piston": "m",
         "engine": "rad",
         "load_pressure": "Pa",
+        "motor_position": "rad",
+        "motor_velocity": "rad/s",
+        "current": "A",
         **{f"string{number}": "m" for number in range(1, 5)},
         # Of a mass the record decides the unit, as for the parameters.
         "position": "position",
