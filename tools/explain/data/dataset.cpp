@@ -14,6 +14,7 @@
 #include "tools/explain/data/zeros.hpp"
 #include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
+#include "tools/simulate/run.hpp"
 
 namespace hotfire::explain {
 
