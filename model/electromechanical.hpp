@@ -169,7 +169,7 @@ class Electromechanical {
   const Parameters& parameters() const noexcept { return parameters_; }
   double step_size() const noexcept { return h_; }
 
-  /// What a step makes of the continuous states without inputs.
+  /// Continuous states after a step without inputs.
   const Eigen::Matrix<S, 6, 6>& transition() const noexcept { return hold_.transition; }
 
   /// At rest under a constant setpoint: where the position loop, or the spring to ground, holds the load; without either at
@@ -201,11 +201,18 @@ class Electromechanical {
   }
 
   /// At rest under a constant setpoint with the load at `position`: set-up only. A controller with an integral holds it,
-  /// without one the friction does. The transmission is loaded by what holds the load.
-  State resting(const S& setpoint, const S& position) const {
+  /// without one the friction does. The transmission is loaded by what holds the load. Where that leaves the motor free in a
+  /// play it is at `motor` [rad], if that is given.
+  State resting(const S& setpoint, const S& position, const S* motor = nullptr) const {
     State state;
     set_command(state, setpoint);
     const S load = put_at(state, position);
+    if (motor != nullptr && !parameters_.transmission.is_rigid()) {
+      const S own = *motor / parameters_.transmission.ratio;
+      if (!(std::abs(value_of(transmitted(state, S(own - position), position, Keep::no).deflection)) > 0.0)) {
+        state.y(kMotor) = own;
+      }
+    }
     const Controller<S>& controller = parameters_.controller;
     const S proportional = controller.proportional_gain * error(state, state.y);
     if (value_of(controller.integral_gain) > 0.0) {
@@ -243,7 +250,6 @@ class Electromechanical {
 
   static const std::array<S, 5>& measured(const State& state) noexcept { return state.measured; }
 
-  /// Position and speed of the load.
   const S& load_position(const State& state) const noexcept { return state.y(load_); }
   const S& load_rate(const State& state) const noexcept { return state.y(load_ + 1); }
   /// Of the transmission, counted at the load.
@@ -306,17 +312,19 @@ class Electromechanical {
     if (acting_.template any<Site::transmission>()) {
       state.y(kMotor) =
           position + root_of_decreasing<S>(twist, 1e-6 * std::abs(value_of(twist)) + 1e-9, [&](const S& whole) {
-            Spring<S> spring = spring_of(whole, position, state.clock.at(h_));
-            pass_through<Site::transmission>(effects, acting_, state.effects, spring, Keep::no);
-            return S(twist - spring.deflection);
+            return S(twist - transmitted(state, whole, position, Keep::no).deflection);
           });
     }
     return load;
   }
 
-  Spring<S> spring_of(const S& deflection, const S& position, const Precise<S>& time) const noexcept {
+  /// The spring of the transmission after its effects.
+  Spring<S> transmitted(State& state, const S& deflection, const S& position, Keep keep) const noexcept {
     const S& stiffness = parameters_.transmission.stiffness;
-    return {deflection, position, S{1.0}, S{1.0}, stiffness, stiffness, stiffness, h_, time};
+    const Precise<S> time = state.clock.at(h_, 0.5);
+    Spring<S> spring{deflection, position, S{1.0}, S{1.0}, stiffness, stiffness, stiffness, h_, time};
+    pass_through<Site::transmission>(parameters_.effects, acting_, state.effects, spring, keep);
+    return spring;
   }
 
   /// The motor command beyond the linear one over a step: r(n) = D(asked - relief n) - (asked - relief n) - n = 0 by one
@@ -360,11 +368,9 @@ class Electromechanical {
     state.inputs(kMotorForce) = sum_over<Site::motor>(effects, acting_, state.effects, motor, keep);
 
     if (acting_.template any<Site::transmission>()) {
-      const S& stiffness = parameters_.transmission.stiffness;
       const S deflection = mean(kMotor) - mean(kLoad);
-      Spring<S> spring = spring_of(deflection, mean(kLoad), time);
-      pass_through<Site::transmission>(effects, acting_, state.effects, spring, keep);
-      state.inputs(kSpringForce) = stiffness * (spring.deflection - deflection);
+      const Spring<S> spring = transmitted(state, deflection, mean(kLoad), keep);
+      state.inputs(kSpringForce) = parameters_.transmission.stiffness * (spring.deflection - deflection);
     }
 
     const S load_rate = (end(load_) - start(load_)) / h_;

@@ -160,7 +160,8 @@ Case electromechanical(std::size_t rows) {
             kHead +
                 "\"electromechanical\"\n[controller]\nproportional_gain = 200\nintegral_gain = 500\nposition_feedback = 1\n"
                 "velocity_feedback = 0.02\nlimit = 24\n[motor]\ntorque_constant = 0.1\ninertia = 1e-4\nresistance = 1\n"
-                "inductance = 1e-3\n[transmission]\nratio = 100\nstiffness = 2e4\ndamping = 5\n[mass]\ninertia = 2\n"
+                "inductance = 1e-3\n[transmission]\nratio = 100\nstiffness = 2e4\ndamping = 5\n[mass]\ninertia = "
+                "2\nstiffness = 300\n"
                 "[effects.backlash]\nhalf_width = 1e-3\n[effects.motor_friction]\nlaw = \"lugre\"\ncoulomb_forward = 4.0\n"
                 "coulomb_backward = 3.0\n",
             1e-3,

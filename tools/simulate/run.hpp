@@ -29,7 +29,7 @@ inline bool has_position_loop(const model::Electromechanical<double>::Parameters
 }
 
 /// An electromechanical actuator at rest under its first setpoint: where its load, or its motor, is measured at the first
-/// row, and otherwise where its linear part rests.
+/// row, and otherwise where it rests under its setpoint.
 template <class S>
 typename model::Electromechanical<S>::State at_first_row(const model::Electromechanical<S>& plant, double setpoint,
                                                          std::span<const double> position,
@@ -37,7 +37,8 @@ typename model::Electromechanical<S>::State at_first_row(const model::Electromec
   const S first = !position.empty()         ? S(position.front())
                   : !motor_position.empty() ? S(motor_position.front() / plant.parameters().transmission.ratio)
                                             : plant.resting_position(S(setpoint));
-  return plant.resting(S(setpoint), first);
+  const S motor(motor_position.empty() ? 0.0 : motor_position.front());
+  return plant.resting(S(setpoint), first, motor_position.empty() ? nullptr : &motor);
 }
 
 /// Steps a plant through `rows` rows, `steps` plant steps a row by `advance(row, step)`, and hands every row's readings to

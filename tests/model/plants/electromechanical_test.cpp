@@ -253,6 +253,21 @@ TEST(Electromechanical, RestsWhereItIsSetUp) {
   }
 }
 
+// Nothing but the record says where in its play a motor rests.
+TEST(Electromechanical, MotorStartsWhereItIsInItsPlay) {
+  auto parameters = servo();
+  ParamsOf<model::BacklashAt<model::Site::transmission>, double> play;
+  play.half_width = 1e-3;
+  activate<model::BacklashAt<model::Site::transmission>, Actuator>(parameters, play);
+  const Actuator plant(parameters, 5e-4);
+  const double inside = 0.04;
+  DOUBLES_EQUAL(inside, Actuator::measured(plant.resting(0.0, 0.0, &inside))[Actuator::kMotorPosition], 1e-15);
+  // Beyond it the load decides: 300 N/m at 0.1 m on 2e4 N/m.
+  const double beyond = 20.0;
+  DOUBLES_EQUAL(100.0 * (0.1 + 1e-3 + 0.0015),
+                Actuator::measured(plant.resting(0.1, 0.1, &beyond))[Actuator::kMotorPosition], 1e-6);
+}
+
 TEST(Electromechanical, StartsAtZeroWhereNothingHoldsIt) {
   auto parameters = servo();
   parameters.controller = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
