@@ -300,7 +300,7 @@ class Electromechanical {
   S put_at(State& state, const S& position) const {
     const auto& effects = parameters_.effects;
     Motion<S> still = motion_of(position, S{0.0}, load_compliance_, state.clock.at(h_));
-    const S load =
+    S load =
         parameters_.mass.stiffness * position + sum_over<Site::mass_force>(effects, acting_, state.effects, still, Keep::no);
     state.effects.outputs.fill(S{0.0});
     state.y(load_) = position;

@@ -318,7 +318,7 @@ S sum_at_end(const EffectParameters<S, List>& parameters, const ActingEffects<Li
   body.velocity += body.h * (acceleration - body.compliance * last);
   body.free_velocity = body.velocity;
   body.compliance *= body.h;
-  const S total = detail::sum_over_acting<site, S, List>(parameters, acting, states, body, Keep::no);
+  S total = detail::sum_over_acting<site, S, List>(parameters, acting, states, body, Keep::no);
   states.outputs = outputs;
   return total;
 }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "model/checks.hpp"
@@ -21,17 +23,20 @@ namespace hotfire::plant {
 inline constexpr double kLargest = std::numeric_limits<double>::max();
 
 inline std::string_view meaning_of_channel(std::string_view channel) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kMeanings{
+      {{"piston", "piston position as its sensor reads it"},
+       {"engine", "engine angle as its sensor reads it"},
+       {"load_pressure", "pressure across the piston as its sensor reads it"},
+       {"position", "position as its sensor reads it"},
+       {"velocity", "velocity as its sensor reads it"},
+       {"acceleration", "acceleration as its sensor reads it"},
+       {"motor_position", "angle of the motor as its sensor reads it"},
+       {"motor_velocity", "speed of the motor as its sensor reads it"},
+       {"current", "current of the motor as its sensor reads it"},
+       {"force", "force that the motion takes, of the period before, as its sensor reads it"}}};
   const std::string_view kind = channel.substr(0, channel.find_last_not_of("23") + 1);
-  return kind == "piston"           ? "piston position as its sensor reads it"
-         : kind == "engine"         ? "engine angle as its sensor reads it"
-         : kind == "position"       ? "position as its sensor reads it"
-         : kind == "velocity"       ? "velocity as its sensor reads it"
-         : kind == "acceleration"   ? "acceleration as its sensor reads it"
-         : kind == "motor_position" ? "angle of the motor as its sensor reads it"
-         : kind == "motor_velocity" ? "speed of the motor as its sensor reads it"
-         : kind == "current"        ? "current of the motor as its sensor reads it"
-         : kind == "force"          ? "force that the motion takes, of the period before, as its sensor reads it"
-                                    : "pressure across the piston as its sensor reads it";
+  const auto found = std::ranges::find(kMeanings, kind, [](const auto& meaning) { return meaning.first; });
+  return found != kMeanings.end() ? found->second : std::string_view();
 }
 
 /// What both models have in common for `PlantOf`: their keys, channels and readings.
