@@ -4,6 +4,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include "tests/explain/latent/missing_effect.hpp"
+#include "tools/explain/search/refiner.hpp"
 #include "tools/explain/terms/assessed.hpp"
 
 namespace {
@@ -148,7 +149,7 @@ std::optional<Screened> start_for(double truth, double proposed) {
   const explain::Evaluator evaluator(data, explain::Resolution::coarse);
   const explain::Fitted around = about_declared();
   return explain::best_start(evaluator, around, gain_of_rate(proposed), explain::Scales{},
-                             explain::left_by(evaluator, around, 2), data.experiments.front().period, 2);
+                             explain::left_by(evaluator, around, 2), 2);
 }
 
 }  // namespace
@@ -175,4 +176,40 @@ TEST(TermProposals, TheUnitsOfATermAreThoseOfTheWholeHoweverLittleOfItAFitStarts
   CHECK_EQUAL(whole->fitted.free[static_cast<std::size_t>(size)].unit_size,
               part->fitted.free[static_cast<std::size_t>(size)].unit_size);
   DOUBLES_EQUAL(0.06 * whole->fitted.u.back(), part->fitted.u.back(), 1e-12);
+}
+
+// From another period a fit of the coefficients alone ends at half of the hold and more delay.
+TEST(TermProposals, AHeldSignalInsideTheLoopIsFittedWithItsPeriodAndTheInstantOfItsSamples) {
+  using ValveCommandTerm = model::Term<Site::valve_command>;
+  constexpr double kRow = 2e-3;
+  const explain::Dataset data = data_of(with_term<ValveCommandTerm>([&](auto& term) {
+    term.option = static_cast<int>(Memory::hold);
+    term.argument = static_cast<int>(Argument::valve_command);
+    term.time = 7.0 * kRow;
+    term.phase = 1.02 / 7.0 * 2.0 * std::numbers::pi;
+    term.gain = 1.0;
+    term.direct = -1.0;
+  }));
+  explain::ScoredForm proposed;
+  proposed.form.site = Site::valve_command;
+  proposed.form.argument = Argument::valve_command;
+  proposed.form.memory.kind = Memory::hold;
+  proposed.form.memory.time = 4.0 * kRow;
+  proposed.form.memory.phase = 0.92 / 4.0 * 2.0 * std::numbers::pi;
+  proposed.score.coefficients = Eigen::Vector2d(0.5, -0.5);
+  const explain::Fitted around = about_declared();
+  proposed.score.move = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(around.free.size()));
+  const explain::Evaluator evaluator(data, explain::Resolution::coarse);
+  const explain::Scales scales;
+  const explain::Watch watch;
+  const explain::Refiner refiner(data, evaluator, evaluator, evaluator, scales, 2, watch);
+
+  const Screened held = refiner.with_samples(*explain::start_of(around, proposed, scales), around.u);
+  const auto parameters = held.fitted.parameters();
+  const auto& term = std::get<ValveCommandTerm::Params<double>>(std::get<SimplexParameters>(parameters).effects.values);
+  DOUBLES_EQUAL(7.0 * kRow, term.time, 1e-9);
+  // Samples are taken at a step: those of one row are the same ones.
+  DOUBLES_EQUAL(1.0, 7.0 * term.phase / (2.0 * std::numbers::pi), 0.1);
+  DOUBLES_EQUAL(1.0, term.gain, 0.02);
+  DOUBLES_EQUAL(-1.0, term.direct, 0.02);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,54 @@ bool are_alike(const Evaluator& evaluator, const Eigen::VectorXd& left, const Ei
     }
   }
   return true;
+}
+
+/// How many rows the period of a hold may be off from where the regression of every second row has it.
+constexpr int kPeriodOff = 4;
+/// How many rows the samples may be off then.
+constexpr int kSamplesOff = 2;
+/// Where beside a row they are tried: a logger that is in step with them reads before or after the sample.
+constexpr double kBesideRow = 0.02;
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+/// Visits the parameters of the grammar's term that a candidate is.
+template <class Visit>
+void visit_term(ModelParameters& parameters, const Candidate& candidate, Visit&& visit) {
+  visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
+    if constexpr (requires { E::is_term; }) {
+      if (index == candidate.effect) {
+        visit(values);
+      }
+    }
+  });
+}
+
+/// When a held term samples, in rows.
+struct Samples {
+  double rows = 2.0;    ///< of a period
+  double passed = 0.0;  ///< of it at the start of a record
+};
+
+Samples samples_of(Screened& held, double row) {
+  Samples samples;
+  visit_term(held.fitted.base, held.candidate, [&](const auto& term) {
+    samples.rows = std::max(2.0, std::round(term.time / row));
+    samples.passed = samples.rows * term.phase / kTurn;
+  });
+  return samples;
+}
+
+void set_samples(Screened& held, const Samples& samples, double row) {
+  visit_term(held.fitted.base, held.candidate, [&](auto& term) {
+    term.time = samples.rows * row;
+    term.phase = std::remainder(kTurn * samples.passed / samples.rows, kTurn);
+  });
+}
+
+void keep_better(Screened tried, Screened& best) {
+  if (tried.criterion < best.criterion) {
+    best = std::move(tried);
+  }
 }
 
 }  // namespace
@@ -206,6 +255,50 @@ Assessed Refiner::in_place_of(const Fitted& model, const Candidate& candidate, c
   }
   const Assessed near = ranked(start, kRanking);
   return near.good() ? settled(near.model) : near;
+}
+
+Screened Refiner::shortly(Screened proposal, std::span<const double> frozen) const {
+  Assessed near = of_screened(proposal.fitted, frozen, kGlance);
+  if (near.good()) {
+    proposal.criterion = std::min(proposal.criterion, Goodness::combined(near.goodness.fitted));
+    proposal.fitted = std::move(near.model);
+  }
+  return proposal;
+}
+
+Screened Refiner::with_samples(Screened held, std::span<const double> frozen) const {
+  const double row = std::ranges::min(data_.experiments, {}, &Experiment::period).period;
+  const auto moved_to = [&](Screened moved, const Samples& samples) {
+    set_samples(moved, samples, row);
+    moved.criterion = left_by(coarse_, moved.fitted, threads_);
+    return moved;
+  };
+  const Samples proposed = samples_of(held, row);
+  Screened best = held;
+  best.criterion = left_by(coarse_, held.fitted, threads_);
+  for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
+    const double rows = proposed.rows + longer;
+    if (rows < 2.0) {
+      continue;
+    }
+    const double passed = proposed.passed * rows / proposed.rows;
+    Screened of_period = shortly(moved_to(held, {rows, passed}), frozen);
+    const Screened fitted = of_period;
+    for (int early = -kSamplesOff; early <= kSamplesOff; ++early) {
+      for (const double part : {-kBesideRow, kBesideRow, 0.5}) {
+        keep_better(moved_to(fitted, {rows, std::round(passed) + early + part}), of_period);
+      }
+    }
+    keep_better(std::move(of_period), best);
+  }
+  const Screened of_best_period = best;
+  const Samples about = samples_of(best, row);
+  for (int early = -kSamplesOff; early <= kSamplesOff && !watch_.interrupted(); ++early) {
+    for (const double part : {-kBesideRow, kBesideRow}) {
+      keep_better(shortly(moved_to(of_best_period, {about.rows, std::round(about.passed) + early + part}), frozen), best);
+    }
+  }
+  return best;
 }
 
 Assessed Refiner::over_ripples(Assessed fitted, double height) const {

@@ -35,6 +35,12 @@ class Refiner {
   /// it too far: where another place on that way, or a table that is nothing yet, leaves less than half as much, the fit
   /// starts at the least of them.
   Assessed of_screened(const Fitted& screened, std::span<const double> frozen, const Effort& effort = kRanking) const;
+  /// A proposal after a short fit of everything that is free, if that leaves less.
+  Screened shortly(Screened proposal, std::span<const double> frozen) const;
+  /// A held term by the period and the phase of its samples that leave least. No fit moves them, since they have no
+  /// derivative. The periods are whole rows, because the logger of a sampled signal is in step with it. A hold of too small
+  /// a share asks for samples that are later: periods and phases are compared after a short fit of each.
+  Screened with_samples(Screened held, std::span<const double> frozen) const;
   /// Fitted under fine steps, as the report says it.
   Assessed settled(const Fitted& fitted, const Effort& effort = kFinal) const {
     return refined(fine_, fine_, threads_, fitted, effort);

@@ -29,10 +29,6 @@ constexpr double kReach = 100.0;
 constexpr std::array kSharesOfTerm{1.0, 0.5, 0.25, 0.12, 0.06, 0.03};
 /// Forms of a place that are tried at the others.
 constexpr std::ptrdiff_t kExchanged = 2;
-/// How many rows the samples of a hold may be off from where the regression of thinned rows has them.
-constexpr int kRowsOff = 2;
-/// Where in a row they are tried: a logger that is in step with them reads before or after the sample.
-constexpr std::array kPartsOfRow{-0.02, 0.02, 0.5};
 
 /// The effect of the model that is a term at the form's site.
 std::optional<Candidate> candidate_of(const Form& form) {
@@ -133,43 +129,6 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
   return free;
 }
 
-/// Moves the samples of a held term to where it leaves least: to a period of whole rows, because the logger of a sampled
-/// signal is in step with it, then to their phase. No fit moves them, since they have no derivative.
-void match_samples(const Evaluator& evaluator, const model::MemoryParameters<double>& proposed, double row, unsigned threads,
-                   Screened& start) {
-  constexpr double kPeriodPhase = 2.0 * std::numbers::pi;
-  const auto leaves_less = [&](double rows, double passed) {
-    Screened moved = start;
-    visit_effects(moved.fitted.base, [&]<class E>(std::size_t index, auto& values) {
-      if constexpr (requires { E::is_term; }) {
-        if (index == moved.candidate.effect) {
-          values.time = rows * row;
-          values.phase = std::remainder(kPeriodPhase * passed / rows, kPeriodPhase);
-        }
-      }
-    });
-    moved.criterion = left_by(evaluator, moved.fitted, threads);
-    const bool less = moved.criterion < start.criterion;
-    if (less) {
-      start = std::move(moved);
-    }
-    return less;
-  };
-  const double turns = proposed.phase / kPeriodPhase;
-  double rows = std::max(2.0, std::round(proposed.time / row));
-  const double about = rows;
-  for (int longer = -kRowsOff; longer <= kRowsOff; ++longer) {
-    const double tried = std::max(2.0, about + longer);
-    rows = leaves_less(tried, tried * turns) ? tried : rows;
-  }
-  const double passed = std::round(rows * turns);
-  for (int early = -kRowsOff; early <= kRowsOff; ++early) {
-    for (const double part : kPartsOfRow) {
-      leaves_less(rows, passed + early + part);
-    }
-  }
-}
-
 /// The forms of one place, with the regression that found them.
 struct FormsOfPlace {
   LatentPlace where;
@@ -257,7 +216,7 @@ std::optional<Screened> start_of(const Fitted& around, const ScoredForm& propose
 }
 
 std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& around, const ScoredForm& proposed,
-                                   const Scales& scales, double without, double row, unsigned threads) {
+                                   const Scales& scales, double without, unsigned threads) {
   const Stopwatch stopwatch;
   std::optional<Screened> best;
   for (const double share : kSharesOfTerm) {
@@ -273,9 +232,6 @@ std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& aro
     }
   }
   if (best) {
-    if (proposed.form.memory.kind == model::Memory::hold) {
-      match_samples(evaluator, proposed.form.memory, row, threads, *best);
-    }
     best->seconds = stopwatch.seconds();
   }
   return best;

@@ -21,9 +21,8 @@ std::optional<Screened> start_of(const Fitted& around, const ScoredForm& propose
 
 /// The start with the share of a proposed term that leaves least when it is simulated, which is its criterion. None if no
 /// share leaves less than `without`. The regression takes the motion as given, and the term changes it: at its full size it
-/// may make the axis run away, where a share of it leads the fit to the law. `row` is the sampling period of the records
-/// [s]: a signal that is held has a whole number of rows.
+/// may make the axis run away, where a share of it leads the fit to the law.
 std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& around, const ScoredForm& proposed,
-                                   const Scales& scales, double without, double row, unsigned threads);
+                                   const Scales& scales, double without, unsigned threads);
 
 }  // namespace hotfire::explain

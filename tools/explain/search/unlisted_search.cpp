@@ -72,13 +72,12 @@ void order_by_site(std::vector<Screened>& proposals) {
 std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& evaluator, const Fitted& around,
                                     const std::vector<ScoredForm>& proposals) {
   const double without = left_by(evaluator, around, task.threads);
-  const double row = std::ranges::min(task.data.experiments, {}, &Experiment::period).period;
   std::vector<Screened> starts;
   for (const ScoredForm& proposed : proposals) {
     if (task.watch.interrupted()) {
       break;
     }
-    if (auto start = best_start(evaluator, around, proposed, task.scales, without, row, task.threads)) {
+    if (auto start = best_start(evaluator, around, proposed, task.scales, without, task.threads)) {
       starts.push_back(std::move(*start));
     }
   }
@@ -88,22 +87,21 @@ std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& e
 
 /// A short fit of the best forms of every site: where the effect is large, what a form leaves before any fit says little of
 /// what it can explain.
-void fit_shortly(const Refiner& refiner, std::span<const double> frozen, std::vector<Screened>& proposals,
-                 const Watch& watch) {
+void fit_best_shortly(const UnlistedTask& task, std::span<const double> frozen, std::vector<Screened>& proposals) {
   std::map<std::string, std::size_t> of_site;
   for (Screened& proposal : proposals) {
-    if (of_site[proposal.candidate.site]++ >= kFittedOfSite || watch.interrupted()) {
+    if (of_site[proposal.candidate.site]++ >= kFittedOfSite || task.watch.interrupted()) {
       continue;
     }
-    watch.progress(
+    task.watch.progress(
         {Work::unlisted, fmt::format("unlisted: a short fit of {}", label(proposal.candidate)), SharesOfWork::kProposed});
     const Stopwatch stopwatch;
-    Assessed near = refiner.of_screened(proposal.fitted, frozen, kGlance);
-    proposal.seconds += stopwatch.seconds();
-    if (near.good()) {
-      proposal.criterion = std::min(proposal.criterion, Goodness::combined(near.goodness.fitted));
-      proposal.fitted = std::move(near.model);
+    const double before = proposal.seconds;
+    if (proposal.candidate.option == static_cast<int>(model::Memory::hold)) {
+      proposal = task.refiner.with_samples(std::move(proposal), frozen);
     }
+    proposal = task.refiner.shortly(std::move(proposal), frozen);
+    proposal.seconds = before + stopwatch.seconds();
   }
   order_by_site(proposals);
 }
@@ -151,7 +149,17 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
       if (finalist.good()) {
         compare_and_say(trial, finalist, task.beside);
         left = excess_over_noise(task.data, finalist.prediction);
-        if (const std::string against = objection(task, finalist, s.candidate); !against.empty()) {
+        std::string against = objection(task, finalist, s.candidate);
+        // A fit that ends early leaves some of what it would explain in the channel that it counts least.
+        if (!against.empty() && trial.held_out_ratio < policy().clearly_less && !task.watch.interrupted()) {
+          if (Assessed settled = task.refiner.settled(finalist.model); settled.good()) {
+            finalist = std::move(settled);
+            compare_and_say(trial, finalist, task.beside);
+            left = excess_over_noise(task.data, finalist.prediction);
+            against = objection(task, finalist, s.candidate);
+          }
+        }
+        if (!against.empty()) {
           trial.reason += against;
           const std::size_t replacement = may_replace > 0 ? 1 : 0;
           to_fit += replacement;
@@ -172,7 +180,7 @@ void fit_terms_of_grammar(const UnlistedTask& task, const Fitted& around, const 
                           UnlistedSearch& result) {
   auto proposals = by_simulation(task, evaluator, around,
                                  propose_terms(evaluator.data(), around, task.located, task.threads, task.watch));
-  fit_shortly(task.refiner, around.u, proposals, task.watch);
+  fit_best_shortly(task, around.u, proposals);
   fit_finalists(task, around.u, proposals, terms_to_fit(proposals), kCheck, result);
 }
 

@@ -96,19 +96,13 @@ auto under_torque(const model::Simplex<S>& model, const S& torque) {
 void step_axis(const model::Simplex<double>& model, model::Simplex<double>::State& state, const double& command,
                const double& torque) noexcept;
 
-/// Advances a mass by one step with a force that is held.
-void step_mass(const model::Direct<double>& model, model::Direct<double>::State& state, const double& force) noexcept;
-
-/// Advances a structure in modal coordinates by one step with a force that is held.
-void step_modes(const model::Modal<double>& model, model::Modal<double>::State& state, const double& force) noexcept;
-
-/// Advances an electromechanical actuator by one step with a setpoint that is held.
-void step_motor(const model::Electromechanical<double>& model, model::Electromechanical<double>::State& state,
-                const double& setpoint) noexcept;
-
-/// Moves a body by one step that ends at a position.
-void move_body(const model::ImposedMotion<double>& model, model::ImposedMotion<double>::State& state,
-               const double& position) noexcept;
+/// Advances a plant by one step with its input: a force or a setpoint that is held, or the position at the end of the step.
+void advance(const model::Direct<double>& model, model::Direct<double>::State& state, const double& input) noexcept;
+void advance(const model::Modal<double>& model, model::Modal<double>::State& state, const double& input) noexcept;
+void advance(const model::Electromechanical<double>& model, model::Electromechanical<double>::State& state,
+             const double& input) noexcept;
+void advance(const model::ImposedMotion<double>& model, model::ImposedMotion<double>::State& state,
+             const double& input) noexcept;
 
 /// One hydraulic axis. Inputs: command [rad], torque on the engine [N m].
 template <class S>
@@ -142,16 +136,39 @@ struct SimplexAdapter : ModelAdapter<S, model::Simplex<S>> {
   }
 };
 
+/// What the topologies with one input have in common.
+template <class S, class PlantModel>
+struct OneInputAdapter : ModelAdapter<S, PlantModel> {
+  using typename ModelAdapter<S, PlantModel>::Parameters;
+  using typename ModelAdapter<S, PlantModel>::State;
+
+  static int steps(const Parameters& parameters, double period) {
+    return model::steps_per_period<PlantModel>(parameters, period);
+  }
+
+  static std::vector<Variable> further_parameters() { return {}; }
+
+  static void step(const PlantModel& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
+    if constexpr (std::same_as<S, double>) {
+      advance(model, state.plant, inputs[0]);
+    } else {
+      model.step(state.plant, inputs[0]);
+    }
+  }
+
+  /// Puts the plant into a state at a time [s].
+  static void start_in(State& state, const typename PlantModel::State& plant, double time) {
+    state.plant = plant;
+    state.plant.clock = {model::Precise<S>(time)};
+  }
+};
+
 /// A mass that a force drives. Input: force, in the record's own units.
 template <class S>
-struct DirectAdapter : ModelAdapter<S, model::Direct<S>> {
-  using typename ModelAdapter<S, model::Direct<S>>::Model;
-  using typename ModelAdapter<S, model::Direct<S>>::Parameters;
-  using typename ModelAdapter<S, model::Direct<S>>::State;
-
-  static int steps(const typename Model::Parameters& parameters, double period) {
-    return model::steps_per_period<Model>(parameters, period);
-  }
+struct DirectAdapter : OneInputAdapter<S, model::Direct<S>> {
+  using Model = model::Direct<S>;
+  using typename OneInputAdapter<S, model::Direct<S>>::Parameters;
+  using typename OneInputAdapter<S, model::Direct<S>>::State;
 
   static std::vector<Variable> inputs(const Parameters&) {
     return {{"force", "", "force on the mass, held over a period", 0.0, -kLargest, kLargest}};
@@ -164,112 +181,58 @@ struct DirectAdapter : ModelAdapter<S, model::Direct<S>> {
 
   static void settle(const Model& model, State& state, std::span<const S>, const Parameters&, std::span<const S> further,
                      double time) {
-    state.plant = model.moving(further[0], further[1]);
-    state.plant.clock = {model::Precise<S>(time)};
-  }
-
-  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
-    if constexpr (std::same_as<S, double>) {
-      step_mass(model, state.plant, inputs[0]);
-    } else {
-      model.step(state.plant, inputs[0]);
-    }
+    OneInputAdapter<S, Model>::start_in(state, model.moving(further[0], further[1]), time);
   }
 };
 
 /// A structure in modal coordinates. Input: force, in the record's own units.
 template <class S>
-struct ModalAdapter : ModelAdapter<S, model::Modal<S>> {
-  using typename ModelAdapter<S, model::Modal<S>>::Model;
-  using typename ModelAdapter<S, model::Modal<S>>::Parameters;
-  using typename ModelAdapter<S, model::Modal<S>>::State;
-
-  static int steps(const typename Model::Parameters& parameters, double period) {
-    return model::steps_per_period<Model>(parameters, period);
-  }
+struct ModalAdapter : OneInputAdapter<S, model::Modal<S>> {
+  using Model = model::Modal<S>;
+  using typename OneInputAdapter<S, model::Modal<S>>::Parameters;
+  using typename OneInputAdapter<S, model::Modal<S>>::State;
 
   static std::vector<Variable> inputs(const Parameters&) {
     return {{"force", "", "force on the structure, held over a period", 0.0, -kLargest, kLargest}};
   }
 
-  static std::vector<Variable> further_parameters() { return {}; }
-
   static void settle(const Model& model, State& state, std::span<const S>, const Parameters&, std::span<const S>,
                      double time) {
-    state.plant = model.at_rest(S(0.0));
-    state.plant.clock = {model::Precise<S>(time)};
-  }
-
-  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
-    if constexpr (std::same_as<S, double>) {
-      step_modes(model, state.plant, inputs[0]);
-    } else {
-      model.step(state.plant, inputs[0]);
-    }
+    OneInputAdapter<S, Model>::start_in(state, model.at_rest(S(0.0)), time);
   }
 };
 
 /// An electromechanical actuator. Input: setpoint, in the record's own units.
 template <class S>
-struct ElectromechanicalAdapter : ModelAdapter<S, model::Electromechanical<S>> {
-  using typename ModelAdapter<S, model::Electromechanical<S>>::Model;
-  using typename ModelAdapter<S, model::Electromechanical<S>>::Parameters;
-  using typename ModelAdapter<S, model::Electromechanical<S>>::State;
-
-  static int steps(const typename Model::Parameters& parameters, double period) {
-    return model::steps_per_period<Model>(parameters, period);
-  }
+struct ElectromechanicalAdapter : OneInputAdapter<S, model::Electromechanical<S>> {
+  using Model = model::Electromechanical<S>;
+  using typename OneInputAdapter<S, model::Electromechanical<S>>::Parameters;
+  using typename OneInputAdapter<S, model::Electromechanical<S>>::State;
 
   static std::vector<Variable> inputs(const Parameters&) {
     return {{"setpoint", "", "setpoint of the controller, held over a period", 0.0, -kLargest, kLargest}};
   }
 
-  static std::vector<Variable> further_parameters() { return {}; }
-
   static void settle(const Model& model, State& state, std::span<const S> inputs, const Parameters&, std::span<const S>,
                      double time) {
-    state.plant = model.steady(inputs[0]);
-    state.plant.clock = {model::Precise<S>(time)};
-  }
-
-  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
-    if constexpr (std::same_as<S, double>) {
-      step_motor(model, state.plant, inputs[0]);
-    } else {
-      model.step(state.plant, inputs[0]);
-    }
+    OneInputAdapter<S, Model>::start_in(state, model.steady(inputs[0]), time);
   }
 };
 
 /// A body that is moved along a path. Input: position at the end of a period, in the record's own units.
 template <class S>
-struct ImposedMotionAdapter : ModelAdapter<S, model::ImposedMotion<S>> {
-  using typename ModelAdapter<S, model::ImposedMotion<S>>::Model;
-  using typename ModelAdapter<S, model::ImposedMotion<S>>::Parameters;
-  using typename ModelAdapter<S, model::ImposedMotion<S>>::State;
-
-  static int steps(const typename Model::Parameters& parameters, double period) {
-    return model::steps_per_period<Model>(parameters, period);
-  }
+struct ImposedMotionAdapter : OneInputAdapter<S, model::ImposedMotion<S>> {
+  using Model = model::ImposedMotion<S>;
+  using typename OneInputAdapter<S, model::ImposedMotion<S>>::Parameters;
+  using typename OneInputAdapter<S, model::ImposedMotion<S>>::State;
 
   static std::vector<Variable> inputs(const Parameters&) {
     return {{"position", "", "position of the body at the end of a period", 0.0, -kLargest, kLargest}};
   }
 
-  static std::vector<Variable> further_parameters() { return {}; }
-
   static void settle(const Model& model, State& state, std::span<const S> inputs, const Parameters&, std::span<const S>,
                      double time) {
-    state.plant = model.at_rest(inputs[0]);
-    state.plant.clock = {model::Precise<S>(time)};
-  }
-
-  static void step(const Model& model, State& state, std::span<const S> inputs, const Parameters&) noexcept {
-    if constexpr (std::same_as<S, double>) {
-      move_body(model, state.plant, inputs[0]);
-    } else {
-      model.step(state.plant, inputs[0]);
-    }
+    OneInputAdapter<S, Model>::start_in(state, model.at_rest(inputs[0]), time);
   }
 };
 

@@ -5,9 +5,9 @@
 
 namespace hotfire::plant {
 
-HOTFIRE_FOR_EACH_PROCESSOR void step_mass(const model::Direct<double>& model, model::Direct<double>::State& state,
-                                          const double& force) noexcept {
-  model.step(state, force);
+HOTFIRE_FOR_EACH_PROCESSOR void advance(const model::Direct<double>& model, model::Direct<double>::State& state,
+                                        const double& input) noexcept {
+  model.step(state, input);
 }
 
 std::unique_ptr<Plant> make_plant(const model::Direct<double>::Parameters& parameters, const Setup& setup) {

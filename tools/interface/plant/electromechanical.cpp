@@ -5,9 +5,9 @@
 
 namespace hotfire::plant {
 
-HOTFIRE_FOR_EACH_PROCESSOR void step_motor(const model::Electromechanical<double>& model,
-                                           model::Electromechanical<double>::State& state, const double& setpoint) noexcept {
-  model.step(state, setpoint);
+HOTFIRE_FOR_EACH_PROCESSOR void advance(const model::Electromechanical<double>& model,
+                                        model::Electromechanical<double>::State& state, const double& input) noexcept {
+  model.step(state, input);
 }
 
 std::unique_ptr<Plant> make_plant(const model::Electromechanical<double>::Parameters& parameters, const Setup& setup) {

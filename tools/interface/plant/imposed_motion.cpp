@@ -5,9 +5,9 @@
 
 namespace hotfire::plant {
 
-HOTFIRE_FOR_EACH_PROCESSOR void move_body(const model::ImposedMotion<double>& model,
-                                          model::ImposedMotion<double>::State& state, const double& position) noexcept {
-  model.step(state, position);
+HOTFIRE_FOR_EACH_PROCESSOR void advance(const model::ImposedMotion<double>& model,
+                                        model::ImposedMotion<double>::State& state, const double& input) noexcept {
+  model.step(state, input);
 }
 
 std::unique_ptr<Plant> make_plant(const model::ImposedMotion<double>::Parameters& parameters, const Setup& setup) {

@@ -5,9 +5,9 @@
 
 namespace hotfire::plant {
 
-HOTFIRE_FOR_EACH_PROCESSOR void step_modes(const model::Modal<double>& model, model::Modal<double>::State& state,
-                                           const double& force) noexcept {
-  model.step(state, force);
+HOTFIRE_FOR_EACH_PROCESSOR void advance(const model::Modal<double>& model, model::Modal<double>::State& state,
+                                        const double& input) noexcept {
+  model.step(state, input);
 }
 
 std::unique_ptr<Plant> make_plant(const model::Modal<double>::Parameters& parameters, const Setup& setup) {
