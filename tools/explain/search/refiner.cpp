@@ -16,6 +16,7 @@
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/terms/trial.hpp"
+#include "tools/explain/terms/visit_term.hpp"
 
 namespace hotfire::explain {
 
@@ -49,18 +50,6 @@ constexpr int kSamplesOff = 2;
 /// Where beside a row they are tried: a logger that is in step with them reads before or after the sample.
 constexpr double kBesideRow = 0.02;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-
-/// Visits the parameters of the grammar's term that a candidate is.
-template <class Visit>
-void visit_term(ModelParameters& parameters, const Candidate& candidate, Visit&& visit) {
-  visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
-    if constexpr (requires { E::is_term; }) {
-      if (index == candidate.effect) {
-        visit(values);
-      }
-    }
-  });
-}
 
 /// When a held term samples, in rows.
 struct Samples {

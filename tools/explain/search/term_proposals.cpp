@@ -14,6 +14,7 @@
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/terms/assessed.hpp"
+#include "tools/explain/terms/visit_term.hpp"
 
 namespace hotfire::explain {
 
@@ -59,32 +60,27 @@ std::optional<Candidate> candidate_of(const Form& form) {
 void set_values(ModelParameters& parameters, const Candidate& candidate, const ScoredForm& scored, double share) {
   const Form& form = scored.form;
   const Eigen::VectorXd coefficients = share * scored.score.coefficients;
-  visit_effects(parameters, [&]<class E>(std::size_t index, auto& values) {
-    if constexpr (requires { E::is_term; }) {
-      if (index != candidate.effect) {
-        return;
-      }
-      values.time = form.memory.time;
-      values.frequency = form.memory.frequency;
-      values.damping = form.memory.damping;
-      values.width = form.memory.width;
-      values.phase = form.memory.phase;
-      values.gain = form.points.empty() ? coefficients(0) : 0.0;
-      values.direct = form.has_direct() ? coefficients(coefficients.size() - 1) : 0.0;
-      if (form.is_oscillator()) {
-        values.gain = std::hypot(coefficients(0), coefficients(1));
-        values.phase = std::atan2(coefficients(1), coefficients(0));
-      } else if (!form.values.empty()) {
-        // A play, a stop or a slew of a curve as many times as high is as many times as wide.
-        values.width *= std::abs(coefficients(0));
-      }
-      values.table.points = static_cast<int>(form.points.size());
-      for (std::size_t i = 0; i < form.points.size(); ++i) {
-        values.table.x[i] = form.points[i];
-        values.table.y[i] = form.is_oscillator()   ? form.values[i]
-                            : !form.values.empty() ? coefficients(0) * form.values[i]
-                                                   : coefficients(static_cast<Eigen::Index>(i));
-      }
+  visit_term(parameters, candidate, [&](auto& values) {
+    values.time = form.memory.time;
+    values.frequency = form.memory.frequency;
+    values.damping = form.memory.damping;
+    values.width = form.memory.width;
+    values.phase = form.memory.phase;
+    values.gain = form.points.empty() ? coefficients(0) : 0.0;
+    values.direct = form.has_direct() ? coefficients(coefficients.size() - 1) : 0.0;
+    if (form.is_oscillator()) {
+      values.gain = std::hypot(coefficients(0), coefficients(1));
+      values.phase = std::atan2(coefficients(1), coefficients(0));
+    } else if (!form.values.empty()) {
+      // A play, a stop or a slew of a curve as many times as high is as many times as wide.
+      values.width *= std::abs(coefficients(0));
+    }
+    values.table.points = static_cast<int>(form.points.size());
+    for (std::size_t i = 0; i < form.points.size(); ++i) {
+      values.table.x[i] = form.points[i];
+      values.table.y[i] = form.is_oscillator()   ? form.values[i]
+                          : !form.values.empty() ? coefficients(0) * form.values[i]
+                                                 : coefficients(static_cast<Eigen::Index>(i));
     }
   });
 }

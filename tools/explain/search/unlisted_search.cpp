@@ -96,12 +96,11 @@ void fit_best_shortly(const UnlistedTask& task, std::span<const double> frozen, 
     task.watch.progress(
         {Work::unlisted, fmt::format("unlisted: a short fit of {}", label(proposal.candidate)), SharesOfWork::kProposed});
     const Stopwatch stopwatch;
-    const double before = proposal.seconds;
     if (proposal.candidate.option == static_cast<int>(model::Memory::hold)) {
       proposal = task.refiner.with_samples(std::move(proposal), frozen);
     }
     proposal = task.refiner.shortly(std::move(proposal), frozen);
-    proposal.seconds = before + stopwatch.seconds();
+    proposal.seconds += stopwatch.seconds();
   }
   order_by_site(proposals);
 }
@@ -147,16 +146,18 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
       Assessed finalist = task.refiner.of_screened(s.fitted, frozen, effort);
       trial.seconds += stopwatch.seconds();
       if (finalist.good()) {
-        compare_and_say(trial, finalist, task.beside);
-        left = excess_over_noise(task.data, finalist.prediction);
-        std::string against = objection(task, finalist, s.candidate);
+        std::string against;
+        const auto judge = [&] {
+          compare_and_say(trial, finalist, task.beside);
+          left = excess_over_noise(task.data, finalist.prediction);
+          against = objection(task, finalist, s.candidate);
+        };
+        judge();
         // A fit that ends early leaves some of what it would explain in the channel that it counts least.
         if (!against.empty() && trial.held_out_ratio < policy().clearly_less && !task.watch.interrupted()) {
           if (Assessed settled = task.refiner.settled(finalist.model); settled.good()) {
             finalist = std::move(settled);
-            compare_and_say(trial, finalist, task.beside);
-            left = excess_over_noise(task.data, finalist.prediction);
-            against = objection(task, finalist, s.candidate);
+            judge();
           }
         }
         if (!against.empty()) {
