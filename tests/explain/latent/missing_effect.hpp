@@ -17,8 +17,9 @@ namespace hotfire::test {
 inline constexpr double kPistonNoise = 8e-6;
 inline constexpr double kEngineNoise = 6e-5;
 
-/// A swept sine and steps of up to half a degree, 20 s at 500 Hz, read from `truth` with sensor noise.
-inline Record record_of(const ModelFile& truth, double scale = 1.0) {
+/// 20 s at 500 Hz under the command `command_at` a time, read from `truth` with sensor noise.
+template <class Command>
+Record record_under(const ModelFile& truth, const Command& command_at) {
   Record record;
   record.name = "sweep.csv";
   record.path = record.name;
@@ -26,16 +27,22 @@ inline Record record_of(const ModelFile& truth, double scale = 1.0) {
   record.rows = 10000;
   Channel command{"command", "rad", {}};
   for (std::size_t row = 0; row < record.rows; ++row) {
-    const double t = static_cast<double>(row) * record.period;
-    const double sweep = 5e-3 * std::sin(2.0 * std::numbers::pi * (0.3 * t + 0.2 * t * t));
-    const double step = t > 12.0 ? 4e-3 * (std::fmod(t, 4.0) < 2.0 ? 1.0 : -1.0) : 0.0;
-    command.values.push_back(scale * (t < 0.5 ? 0.0 : sweep + step));
+    command.values.push_back(command_at(static_cast<double>(row) * record.period));
   }
   record.channels.push_back(command);
   const Record modelled = simulate(truth, record);
   std::mt19937_64 random(7);
   add_readings(record, modelled, {{"piston", kPistonNoise}, {"engine", kEngineNoise}}, random);
   return record;
+}
+
+/// The same under a swept sine and steps of up to half a degree.
+inline Record record_of(const ModelFile& truth, double scale = 1.0) {
+  return record_under(truth, [scale](double t) {
+    const double sweep = 5e-3 * std::sin(2.0 * std::numbers::pi * (0.3 * t + 0.2 * t * t));
+    const double step = t > 12.0 ? 4e-3 * (std::fmod(t, 4.0) < 2.0 ? 1.0 : -1.0) : 0.0;
+    return scale * (t < 0.5 ? 0.0 : sweep + step);
+  });
 }
 
 inline ModelFile declared() {

@@ -178,38 +178,65 @@ TEST(TermProposals, TheUnitsOfATermAreThoseOfTheWholeHoweverLittleOfItAFitStarts
   DOUBLES_EQUAL(0.06 * whole->fitted.u.back(), part->fitted.u.back(), 1e-12);
 }
 
-// From another period a fit of the coefficients alone ends at half of the hold and more delay.
-TEST(TermProposals, AHeldSignalInsideTheLoopIsFittedWithItsPeriodAndTheInstantOfItsSamples) {
-  using ValveCommandTerm = model::Term<Site::valve_command>;
-  constexpr double kRow = 2e-3;
-  const explain::Dataset data = data_of(with_term<ValveCommandTerm>([&](auto& term) {
+namespace {
+
+/// A valve command that is held for seven rows, inside the loop, and a search that proposes four.
+struct HeldValveCommand {
+  using Term = model::Term<Site::valve_command>;
+  static constexpr double kRow = 2e-3;
+  static constexpr double kTurn = 2.0 * std::numbers::pi;
+
+  HeldValveCommand() {
+    explain::ScoredForm form;
+    form.form.site = Site::valve_command;
+    form.form.argument = Argument::valve_command;
+    form.form.memory.kind = Memory::hold;
+    form.form.memory.time = 4.0 * kRow;
+    form.form.memory.phase = 0.92 / 4.0 * kTurn;
+    form.score.coefficients = Eigen::Vector2d(0.5, -0.5);
+    form.score.move = Eigen::VectorXd::Zero(std::ssize(around.free));
+    proposed = explain::start_of(around, form, scales).value();
+  }
+
+  /// `tolerance`: of its share, from how many short fits are behind it.
+  static void check_is_true_one(const Screened& held, double tolerance) {
+    const auto parameters = held.fitted.parameters();
+    const auto& term = std::get<Term::Params<double>>(std::get<SimplexParameters>(parameters).effects.values);
+    DOUBLES_EQUAL(7.0 * kRow, term.time, 1e-9);
+    // Samples are taken at a step: those of one row are the same ones.
+    DOUBLES_EQUAL(1.0, 7.0 * term.phase / kTurn, 0.1);
+    DOUBLES_EQUAL(1.0, term.gain, tolerance);
+    DOUBLES_EQUAL(-1.0, term.direct, tolerance);
+  }
+
+  const explain::Dataset data = data_of(with_term<Term>([](auto& term) {
     term.option = static_cast<int>(Memory::hold);
     term.argument = static_cast<int>(Argument::valve_command);
     term.time = 7.0 * kRow;
-    term.phase = 1.02 / 7.0 * 2.0 * std::numbers::pi;
+    term.phase = 1.02 / 7.0 * kTurn;
     term.gain = 1.0;
     term.direct = -1.0;
   }));
-  explain::ScoredForm proposed;
-  proposed.form.site = Site::valve_command;
-  proposed.form.argument = Argument::valve_command;
-  proposed.form.memory.kind = Memory::hold;
-  proposed.form.memory.time = 4.0 * kRow;
-  proposed.form.memory.phase = 0.92 / 4.0 * 2.0 * std::numbers::pi;
-  proposed.score.coefficients = Eigen::Vector2d(0.5, -0.5);
   const explain::Fitted around = about_declared();
-  proposed.score.move = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(around.free.size()));
-  const explain::Evaluator evaluator(data, explain::Resolution::coarse);
+  const explain::Evaluator evaluator{data, explain::Resolution::coarse};
   const explain::Scales scales;
   const explain::Watch watch;
-  const explain::Refiner refiner(data, evaluator, evaluator, evaluator, scales, 2, watch);
+  const explain::Refiner refiner{data, evaluator, evaluator, evaluator, scales, 2, watch};
+  Screened proposed;
+};
 
-  const Screened held = refiner.with_samples(*explain::start_of(around, proposed, scales), around.u);
-  const auto parameters = held.fitted.parameters();
-  const auto& term = std::get<ValveCommandTerm::Params<double>>(std::get<SimplexParameters>(parameters).effects.values);
-  DOUBLES_EQUAL(7.0 * kRow, term.time, 1e-9);
-  // Samples are taken at a step: those of one row are the same ones.
-  DOUBLES_EQUAL(1.0, 7.0 * term.phase / (2.0 * std::numbers::pi), 0.1);
-  DOUBLES_EQUAL(1.0, term.gain, 0.02);
-  DOUBLES_EQUAL(-1.0, term.direct, 0.02);
+}  // namespace
+
+// From another period a fit of the coefficients alone ends at half of the hold and more delay.
+TEST(TermProposals, AHeldSignalInsideTheLoopIsFittedWithItsPeriodAndTheInstantOfItsSamples) {
+  const HeldValveCommand search;
+  const Screened held = search.refiner.with_samples(search.evaluator, search.proposed, search.around.u);
+  HeldValveCommand::check_is_true_one(held, 0.02);
+
+  // Another proposal takes these samples, and this one keeps them.
+  const auto of = [&](const Screened& other, const Screened& own) {
+    return search.refiner.with_samples_of(search.evaluator, other, own, search.around.u);
+  };
+  HeldValveCommand::check_is_true_one(of(held, search.proposed), 0.05);
+  HeldValveCommand::check_is_true_one(of(search.proposed, held), 0.05);
 }

@@ -118,26 +118,6 @@ bool bears_curve(Memory kind, bool curve_first) {
   }
 }
 
-/// Points half by the range of values and half by how often they occur: of a curve in front of a memory, of whose output
-/// the signal shows nothing point by point.
-std::vector<double> spread_points(const std::vector<double>& sorted) {
-  std::vector<double> points;
-  const double low = quantile(sorted, kEnds);
-  const double high = quantile(sorted, 1.0 - kEnds);
-  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high)) {
-    return points;
-  }
-  const double least_gap = 1e-3 * (high - low);
-  for (int i = 0; i < kCurvePoints; ++i) {
-    const double place = static_cast<double>(i) / (kCurvePoints - 1);
-    const double x = 0.5 * (low + (high - low) * place + quantile(sorted, kEnds + (1.0 - 2.0 * kEnds) * place));
-    if (points.empty() || x > points.back() + least_gap) {
-      points.push_back(x);
-    }
-  }
-  return points;
-}
-
 /// Points where a curve over the form's output has to bend to follow the smoothed signal. Its scatter about any function of
 /// the output is its noise.
 std::vector<double> followed_points(const FormRegression& regression, const Form& form) {
@@ -169,6 +149,24 @@ std::vector<double> followed_points(const FormRegression& regression, const Form
 }
 
 }  // namespace
+
+std::vector<double> spread_points(const std::vector<double>& sorted, int count) {
+  std::vector<double> points;
+  const double low = quantile(sorted, kEnds);
+  const double high = quantile(sorted, 1.0 - kEnds);
+  if (!(high > low) || !std::isfinite(low) || !std::isfinite(high)) {
+    return points;
+  }
+  const double least_gap = 1e-3 * (high - low);
+  for (int i = 0; i < count; ++i) {
+    const double place = static_cast<double>(i) / (count - 1);
+    const double x = 0.5 * (low + (high - low) * place + quantile(sorted, kEnds + (1.0 - 2.0 * kEnds) * place));
+    if (points.empty() || x > points.back() + least_gap) {
+      points.push_back(x);
+    }
+  }
+  return points;
+}
 
 Form at_place(const LatentPlace& place, Argument argument, std::optional<Argument> factor) {
   Form form;
@@ -303,8 +301,9 @@ std::optional<Form> with_curve(const FormRegression& regression, Form form, bool
     return std::nullopt;
   }
   form.curve_first = curve_first;
-  form.points = curve_first && form.memory.kind != Memory::none ? spread_points(sorted_values(regression, form))
-                                                                : followed_points(regression, form);
+  form.points = curve_first && form.memory.kind != Memory::none
+                    ? spread_points(sorted_values(regression, form), kCurvePoints)
+                    : followed_points(regression, form);
   return form.points.size() >= 3 ? std::optional(std::move(form)) : std::nullopt;
 }
 

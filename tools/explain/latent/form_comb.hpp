@@ -21,6 +21,10 @@ inline double quantile_of_unsorted(std::vector<double>& values, double share) {
   return *place;
 }
 
+/// Points of a curve, half by the range of `sorted` values and half by how often they occur: of a curve that is not seen
+/// point by point, in front of a memory or under a sum over time. At most `count`; none where the values have no range.
+std::vector<double> spread_points(const std::vector<double>& sorted, int count);
+
 /// A gain of an argument, or of a product of two, at a place.
 Form at_place(const LatentPlace& place, model::Argument argument, std::optional<model::Argument> factor = {});
 

@@ -35,11 +35,16 @@ constexpr double kSamplesACycle = 2.5;
 /// Part of a turn by which neighbouring tunings differ at the ends of the record: a peak loses little to a sixth.
 constexpr double kTunedApart = 1.0 / 3.0;
 constexpr int kMostTunings = 400;
-/// Shares of a quantity's size beyond which the frequency no longer moves: a straight line, and one that saturates.
-constexpr std::array kBends{1.0, 0.3};
+/// Shares of a quantity's size beyond which the frequency no longer moves: a straight line, and curves that saturate. The
+/// fit of a curve that starts far from the right one ends whole turns off.
+constexpr std::array kBends{1.0, 0.7, 0.5, 0.35, 0.25};
 /// Quantities whose oscillation is fitted, and points of its curve.
 constexpr std::size_t kFittedOscillations = 3;
-constexpr int kTuningPoints = 7;
+constexpr int kTuningPoints = 13;
+static_assert(kTuningPoints <= static_cast<int>(model::kUnlistedPoints));
+/// Curvatures that a curve may have, over the most that a quantity moves the frequency, from stiff to free. A curve that is
+/// free at once gains or loses a turn where its quantity seldom is, and no step leads back.
+constexpr std::array kCurvatures{0.03, 0.1, 0.3, 1.0, 3.0, 10.0};
 constexpr int kTuningSteps = 30;
 
 /// Signal and quantities of one record at samples that are as far apart in every record.
@@ -63,6 +68,7 @@ struct Tuned {
   std::vector<double> points;
   std::vector<double> values;  ///< added to the peak's frequency
   double left = HUGE_VAL;      ///< sum of squares
+  double bic = HUGE_VAL;       ///< with the effective number of its values
 };
 
 class OscillationSearch {
@@ -84,13 +90,12 @@ class OscillationSearch {
     length_ = static_cast<Eigen::Index>(2 * std::bit_ceil(static_cast<std::size_t>(std::max<Eigen::Index>(longest, 8))));
   }
 
-  /// The strongest oscillation that a quantity tunes; of no power if the quantity does not move.
-  Peak strongest(Argument argument) const {
-    Peak best;
-    best.argument = argument;
+  /// The strongest oscillation that a quantity tunes by each of the bends; none if the quantity does not move.
+  std::vector<Peak> strongest(Argument argument) const {
+    std::vector<Peak> peaks;
     const auto [middle, size] = extent(argument);
     if (!(size > 0.0)) {
-      return best;
+      return peaks;
     }
     for (const double bend : kBends) {
       const std::vector<Eigen::VectorXd> turns = integrals(argument, middle, size, bend);
@@ -99,55 +104,109 @@ class OscillationSearch {
         range = std::max(range, of_record.size() > 0 ? of_record.maxCoeff() - of_record.minCoeff() : 0.0);
       }
       const int tunings = std::clamp(static_cast<int>(most_tuned_ * range / kTunedApart), 1, kMostTunings);
+      Peak best;
+      best.argument = argument;
       for (int k = 0; k <= tunings; ++k) {
         take_peaks(turns, bend, most_tuned_ * k / tunings, best);
+      }
+      peaks.push_back(best);
+    }
+    return peaks;
+  }
+
+  /// The curve over the peak's quantity with which an oscillation explains most of the signal, as smooth as the BIC wants
+  /// it.
+  Tuned tuned(const Peak& peak) const {
+    const auto [middle, size] = extent(peak.argument);
+    Tuned curve{peak, spread_points(sorted_values(peak.argument), kTuningPoints), {}};
+    std::vector<double> places;
+    for (const double point : curve.points) {
+      places.push_back((point - middle) / size);
+      curve.values.push_back(peak.tuning * bent(places.back(), peak.bend));
+    }
+    if (curve.points.size() < 3) {
+      return curve;
+    }
+    const std::vector<Eigen::MatrixXd> hats = hat_integrals(peak.argument, curve.points);
+    const Eigen::MatrixXd roughness = roughness_of(places) / (most_tuned_ * most_tuned_);
+    Tuned best = curve;
+    for (const double curvature : kCurvatures) {
+      fit_values(curve, hats, roughness / (curvature * curvature));
+      if (curve.bic < best.bic) {
+        best = curve;
       }
     }
     return best;
   }
 
-  /// The curve over the peak's quantity with which an oscillation explains most of the signal.
-  Tuned tuned(const Peak& peak) const {
-    const auto [middle, size] = extent(peak.argument);
-    Tuned result{peak, {}, {}};
-    for (int k = 0; k < kTuningPoints; ++k) {
-      const double place = 2.0 * k / (kTuningPoints - 1.0) - 1.0;
-      result.points.push_back(middle + size * place);
-      result.values.push_back(peak.tuning * bent(place, peak.bend));
+ private:
+  struct Normal {
+    explicit Normal(std::size_t points)
+        : matrix(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(points), static_cast<Eigen::Index>(points))),
+          right(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(points))) {}
+
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd right;
+  };
+
+  /// Of values at places, the quadratic form that is the integral of their second derivative's square.
+  static Eigen::MatrixXd roughness_of(const std::vector<double>& places) {
+    const auto count = static_cast<Eigen::Index>(places.size());
+    Eigen::MatrixXd roughness = Eigen::MatrixXd::Zero(count, count);
+    for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+      const double before = places[i] - places[i - 1];
+      const double behind = places[i + 1] - places[i];
+      const Eigen::Vector3d second =
+          2.0 / (before + behind) * Eigen::Vector3d(1.0 / before, -1.0 / before - 1.0 / behind, 1.0 / behind);
+      roughness.block<3, 3>(static_cast<Eigen::Index>(i) - 1, static_cast<Eigen::Index>(i) - 1) +=
+          0.5 * (before + behind) * second * second.transpose();
     }
-    const std::vector<Eigen::MatrixXd> hats = hat_integrals(peak.argument, result.points);
+    return roughness;
+  }
+
+  /// Moves the values of a curve to where an oscillation explains most of the signal, over its noise, less their roughness
+  /// (Levenberg-Marquardt).
+  void fit_values(Tuned& tuned, const std::vector<Eigen::MatrixXd>& hats, const Eigen::MatrixXd& roughness) const {
+    const auto count = static_cast<Eigen::Index>(tuned.values.size());
+    double samples = 0.0;
+    for (const Sampled& record : records_) {
+      samples += static_cast<double>(record.signal.size());
+    }
+    tuned.left = left_by(tuned, hats, nullptr);
+    const Eigen::MatrixXd stiffness = tuned.left / samples * roughness;
+    const auto cost = [&](const Tuned& at) {
+      const auto values = Eigen::Map<const Eigen::VectorXd>(at.values.data(), count);
+      return at.left + values.dot(stiffness * values);
+    };
     double damping = 1e-3;
-    result.left = left_by(result, hats, nullptr);
     for (int step = 0; step < kTuningSteps; ++step) {
-      Normal normal;
-      left_by(result, hats, &normal);
-      Eigen::MatrixXd damped = normal.matrix;
+      Normal normal(tuned.values.size());
+      left_by(tuned, hats, &normal);
+      Eigen::MatrixXd damped = normal.matrix + stiffness;
       damped.diagonal() *= 1.0 + damping;
       damped.diagonal().array() += 1e-12 * normal.matrix.diagonal().maxCoeff();
-      const Eigen::VectorXd move = damped.ldlt().solve(normal.right);
-      Tuned next = result;
-      for (int k = 0; k < kTuningPoints; ++k) {
-        next.values[static_cast<std::size_t>(k)] += move(k);
-      }
+      const Eigen::VectorXd move =
+          damped.ldlt().solve(normal.right - stiffness * Eigen::Map<const Eigen::VectorXd>(tuned.values.data(), count));
+      Tuned next = tuned;
+      Eigen::Map<Eigen::VectorXd>(next.values.data(), count) += move;
       next.left = left_by(next, hats, nullptr);
-      const bool is_better = next.left < result.left;
+      const bool is_better = cost(next) < cost(tuned);
       damping *= is_better ? 0.3 : 10.0;
       if (is_better) {
-        const bool is_small = next.left > (1.0 - 1e-6) * result.left;
-        result = std::move(next);
+        const bool is_small = cost(next) > (1.0 - 1e-6) * cost(tuned);
+        tuned = std::move(next);
         if (is_small) {
           break;
         }
       }
     }
-    return result;
+    Normal normal(tuned.values.size());
+    left_by(tuned, hats, &normal);
+    Eigen::MatrixXd whole = normal.matrix + stiffness;
+    whole.diagonal().array() += 1e-12 * normal.matrix.diagonal().maxCoeff();
+    const double effective = whole.ldlt().solve(normal.matrix).trace();
+    tuned.bic = samples * std::log(tuned.left) + effective * std::log(samples);
   }
-
- private:
-  struct Normal {
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(kTuningPoints, kTuningPoints);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(kTuningPoints);
-  };
 
   Sampled sampled(const FormRegression& regression, std::size_t e) const {
     const Eigen::VectorXd& signal = regression.signal()[e];
@@ -168,18 +227,24 @@ class OscillationSearch {
 
   static double bent(double place, double bend) { return std::clamp(place / bend, -1.0, 1.0); }
 
-  /// Middle of a quantity's values and their 99th percentile about it.
-  std::pair<double, double> extent(Argument argument) const {
+  std::vector<double> sorted_values(Argument argument) const {
     std::vector<double> values;
     for (const Sampled& record : records_) {
       const auto column = record.quantities.col(static_cast<Eigen::Index>(argument));
       values.insert(values.end(), column.begin(), column.end());
     }
+    std::ranges::sort(values);
+    return values;
+  }
+
+  /// Middle of a quantity's values and their 99th percentile about it.
+  std::pair<double, double> extent(Argument argument) const {
+    const std::vector<double> values = sorted_values(argument);
     if (values.empty()) {
       return {0.0, 0.0};
     }
-    const double low = quantile_of_unsorted(values, 0.01);
-    const double high = quantile_of_unsorted(values, 0.99);
+    const double low = quantile(values, 0.01);
+    const double high = quantile(values, 0.99);
     return {0.5 * (low + high), 0.5 * (high - low)};
   }
 
@@ -246,30 +311,27 @@ class OscillationSearch {
   /// Sum of squares that the best amplitude and phase leave, and the normal equations of the curve's values.
   double left_by(const Tuned& tuned, const std::vector<Eigen::MatrixXd>& hats, Normal* normal) const {
     const Eigen::VectorXd values =
-        Eigen::Map<const Eigen::VectorXd>(tuned.values.data(), kTuningPoints).array() + tuned.peak.frequency;
-    std::vector<Eigen::VectorXcd> waves;
+        Eigen::Map<const Eigen::VectorXd>(tuned.values.data(), std::ssize(tuned.values)).array() + tuned.peak.frequency;
+    std::vector<Eigen::Matrix<double, Eigen::Dynamic, 2>> waves;  // sine and cosine
     Eigen::Matrix2d own = Eigen::Matrix2d::Zero();
     Eigen::Vector2d with_signal = Eigen::Vector2d::Zero();
     double square = 0.0;
     for (std::size_t e = 0; e < records_.size(); ++e) {
-      const Eigen::VectorXd turns = hats[e] * values;
-      const Eigen::VectorXcd wave = turns.unaryExpr([](double turn) { return std::polar(1.0, kOscillationTurn * turn); });
+      const Eigen::ArrayXd turns = kOscillationTurn * (hats[e] * values).array();
       const Eigen::VectorXd& signal = records_[e].signal;
-      Eigen::Matrix<double, Eigen::Dynamic, 2> both(wave.size(), 2);
-      both << wave.imag(), wave.real();
-      own += both.transpose() * both;
-      with_signal += both.transpose() * signal;
+      auto& wave = waves.emplace_back(turns.size(), 2);
+      wave << turns.sin(), turns.cos();
+      own += wave.transpose() * wave;
+      with_signal += wave.transpose() * signal;
       square += signal.squaredNorm();
-      waves.push_back(wave);
     }
     const Eigen::Vector2d amplitude = own.ldlt().solve(with_signal);
     if (normal != nullptr) {
       for (std::size_t e = 0; e < records_.size(); ++e) {
-        const Eigen::VectorXd modelled = amplitude(0) * waves[e].imag() + amplitude(1) * waves[e].real();
-        const Eigen::VectorXd slope = kOscillationTurn * (amplitude(0) * waves[e].real() - amplitude(1) * waves[e].imag());
+        const Eigen::VectorXd slope = kOscillationTurn * (amplitude(0) * waves[e].col(1) - amplitude(1) * waves[e].col(0));
         const Eigen::MatrixXd by_value = slope.asDiagonal() * hats[e];
         normal->matrix += by_value.transpose() * by_value;
-        normal->right += by_value.transpose() * (records_[e].signal - modelled);
+        normal->right += by_value.transpose() * (records_[e].signal - waves[e] * amplitude);
       }
     }
     return square - with_signal.dot(amplitude);
@@ -285,25 +347,38 @@ class OscillationSearch {
 
 }  // namespace
 
-std::optional<Form> find_oscillation(const FormRegression& regression, const LatentPlace& place, unsigned threads) {
+std::vector<Form> find_oscillations(const FormRegression& regression, const LatentPlace& place, unsigned threads) {
   const OscillationSearch search(regression);
-  std::vector<Peak> peaks(model::kArgumentNames.size());
+  std::vector<std::vector<Peak>> peaks(model::kArgumentNames.size());
   parallel_for(peaks.size(), threads, [&](std::size_t a) { peaks[a] = search.strongest(static_cast<Argument>(a)); });
-  std::ranges::stable_sort(peaks, std::greater<>(), &Peak::power);
-  std::erase_if(peaks, [](const Peak& peak) { return !(peak.power > 0.0); });
+  std::erase_if(peaks, [](const std::vector<Peak>& of_quantity) { return of_quantity.empty(); });
+  const auto power = [](const std::vector<Peak>& of_quantity) {
+    return std::ranges::max(of_quantity, {}, &Peak::power).power;
+  };
+  std::ranges::stable_sort(peaks, std::greater<>(), power);
   peaks.resize(std::min(peaks.size(), kFittedOscillations));
-  if (peaks.empty()) {
-    return std::nullopt;
-  }
   std::vector<Tuned> fitted(peaks.size());
-  parallel_for(peaks.size(), threads, [&](std::size_t i) { fitted[i] = search.tuned(peaks[i]); });
-  const Tuned& best = *std::ranges::min_element(fitted, {}, &Tuned::left);
-  Form form = at_place(place, best.peak.argument);
-  form.memory.kind = model::Memory::oscillator;
-  form.memory.frequency = best.peak.frequency;
-  form.points = best.points;
-  form.values = best.values;
-  return form;
+  parallel_for(peaks.size(), threads, [&](std::size_t i) {
+    for (const Peak& peak : peaks[i]) {
+      Tuned tuned = search.tuned(peak);
+      if (tuned.bic < fitted[i].bic) {
+        fitted[i] = std::move(tuned);
+      }
+    }
+  });
+  std::vector<Form> forms;
+  for (const Tuned& tuned : fitted) {
+    if (tuned.points.empty()) {
+      continue;
+    }
+    Form form = at_place(place, tuned.peak.argument);
+    form.memory.kind = model::Memory::oscillator;
+    form.memory.frequency = tuned.peak.frequency;
+    form.points = tuned.points;
+    form.values = tuned.values;
+    forms.push_back(std::move(form));
+  }
+  return forms;
 }
 
 }  // namespace hotfire::explain

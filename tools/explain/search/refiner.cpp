@@ -57,7 +57,7 @@ struct Samples {
   double passed = 0.0;  ///< of it at the start of a record
 };
 
-Samples samples_of(Screened& held, double row) {
+Samples samples_of(const Screened& held, double row) {
   Samples samples;
   visit_term(held.fitted.base, held.candidate, [&](const auto& term) {
     samples.rows = std::max(2.0, std::round(term.time / row));
@@ -106,7 +106,7 @@ Assessed Refiner::ranked(const Fitted& fitted, const Effort& effort) const {
   return refined(coarse_, fine_, threads_, std::move(start), rest);
 }
 
-Assessed Refiner::of_screened(const Fitted& screened, std::span<const double> frozen, const Effort& effort) const {
+Fitted Refiner::start_of_screened(const Evaluator& evaluator, const Fitted& screened, std::span<const double> frozen) const {
   std::vector<Fitted> starts;
   for (const double share : kSharesOfMove) {
     starts.push_back(screened);
@@ -125,13 +125,13 @@ Assessed Refiner::of_screened(const Fitted& screened, std::span<const double> fr
   Fitted best = screened;
   double least = std::numeric_limits<double>::infinity();
   for (Fitted& start : starts) {
-    const double left = left_by(coarse_, start, threads_);
+    const double left = left_by(evaluator, start, threads_);
     if (left < least) {
       least = &start == &starts.front() ? left / kMovedTooFar : left;
       best = std::move(start);
     }
   }
-  return ranked(best, effort);
+  return best;
 }
 
 Assessed Refiner::from_other_starts(int round, Assessed winner, const Candidate& candidate) const {
@@ -246,8 +246,8 @@ Assessed Refiner::in_place_of(const Fitted& model, const Candidate& candidate, c
   return near.good() ? settled(near.model) : near;
 }
 
-Screened Refiner::shortly(Screened proposal, std::span<const double> frozen) const {
-  Assessed near = of_screened(proposal.fitted, frozen, kGlance);
+Screened Refiner::shortly(const Evaluator& evaluator, Screened proposal, std::span<const double> frozen) const {
+  Assessed near = refined(evaluator, evaluator, threads_, start_of_screened(evaluator, proposal.fitted, frozen), kGlance);
   if (near.good()) {
     proposal.criterion = std::min(proposal.criterion, Goodness::combined(near.goodness.fitted));
     proposal.fitted = std::move(near.model);
@@ -255,23 +255,23 @@ Screened Refiner::shortly(Screened proposal, std::span<const double> frozen) con
   return proposal;
 }
 
-Screened Refiner::with_samples(Screened held, std::span<const double> frozen) const {
+Screened Refiner::with_samples(const Evaluator& evaluator, Screened held, std::span<const double> frozen) const {
   const double row = std::ranges::min(data_.experiments, {}, &Experiment::period).period;
   const auto moved_to = [&](Screened moved, const Samples& samples) {
     set_samples(moved, samples, row);
-    moved.criterion = left_by(coarse_, moved.fitted, threads_);
+    moved.criterion = left_by(evaluator, moved.fitted, threads_);
     return moved;
   };
   const Samples proposed = samples_of(held, row);
   Screened best = held;
-  best.criterion = left_by(coarse_, held.fitted, threads_);
+  best.criterion = left_by(evaluator, held.fitted, threads_);
   for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
     const double rows = proposed.rows + longer;
     if (rows < 2.0) {
       continue;
     }
     const double passed = proposed.passed * rows / proposed.rows;
-    Screened of_period = shortly(moved_to(held, {rows, passed}), frozen);
+    Screened of_period = shortly(evaluator, moved_to(held, {rows, passed}), frozen);
     const Screened fitted = of_period;
     for (int early = -kSamplesOff; early <= kSamplesOff; ++early) {
       for (const double part : {-kBesideRow, kBesideRow, 0.5}) {
@@ -284,10 +284,25 @@ Screened Refiner::with_samples(Screened held, std::span<const double> frozen) co
   const Samples about = samples_of(best, row);
   for (int early = -kSamplesOff; early <= kSamplesOff && !watch_.interrupted(); ++early) {
     for (const double part : {-kBesideRow, kBesideRow}) {
-      keep_better(shortly(moved_to(of_best_period, {about.rows, std::round(about.passed) + early + part}), frozen), best);
+      keep_better(
+          shortly(evaluator, moved_to(of_best_period, {about.rows, std::round(about.passed) + early + part}), frozen), best);
     }
   }
   return best;
+}
+
+Screened Refiner::with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
+                                  std::span<const double> frozen) const {
+  const double row = std::ranges::min(data_.experiments, {}, &Experiment::period).period;
+  const auto of_own_fit = [&](Screened fitted) {
+    fitted.criterion = left_by(evaluator, fitted.fitted, threads_);
+    return shortly(evaluator, std::move(fitted), frozen);
+  };
+  Screened moved = held;
+  set_samples(moved, samples_of(other, row), row);
+  held = of_own_fit(std::move(held));
+  keep_better(of_own_fit(std::move(moved)), held);
+  return held;
 }
 
 Assessed Refiner::over_ripples(Assessed fitted, double height) const {

@@ -34,13 +34,18 @@ class Refiner {
   /// A screened candidate, ranked. Screening moves what was free before along its derivatives from `frozen`, which may carry
   /// it too far: where another place on that way, or a table that is nothing yet, leaves less than half as much, the fit
   /// starts at the least of them.
-  Assessed of_screened(const Fitted& screened, std::span<const double> frozen, const Effort& effort = kRanking) const;
-  /// A proposal after a short fit of everything that is free, if that leaves less.
-  Screened shortly(Screened proposal, std::span<const double> frozen) const;
+  Assessed of_screened(const Fitted& screened, std::span<const double> frozen, const Effort& effort = kRanking) const {
+    return ranked(start_of_screened(coarse_, screened, frozen), effort);
+  }
+  /// A proposal after a short fit on `evaluator` of everything that is free, if that leaves less.
+  Screened shortly(const Evaluator& evaluator, Screened proposal, std::span<const double> frozen) const;
   /// A held term by the period and the phase of its samples that leave least. No fit moves them, since they have no
   /// derivative. The periods are whole rows, because the logger of a sampled signal is in step with it. A hold of too small
   /// a share asks for samples that are later: periods and phases are compared after a short fit of each.
-  Screened with_samples(Screened held, std::span<const double> frozen) const;
+  Screened with_samples(const Evaluator& evaluator, Screened held, std::span<const double> frozen) const;
+  /// A held term by its own samples or those of another, whichever leaves less after a short fit.
+  Screened with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
+                           std::span<const double> frozen) const;
   /// Fitted under fine steps, as the report says it.
   Assessed settled(const Fitted& fitted, const Effort& effort = kFinal) const {
     return refined(fine_, fine_, threads_, fitted, effort);
@@ -72,6 +77,7 @@ class Refiner {
   Assessed in_place_of(const Fitted& model, const Candidate& candidate, const Candidate& other, const Fitted& tied) const;
 
  private:
+  Fitted start_of_screened(const Evaluator& evaluator, const Fitted& screened, std::span<const double> frozen) const;
   std::optional<Evaluator> rough_about(const Fitted& model) const;
   bool is_done(const Assessed& winner) const;
   Assessed from_other_values(const Assessed& winner, const Candidate& candidate) const;

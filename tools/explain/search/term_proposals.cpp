@@ -152,9 +152,10 @@ FormsOfPlace forms_of_place(const LatentProblem& problem, const Place& place, un
     }
     // A motion looks like an oscillation that it tunes itself: only what no other form explains is one.
     if (arguments == FormRegression::Arguments::smoothed) {
-      if (auto oscillation = find_oscillation(*found.regression, place.where, threads)) {
-        FormScore score = found.regression->score({&*oscillation, 1}, threads).front();
-        found.forms.push_back({std::move(*oscillation), std::move(score)});
+      std::vector<Form> oscillations = find_oscillations(*found.regression, place.where, threads);
+      std::vector<FormScore> scores = found.regression->score(oscillations, threads);
+      for (std::size_t i = 0; i < oscillations.size(); ++i) {
+        found.forms.push_back({std::move(oscillations[i]), std::move(scores[i])});
       }
     }
   }

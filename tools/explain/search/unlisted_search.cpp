@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -86,9 +87,12 @@ std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& e
 }
 
 /// A short fit of the best forms of every site: where the effect is large, what a form leaves before any fit says little of
-/// what it can explain.
-void fit_best_shortly(const UnlistedTask& task, std::span<const double> frozen, std::vector<Screened>& proposals) {
+/// what it can explain. The best held signal is fitted with each period near its own, and its samples are tried in the
+/// others: a rig has one clock.
+void fit_best_shortly(const UnlistedTask& task, const Evaluator& evaluator, std::span<const double> frozen,
+                      std::vector<Screened>& proposals) {
   std::map<std::string, std::size_t> of_site;
+  std::optional<Screened> clock;
   for (Screened& proposal : proposals) {
     if (of_site[proposal.candidate.site]++ >= kFittedOfSite || task.watch.interrupted()) {
       continue;
@@ -96,10 +100,15 @@ void fit_best_shortly(const UnlistedTask& task, std::span<const double> frozen, 
     task.watch.progress(
         {Work::unlisted, fmt::format("unlisted: a short fit of {}", label(proposal.candidate)), SharesOfWork::kProposed});
     const Stopwatch stopwatch;
-    if (proposal.candidate.option == static_cast<int>(model::Memory::hold)) {
-      proposal = task.refiner.with_samples(std::move(proposal), frozen);
+    const bool is_held = proposal.candidate.option == static_cast<int>(model::Memory::hold);
+    if (is_held && clock) {
+      proposal = task.refiner.with_samples_of(evaluator, *clock, std::move(proposal), frozen);
+    } else if (is_held) {
+      proposal = task.refiner.with_samples(evaluator, std::move(proposal), frozen);
+      clock = proposal;
+    } else {
+      proposal = task.refiner.shortly(evaluator, std::move(proposal), frozen);
     }
-    proposal = task.refiner.shortly(std::move(proposal), frozen);
     proposal.seconds += stopwatch.seconds();
   }
   order_by_site(proposals);
@@ -127,18 +136,21 @@ std::string objection(const UnlistedTask& task, const Assessed& with, const Cand
 }
 
 /// Fits the first of what was screened with everything else, until there are `most` that nothing speaks against, and files
-/// all of them. Those behind one that leaves no more than noise are not fitted: they promised less.
+/// all of them. Those behind one that leaves no more than noise are not fitted: they promised less. Those that leave clearly
+/// more than the best one, after the same effort, are not fitted either.
 void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, const std::vector<Screened>& screened,
                    std::size_t most, const Effort& effort, UnlistedSearch& result) {
   std::size_t to_fit = most;
   std::size_t may_replace = kReplaced;
+  double least = 0.0;
   for (const Screened& s : screened) {
     Trial trial{task.round, s.candidate, false,     s.criterion,
                 1.0,        s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
     double left = std::numeric_limits<double>::infinity();
     const bool is_decided =
         result.reaches_noise(task.data) && s.candidate.site == result.trials[*result.best].candidate.site;
-    if (to_fit > 0 && !is_decided && !task.watch.interrupted()) {
+    const bool is_behind = result.best && least < policy().clearly_less * s.left;
+    if (to_fit > 0 && !is_decided && !is_behind && !task.watch.interrupted()) {
       --to_fit;
       task.watch.progress({Work::unlisted, fmt::format("unlisted: fitting {} with everything else", label(s.candidate)),
                            SharesOfWork::kProposed});
@@ -168,6 +180,7 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
         } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
           result.best = result.trials.size();
           result.model = std::move(finalist);
+          least = s.left;
         }
       }
     }
@@ -179,9 +192,11 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
 /// Terms of the grammar: proposed by regression, simulated, fitted shortly, and the best of every site fitted jointly.
 void fit_terms_of_grammar(const UnlistedTask& task, const Fitted& around, const Evaluator& evaluator,
                           UnlistedSearch& result) {
-  auto proposals = by_simulation(task, evaluator, around,
-                                 propose_terms(evaluator.data(), around, task.located, task.threads, task.watch));
-  fit_best_shortly(task, around.u, proposals);
+  std::vector<Screened> proposals = by_simulation(
+      task, evaluator, around, propose_terms(evaluator.data(), around, task.located, task.threads, task.watch));
+  fit_best_shortly(task, evaluator, around.u, proposals);
+  const double without = left_by(evaluator, around, task.threads);
+  std::ranges::for_each(proposals, [&](Screened& proposal) { proposal.left = proposal.criterion / without; });
   fit_finalists(task, around.u, proposals, terms_to_fit(proposals), kCheck, result);
 }
 
@@ -199,7 +214,7 @@ void fit_tables(const UnlistedTask& task, const Fitted& around, const Evaluator&
     task.watch.progress(doing);
   };
   const auto screened = screening.run(candidates, "unlisted", of_unlisted);
-  fit_finalists(task, around.u, screened, unlisted_finalists(screened), kRanking, result);
+  fit_finalists(task, around.u, screened, unlisted_finalists(screened), kCheck, result);
 }
 
 /// The best term with everything free, and with one phase for all records where it is periodic and this is no worse.
