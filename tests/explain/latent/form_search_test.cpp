@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <random>
 
@@ -13,6 +14,7 @@
 #include "tools/explain/latent/correlation.hpp"
 #include "tools/explain/latent/form_comb.hpp"
 #include "tools/explain/latent/oscillation_search.hpp"
+#include "tools/explain/policy/policy.hpp"
 
 namespace {
 
@@ -171,10 +173,11 @@ TEST(FormSearch, APlayBehindACurveIsFoundWithItsWidth) {
 
 namespace {
 
-/// The oscillation that is found at the piston's sensor where `shift` moves the frequency of one of `frequency` hertz and
-/// `tall` times the noise with the command.
+/// Checks that an oscillation at the piston's sensor is found, with its curve at the commands `at`. `shift` adds to
+/// `frequency` [Hz] by the command. `tall` is the amplitude over the noise.
 template <class Shift>
-void check_oscillation_is_found(const Record& quiet, double frequency, double tall, Shift shift) {
+void check_oscillation_is_found(const Record& quiet, double frequency, double tall, Shift shift,
+                                std::initializer_list<double> at) {
   const AtSensor sensor(with_reading(
       [&, turns = 0.0](double command) mutable {
         turns += 2e-3 * (frequency + shift(command));
@@ -182,7 +185,7 @@ void check_oscillation_is_found(const Record& quiet, double frequency, double ta
       },
       quiet));
   const FormRegression regression = sensor.regression();
-  CHECK(regression.left_without() > 1.9);
+  CHECK(regression.left_without() > explain::policy().left_by_single);
   const std::vector<Form> forms = explain::find_oscillations(regression, kPistonSensor, 2);
   const std::vector<explain::FormScore> scores = regression.score(forms, 1);
   const auto best = std::ranges::min_element(scores, {}, &explain::FormScore::left);
@@ -191,7 +194,7 @@ void check_oscillation_is_found(const Record& quiet, double frequency, double ta
   CHECK(form.argument == Argument::command);
   CHECK(best->left < 1.3);
   // A quarter of a cycle over the 20 s of the record is 0.01 Hz; a straight piece of the curve is off by a tenth of it.
-  for (const double command : {-4e-3, -2e-3, 0.0, 2e-3, 4e-3}) {
+  for (const double command : at) {
     DOUBLES_EQUAL(frequency + shift(command), form.memory.frequency + form.entering(command), 0.25);
   }
 }
@@ -200,7 +203,8 @@ void check_oscillation_is_found(const Record& quiet, double frequency, double ta
 
 TEST(FormSearch, AnOscillationWhoseFrequencyMovesIsFoundWithItsCurve) {
   check_oscillation_is_found(record_of(declared()), 7.3, 4.0,
-                             [](double command) { return 2.0 * std::tanh(300.0 * command); });
+                             [](double command) { return 2.0 * std::tanh(300.0 * command); },
+                             {-5e-3, -2e-3, 0.0, 2e-3, 5e-3});
 }
 
 // In a slow motion a phase is off by turns before the frequency comes back. A straight line through the whole range, and one
@@ -208,7 +212,8 @@ TEST(FormSearch, AnOscillationWhoseFrequencyMovesIsFoundWithItsCurve) {
 TEST(FormSearch, AnOscillationWhoseFrequencyStopsMovingIsFoundInASlowMotionWithoutALostTurn) {
   const Record slow =
       record_under(declared(), [](double t) { return t < 0.5 ? 0.0 : 8e-3 * std::sin(0.62 * t) * std::sin(0.9 * t); });
-  check_oscillation_is_found(slow, 10.0, 2.0, [](double command) { return 6.0 * std::clamp(command / 5e-3, -1.0, 1.0); });
+  check_oscillation_is_found(slow, 10.0, 2.0, [](double command) { return 6.0 * std::clamp(command / 5e-3, -1.0, 1.0); },
+                             {-6e-3, -2e-3, 0.0, 2e-3, 6e-3});
 }
 
 TEST_GROUP(CorrelationRatio){};

@@ -17,7 +17,7 @@ namespace hotfire::test {
 inline constexpr double kPistonNoise = 8e-6;
 inline constexpr double kEngineNoise = 6e-5;
 
-/// 20 s at 500 Hz under the command `command_at` a time, read from `truth` with sensor noise.
+/// 20 s at 500 Hz, read from `truth` with sensor noise. `command_at` gives the command at a time.
 template <class Command>
 Record record_under(const ModelFile& truth, const Command& command_at) {
   Record record;

@@ -198,7 +198,7 @@ struct HeldValveCommand {
     proposed = explain::start_of(around, form, scales).value();
   }
 
-  /// `tolerance`: of its share, from how many short fits are behind it.
+  /// `tolerance` is that of the gain. It is wider after fewer short fits.
   static void check_is_true_one(const Screened& held, double tolerance) {
     const auto parameters = held.fitted.parameters();
     const auto& term = std::get<Term::Params<double>>(std::get<SimplexParameters>(parameters).effects.values);

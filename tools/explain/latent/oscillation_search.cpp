@@ -42,10 +42,12 @@ constexpr std::array kBends{1.0, 0.7, 0.5, 0.35, 0.25};
 constexpr std::size_t kFittedOscillations = 3;
 constexpr int kTuningPoints = 13;
 static_assert(kTuningPoints <= static_cast<int>(model::kUnlistedPoints));
-/// Curvatures that a curve may have, over the most that a quantity moves the frequency, from stiff to free. A curve that is
-/// free at once gains or loses a turn where its quantity seldom is, and no step leads back.
+/// Curvatures that a curve may have, from stiff to free. Their unit is the most that a quantity moves the frequency. A curve
+/// that starts free can gain or lose a turn where its quantity has few samples.
 constexpr std::array kCurvatures{0.03, 0.1, 0.3, 1.0, 3.0, 10.0};
 constexpr int kTuningSteps = 30;
+/// Share of a signal that rounding leaves.
+constexpr double kLeastLeft = 1e-12;
 
 /// Signal and quantities of one record at samples that are as far apart in every record.
 struct Sampled {
@@ -90,7 +92,7 @@ class OscillationSearch {
     length_ = static_cast<Eigen::Index>(2 * std::bit_ceil(static_cast<std::size_t>(std::max<Eigen::Index>(longest, 8))));
   }
 
-  /// The strongest oscillation that a quantity tunes by each of the bends; none if the quantity does not move.
+  /// The strongest oscillation that a quantity tunes by each of the bends; none if the quantity or the signal does not move.
   std::vector<Peak> strongest(Argument argument) const {
     std::vector<Peak> peaks;
     const auto [middle, size] = extent(argument);
@@ -109,13 +111,15 @@ class OscillationSearch {
       for (int k = 0; k <= tunings; ++k) {
         take_peaks(turns, bend, most_tuned_ * k / tunings, best);
       }
-      peaks.push_back(best);
+      if (best.power > 0.0) {
+        peaks.push_back(best);
+      }
     }
     return peaks;
   }
 
-  /// The curve over the peak's quantity with which an oscillation explains most of the signal, as smooth as the BIC wants
-  /// it.
+  /// The curve over the peak's quantity with which an oscillation explains most of the signal. The BIC selects its
+  /// smoothness.
   Tuned tuned(const Peak& peak) const {
     const auto [middle, size] = extent(peak.argument);
     Tuned curve{peak, spread_points(sorted_values(peak.argument), kTuningPoints), {}};
@@ -149,7 +153,7 @@ class OscillationSearch {
     Eigen::VectorXd right;
   };
 
-  /// Of values at places, the quadratic form that is the integral of their second derivative's square.
+  /// The integral of the squared second derivative, as a quadratic form in the values at `places`.
   static Eigen::MatrixXd roughness_of(const std::vector<double>& places) {
     const auto count = static_cast<Eigen::Index>(places.size());
     Eigen::MatrixXd roughness = Eigen::MatrixXd::Zero(count, count);
@@ -164,8 +168,8 @@ class OscillationSearch {
     return roughness;
   }
 
-  /// Moves the values of a curve to where an oscillation explains most of the signal, over its noise, less their roughness
-  /// (Levenberg-Marquardt).
+  /// Fits the values by Levenberg-Marquardt. The cost is what is left and a penalty of the roughness, which the mean square
+  /// at the start weighs.
   void fit_values(Tuned& tuned, const std::vector<Eigen::MatrixXd>& hats, const Eigen::MatrixXd& roughness) const {
     const auto count = static_cast<Eigen::Index>(tuned.values.size());
     double samples = 0.0;
@@ -334,7 +338,7 @@ class OscillationSearch {
         normal->right += by_value.transpose() * (records_[e].signal - waves[e] * amplitude);
       }
     }
-    return square - with_signal.dot(amplitude);
+    return std::max(square - with_signal.dot(amplitude), kLeastLeft * square);
   }
 
   double slowest_ = 0.0;

@@ -11,9 +11,10 @@ namespace hotfire::explain {
 /// explain most of it: oscillators of the grammar with a curve over that quantity. Every record starts at the same phase.
 ///
 /// The signal is demodulated by the integral of the quantity, times a comb of tunings, and transformed: the peak is an
-/// oscillation of constant frequency. The curve is then fitted to the signal by Levenberg and Marquardt, from stiff to free.
-/// A search over frequency and curve together would have as many minima as the record has cycles. A phase is the sum of all
-/// that a frequency is off by: a simulation decides which of the quantities it is. Nothing where no quantity moves.
+/// oscillation of constant frequency. The curve is then fitted to the signal by Levenberg-Marquardt, from stiff to free.
+/// A search over frequency and curve together would have as many minima as the record has cycles. A phase accumulates every
+/// error of the frequency, so the signal alone does not identify the quantity: a simulation decides. Nothing where no
+/// quantity moves.
 std::vector<Form> find_oscillations(const FormRegression& regression, const LatentPlace& place, unsigned threads);
 
 }  // namespace hotfire::explain

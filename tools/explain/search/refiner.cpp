@@ -248,8 +248,9 @@ Assessed Refiner::in_place_of(const Fitted& model, const Candidate& candidate, c
 
 Screened Refiner::shortly(const Evaluator& evaluator, Screened proposal, std::span<const double> frozen) const {
   Assessed near = refined(evaluator, evaluator, threads_, start_of_screened(evaluator, proposal.fitted, frozen), kGlance);
-  if (near.good()) {
-    proposal.criterion = std::min(proposal.criterion, Goodness::combined(near.goodness.fitted));
+  const double left = near.good() ? Goodness::combined(near.goodness.fitted) : std::numeric_limits<double>::infinity();
+  if (left < proposal.criterion) {
+    proposal.criterion = left;
     proposal.fitted = std::move(near.model);
   }
   return proposal;

@@ -71,8 +71,7 @@ void order_by_site(std::vector<Screened>& proposals) {
 
 /// Proposed terms in the order of what they leave, simulated: the order of a linear regression is often wrong near its top.
 std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& evaluator, const Fitted& around,
-                                    const std::vector<ScoredForm>& proposals) {
-  const double without = left_by(evaluator, around, task.threads);
+                                    const std::vector<ScoredForm>& proposals, double without) {
   std::vector<Screened> starts;
   for (const ScoredForm& proposed : proposals) {
     if (task.watch.interrupted()) {
@@ -86,30 +85,40 @@ std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& e
   return starts;
 }
 
+bool is_held(const Screened& proposal) { return proposal.candidate.option == static_cast<int>(model::Memory::hold); }
+
 /// A short fit of the best forms of every site: where the effect is large, what a form leaves before any fit says little of
-/// what it can explain. The best held signal is fitted with each period near its own, and its samples are tried in the
-/// others: a rig has one clock.
+/// what it can explain. The best held signal is fitted with each period near its own. The others try its samples: a rig has
+/// one clock.
 void fit_best_shortly(const UnlistedTask& task, const Evaluator& evaluator, std::span<const double> frozen,
                       std::vector<Screened>& proposals) {
-  std::map<std::string, std::size_t> of_site;
-  std::optional<Screened> clock;
-  for (Screened& proposal : proposals) {
-    if (of_site[proposal.candidate.site]++ >= kFittedOfSite || task.watch.interrupted()) {
-      continue;
-    }
+  Screened* clock = nullptr;
+  const auto fit = [&](Screened& proposal) {
     task.watch.progress(
         {Work::unlisted, fmt::format("unlisted: a short fit of {}", label(proposal.candidate)), SharesOfWork::kProposed});
     const Stopwatch stopwatch;
-    const bool is_held = proposal.candidate.option == static_cast<int>(model::Memory::hold);
-    if (is_held && clock) {
-      proposal = task.refiner.with_samples_of(evaluator, *clock, std::move(proposal), frozen);
-    } else if (is_held) {
+    if (&proposal == clock) {
       proposal = task.refiner.with_samples(evaluator, std::move(proposal), frozen);
-      clock = proposal;
+    } else if (is_held(proposal)) {
+      proposal = task.refiner.with_samples_of(evaluator, *clock, std::move(proposal), frozen);
     } else {
       proposal = task.refiner.shortly(evaluator, std::move(proposal), frozen);
     }
     proposal.seconds += stopwatch.seconds();
+  };
+  for (Screened& proposal : proposals) {
+    if (is_held(proposal) && (clock == nullptr || proposal.criterion < clock->criterion)) {
+      clock = &proposal;
+    }
+  }
+  if (clock != nullptr) {
+    fit(*clock);
+  }
+  std::map<std::string, std::size_t> of_site;
+  for (Screened& proposal : proposals) {
+    if (of_site[proposal.candidate.site]++ < kFittedOfSite && &proposal != clock && !task.watch.interrupted()) {
+      fit(proposal);
+    }
   }
   order_by_site(proposals);
 }
@@ -136,26 +145,27 @@ std::string objection(const UnlistedTask& task, const Assessed& with, const Cand
 }
 
 /// Fits the first of what was screened with everything else, until there are `most` that nothing speaks against, and files
-/// all of them. Those behind one that leaves no more than noise are not fitted: they promised less. Those that leave clearly
-/// more than the best one, after the same effort, are not fitted either.
+/// all of them. Those behind one that leaves no more than noise are not fitted: they promised less. Those that the screening
+/// left with clearly more than the best one are not fitted either.
 void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, const std::vector<Screened>& screened,
-                   std::size_t most, const Effort& effort, UnlistedSearch& result) {
+                   std::size_t most, UnlistedSearch& result) {
   std::size_t to_fit = most;
   std::size_t may_replace = kReplaced;
-  double least = 0.0;
+  std::optional<double> least;  // that the screening left of the best one
   for (const Screened& s : screened) {
     Trial trial{task.round, s.candidate, false,     s.criterion,
                 1.0,        s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
     double left = std::numeric_limits<double>::infinity();
     const bool is_decided =
         result.reaches_noise(task.data) && s.candidate.site == result.trials[*result.best].candidate.site;
-    const bool is_behind = result.best && least < policy().clearly_less * s.left;
-    if (to_fit > 0 && !is_decided && !is_behind && !task.watch.interrupted()) {
-      --to_fit;
+    const bool is_behind = least && *least < policy().clearly_less * s.left;
+    const bool has_turn = to_fit > 0 && !is_decided && !task.watch.interrupted();
+    to_fit -= has_turn ? 1 : 0;
+    if (has_turn && !is_behind) {
       task.watch.progress({Work::unlisted, fmt::format("unlisted: fitting {} with everything else", label(s.candidate)),
                            SharesOfWork::kProposed});
       const Stopwatch stopwatch;
-      Assessed finalist = task.refiner.of_screened(s.fitted, frozen, effort);
+      Assessed finalist = task.refiner.of_screened(s.fitted, frozen, kCheck);
       trial.seconds += stopwatch.seconds();
       if (finalist.good()) {
         std::string against;
@@ -192,12 +202,12 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
 /// Terms of the grammar: proposed by regression, simulated, fitted shortly, and the best of every site fitted jointly.
 void fit_terms_of_grammar(const UnlistedTask& task, const Fitted& around, const Evaluator& evaluator,
                           UnlistedSearch& result) {
-  std::vector<Screened> proposals = by_simulation(
-      task, evaluator, around, propose_terms(evaluator.data(), around, task.located, task.threads, task.watch));
-  fit_best_shortly(task, evaluator, around.u, proposals);
   const double without = left_by(evaluator, around, task.threads);
+  std::vector<Screened> proposals = by_simulation(
+      task, evaluator, around, propose_terms(evaluator.data(), around, task.located, task.threads, task.watch), without);
+  fit_best_shortly(task, evaluator, around.u, proposals);
   std::ranges::for_each(proposals, [&](Screened& proposal) { proposal.left = proposal.criterion / without; });
-  fit_finalists(task, around.u, proposals, terms_to_fit(proposals), kCheck, result);
+  fit_finalists(task, around.u, proposals, terms_to_fit(proposals), result);
 }
 
 /// Tables and short laws at the sites of the task, where no effect is active and no load is measured.
@@ -214,7 +224,7 @@ void fit_tables(const UnlistedTask& task, const Fitted& around, const Evaluator&
     task.watch.progress(doing);
   };
   const auto screened = screening.run(candidates, "unlisted", of_unlisted);
-  fit_finalists(task, around.u, screened, unlisted_finalists(screened), kCheck, result);
+  fit_finalists(task, around.u, screened, unlisted_finalists(screened), result);
 }
 
 /// The best term with everything free, and with one phase for all records where it is periodic and this is no worse.
