@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tests/explain/latent/missing_effect.hpp"
 #include "tests/explain/oscillator.hpp"
 #include "tools/explain/data/start_state.hpp"
 #include "tools/explain/fit/scales.hpp"
@@ -104,4 +105,40 @@ TEST(UnlistedSearch, TermsThatLeaveMoreOfARecordThanTheCalibratedModelAreRefused
   const auto fitted = std::ranges::count_if(found.trials, &explain::Trial::refined);
   CHECK_COMPARE(fitted, >, static_cast<std::ptrdiff_t>(explain::kUnlistedFinalists));
   CHECK_COMPARE(fitted, <, static_cast<std::ptrdiff_t>(found.trials.size()));
+}
+
+// What screening leaves of a table and of a term of the grammar are not measured on the same residuals.
+TEST(UnlistedSearch, ATableIsFittedAlsoWhereATermOfTheGrammarIsAccepted) {
+  using Friction = model::UnlistedMotion<model::Site::engine_torque>;
+  ModelFile truth = test::declared();
+  test::add_effect<Friction>(std::get<SimplexParameters>(truth.parameters), [](auto& friction) {
+    friction.option = static_cast<int>(Friction::Law::friction_along_position);
+    friction.stiffness = 1e8;
+    friction.table.points = 3;
+    friction.table.x = {-8e-3, 0.0, 8e-3};
+    friction.table.y = {4e3, 0.0, 4e3};
+  });
+  const explain::Dataset data = test::data_of(truth);
+  const explain::Evaluator rough(data, explain::Resolution::rough);
+  const explain::Evaluator coarse(data, explain::Resolution::coarse);
+  const explain::Scales scales = explain::scales_of(truth.parameters, data);
+  const explain::Watch watch;
+  const explain::Refiner refiner{data, rough, coarse, coarse, scales, 2, watch};
+  const explain::Assessed calibrated = refiner.settled(test::about_declared());
+  explain::Located located = explain::locate(data, calibrated.model, 2);
+  std::erase_if(located.places, [](const explain::Place& place) { return !place.has("engine_torque"); });
+  CHECK_EQUAL(1U, located.places.size());
+  const auto found = explain::search_unlisted({.data = data,
+                                               .refiner = refiner,
+                                               .beside = calibrated,
+                                               .calibrated = calibrated.prediction,
+                                               .located = located,
+                                               .scales = scales,
+                                               .threads = 2,
+                                               .watch = watch});
+  const auto is_fitted = [](const char* name) {
+    return [name](const explain::Trial& trial) { return trial.refined && trial.candidate.name == name; };
+  };
+  CHECK_TRUE(std::ranges::any_of(found.trials, is_fitted("term_torque")));
+  CHECK_TRUE(std::ranges::any_of(found.trials, is_fitted("unlisted_torque")));
 }
