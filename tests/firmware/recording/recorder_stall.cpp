@@ -2,15 +2,22 @@
 // A loop of eight actuators at 4 kHz, whose recorder's disk stalls every other stretch of one and the same run:
 //   recorder_stall [SECONDS OF A STRETCH [STRETCHES]]
 // Compares the loop's step times and the cost of recording with the disk stalled and not, and counts the drops again in the
-// file. Exit 1 if the medians differ by more than `kMostRatio` or a single cycle is unaccounted for.
+// file. Exit 1 if the medians differ by more than `kMostRatio` in every pair of stretches, or a single cycle is unaccounted
+// for.
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include "firmware/plant/reference_plant.hpp"
 #include "hal/arithmetic/denormals.hpp"
@@ -58,7 +65,8 @@ class StallingFile final : public hal::RecordingSink {
 /// Hands cycles on to the recorder, and keeps what they and the handing on cost, with the disk stalled and not.
 class MeasuredRecorder {
  public:
-  explicit MeasuredRecorder(firmware::Recorder& recorder) : recorder_(recorder) {}
+  MeasuredRecorder(firmware::Recorder& recorder, std::size_t count)
+      : pairs(count, pair_of_histograms()), recorder_(recorder) {}
 
   void record(const hal::CycleHead& head, std::span<const double> commands, std::span<const double> readings) noexcept {
     const std::int64_t before = clock_.now_ns();
@@ -66,26 +74,36 @@ class MeasuredRecorder {
     const std::int64_t after = clock_.now_ns();
     const std::size_t kind = stalled.load(std::memory_order_relaxed) ? 1 : 0;
     steps[kind].add(head.stepped_ns - head.read_ns);
+    pairs[pair.load(std::memory_order_relaxed)][kind].add(head.stepped_ns - head.read_ns);
     costs[kind].add(after - before);
   }
 
+  using PairOfHistograms = std::array<firmware::Histogram, 2>;
+  static PairOfHistograms pair_of_histograms() { return {firmware::Histogram(10), firmware::Histogram(10)}; }
+
   std::atomic<bool> stalled{false};
-  std::array<firmware::Histogram, 2> steps{firmware::Histogram(10), firmware::Histogram(10)};
-  std::array<firmware::Histogram, 2> costs{firmware::Histogram(10), firmware::Histogram(10)};
+  std::atomic<std::size_t> pair{0};  ///< of a stretch with the disk running, and one with it stalled
+  PairOfHistograms steps = pair_of_histograms();
+  PairOfHistograms costs = pair_of_histograms();
+  std::vector<PairOfHistograms> pairs;  ///< steps by pair
 
  private:
   firmware::Recorder& recorder_;
   hal::PosixClock clock_;
 };
 
-double print(const char* what, const std::array<firmware::Histogram, 2>& times) {
+/// Median of the second of two over that of the first.
+double ratio_of_medians(const MeasuredRecorder::PairOfHistograms& times) {
+  return static_cast<double>(times[1].quantile_ns(0.5)) / static_cast<double>(times[0].quantile_ns(0.5));
+}
+
+void print(const char* what, const MeasuredRecorder::PairOfHistograms& times) {
   for (std::size_t kind = 0; kind < 2; ++kind) {
     const auto at = [&](double share) { return static_cast<double>(times[kind].quantile_ns(share)) * 1e-3; };
     std::printf("  %-10s disk %-7s %8llu cycles   median %.2f   90 %% %.2f   99 %% %.2f   99.9 %% %.2f us\n", what,
                 kind == 0 ? "running" : "stalled", static_cast<unsigned long long>(times[kind].count()), at(0.5), at(0.9),
                 at(0.99), at(0.999));
   }
-  return static_cast<double>(times[1].quantile_ns(0.5)) / static_cast<double>(times[0].quantile_ns(0.5));
 }
 
 /// The header of a recording that is only counted, not replayed.
@@ -111,7 +129,7 @@ int run(double seconds, int stretches) {
     std::fprintf(stderr, "recorder_stall: %s\n", failure ? failure->what.c_str() : "no thread");
     return 3;
   }
-  const auto measured = std::make_unique<MeasuredRecorder>(recorder);
+  const auto measured = std::make_unique<MeasuredRecorder>(recorder, static_cast<std::size_t>(stretches + 1) / 2);
 
   using Plant = firmware::Plant<Simplex>;
   using Bus = hal::sim::SimulatedPlantBus;
@@ -129,6 +147,7 @@ int run(double seconds, int stretches) {
       const bool stalled = stretch % 2 == 1;
       disk.stall(stalled);
       measured->stalled = stalled;
+      measured->pair = static_cast<std::size_t>(stretch) / 2;
       std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
     }
     disk.stall(false);
@@ -148,9 +167,16 @@ int run(double seconds, int stretches) {
   const std::uint64_t ran = loop->result().account.cycles() + loop->result().warm_up_cycles;
   const bool exact = account.offered == ran && account.stored == reader.cycles() && account.dropped() == reader.dropped() &&
                      ran == reader.cycles() + reader.dropped();
-  const double steps = print("step", measured->steps);
+  print("step", measured->steps);
   print("recording", measured->costs);
-  std::printf("step time, disk stalled over running, ratio of medians: %.3f (allowed %.1f)\n", steps, kMostRatio);
+  // A stalled disk that slows the loop does so in every pair. A processor that changes its speed does so in one.
+  double steps = HUGE_VAL;
+  for (std::size_t pair = 0; pair < static_cast<std::size_t>(stretches) / 2; ++pair) {
+    const double ratio = ratio_of_medians(measured->pairs[pair]);
+    std::printf("step time, disk stalled over running, ratio of medians: %.3f\n", ratio);
+    steps = std::min(steps, ratio);
+  }
+  std::printf("the least of them: %.3f (allowed %.1f)\n", steps, kMostRatio);
   std::printf("%llu cycles ran, %llu in the file, %llu dropped: %s\n", static_cast<unsigned long long>(ran),
               static_cast<unsigned long long>(reader.cycles()), static_cast<unsigned long long>(account.dropped()),
               exact ? "every one accounted for" : "NOT every one accounted for");
