@@ -256,7 +256,7 @@ Screened Refiner::shortly(const Evaluator& evaluator, Screened proposal, std::sp
   return proposal;
 }
 
-Screened Refiner::with_samples(const Evaluator& evaluator, Screened held, std::span<const double> frozen) const {
+Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held, std::span<const double> frozen) const {
   const double row = std::ranges::min(data_.experiments, {}, &Experiment::period).period;
   const auto moved_to = [&](Screened moved, const Samples& samples) {
     set_samples(moved, samples, row);

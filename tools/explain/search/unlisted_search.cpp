@@ -98,7 +98,7 @@ void fit_best_shortly(const UnlistedTask& task, const Evaluator& evaluator, std:
         {Work::unlisted, fmt::format("unlisted: a short fit of {}", label(proposal.candidate)), SharesOfWork::kProposed});
     const Stopwatch stopwatch;
     if (&proposal == clock) {
-      proposal = task.refiner.with_samples(evaluator, std::move(proposal), frozen);
+      proposal = task.refiner.with_samples(evaluator, proposal, frozen);
     } else if (is_held(proposal)) {
       proposal = task.refiner.with_samples_of(evaluator, *clock, std::move(proposal), frozen);
     } else {
@@ -144,6 +144,37 @@ std::string objection(const UnlistedTask& task, const Assessed& with, const Cand
   return harm.empty() ? std::string() : "; " + words::refused(harm);
 }
 
+/// A term that was fitted with everything else.
+struct Finalist {
+  Assessed model;
+  double left = std::numeric_limits<double>::infinity();  ///< beyond noise, over the noise
+  std::string against;                                    ///< what speaks against it; empty if nothing
+};
+
+/// Fits what was screened with everything else and judges it. `trial` says how it does.
+Finalist fit_finalist(const UnlistedTask& task, std::span<const double> frozen, const Screened& screened, Trial& trial) {
+  Finalist finalist;
+  finalist.model = task.refiner.of_screened(screened.fitted, frozen, kCheck);
+  if (!finalist.model.good()) {
+    return finalist;
+  }
+  const auto judge = [&] {
+    compare_and_say(trial, finalist.model, task.beside);
+    finalist.left = excess_over_noise(task.data, finalist.model.prediction);
+    finalist.against = objection(task, finalist.model, screened.candidate);
+  };
+  judge();
+  // A fit that ends early leaves some of what it would explain in the channel that it counts least.
+  if (!finalist.against.empty() && trial.held_out_ratio < policy().clearly_less && !task.watch.interrupted()) {
+    if (Assessed settled = task.refiner.settled(finalist.model.model); settled.good()) {
+      finalist.model = std::move(settled);
+      judge();
+    }
+  }
+  trial.reason += finalist.against;
+  return finalist;
+}
+
 /// Fits the first of what was screened with everything else, until there are `most` that nothing speaks against, and files
 /// all of them. Those behind one that leaves no more than noise are not fitted: they promised less. Those that the screening
 /// left with clearly more than the best one are not fitted either.
@@ -155,7 +186,7 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
   for (const Screened& s : screened) {
     Trial trial{task.round, s.candidate, false,     s.criterion,
                 1.0,        s.seconds,   "dropped", std::string(words::text(words::Reason::behind_finalists))};
-    double left = std::numeric_limits<double>::infinity();
+    Finalist finalist;
     const bool is_decided =
         result.reaches_noise(task.data) && s.candidate.site == result.trials[*result.best].candidate.site;
     const bool is_behind = least && *least < policy().clearly_less * s.left;
@@ -165,37 +196,21 @@ void fit_finalists(const UnlistedTask& task, std::span<const double> frozen, con
       task.watch.progress({Work::unlisted, fmt::format("unlisted: fitting {} with everything else", label(s.candidate)),
                            SharesOfWork::kProposed});
       const Stopwatch stopwatch;
-      Assessed finalist = task.refiner.of_screened(s.fitted, frozen, kCheck);
+      finalist = fit_finalist(task, frozen, s, trial);
       trial.seconds += stopwatch.seconds();
-      if (finalist.good()) {
-        std::string against;
-        const auto judge = [&] {
-          compare_and_say(trial, finalist, task.beside);
-          left = excess_over_noise(task.data, finalist.prediction);
-          against = objection(task, finalist, s.candidate);
-        };
-        judge();
-        // A fit that ends early leaves some of what it would explain in the channel that it counts least.
-        if (!against.empty() && trial.held_out_ratio < policy().clearly_less && !task.watch.interrupted()) {
-          if (Assessed settled = task.refiner.settled(finalist.model); settled.good()) {
-            finalist = std::move(settled);
-            judge();
-          }
-        }
-        if (!against.empty()) {
-          trial.reason += against;
-          const std::size_t replacement = may_replace > 0 ? 1 : 0;
-          to_fit += replacement;
-          may_replace -= replacement;
-        } else if (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio) {
-          result.best = result.trials.size();
-          result.model = std::move(finalist);
-          least = s.left;
-        }
-      }
+    }
+    const bool is_best = finalist.model.good() && finalist.against.empty() &&
+                         (!result.best || trial.held_out_ratio < result.trials[*result.best].held_out_ratio);
+    if (is_best) {
+      result.best = result.trials.size();
+      result.model = std::move(finalist.model);
+      least = s.left;
+    } else if (!finalist.against.empty() && may_replace > 0) {
+      ++to_fit;
+      --may_replace;
     }
     result.trials.push_back(std::move(trial));
-    result.left.push_back(left);
+    result.left.push_back(finalist.left);
   }
 }
 
