@@ -140,7 +140,7 @@ class Axis : public AxisStates {
     const S relief = actuator.piston_area * hold_.response(kPiston, kFlow) / h +
                      0.5 * actuator.leakage * hold_.response(kPressure, kFlow) -
                      0.5 * valve.rated_flow * hold_.response(kOpening, kFlow);
-    flow_relief_ = relief < kMostRelief ? relief : S{kMostRelief};
+    flow_relief_ = select(relief < kMostRelief, relief, S{kMostRelief});
   }
 
   const Parameters& parameters() const noexcept { return parameters_; }
@@ -322,7 +322,7 @@ class Axis : public AxisStates {
     const S& supply = parameters_.actuator.supply_pressure;
     const S drop = 1.0 - sign_of(opening) * pressure / supply;
     // The root's slope is infinite at zero drop; below 1e-9 of the supply the flow is zero to any sensor.
-    const S flow = parameters_.servovalve.rated_flow * opening * sqrt(value_of(drop) > 1e-9 ? drop : S{1e-9});
+    const S flow = parameters_.servovalve.rated_flow * opening * sqrt(select(value_of(drop) > 1e-9, drop, S{1e-9}));
     return {pressure, opening, supply, h_, time, flow};
   }
 

@@ -64,7 +64,7 @@ struct Surroundings : AxisStates {
       case Argument::flow: {
         // The root's slope is infinite at zero drop; below a billionth of the supply pressure the flow is zero.
         const S drop = 1.0 - sign_of(y(kOpening)) * y(kPressure) / actuator.supply_pressure;
-        return valve.rated_flow * y(kOpening) * sqrt(value_of(drop) > 1e-9 ? drop : S{1e-9});
+        return valve.rated_flow * y(kOpening) * sqrt(select(value_of(drop) > 1e-9, drop, S{1e-9}));
       }
       case Argument::load_pressure:
         return y(kPressure);

@@ -57,7 +57,8 @@ S vibrated_stribeck_level(const S& speed, const S& level, const S& static_ratio,
   const S vibrated = vibrated_level<S>(speed, level, vibration_ratio, vibration_velocity);
   // Friction that vibration takes away altogether leaves a level of zero at rest, and a bristle that follows at once.
   const S least = level * S(1e-9);
-  return stribeck_level<S>(speed, value_of(vibrated) > value_of(least) ? vibrated : least, static_ratio, stribeck_velocity);
+  return stribeck_level<S>(speed, select(value_of(vibrated) > value_of(least), vibrated, least), static_ratio,
+                           stribeck_velocity);
 }
 
 /// The limit of a sequence whose errors shrink by a constant factor (Aitken), held to what three members can say. Of a
@@ -65,11 +66,10 @@ S vibrated_stribeck_level(const S& speed, const S& level, const S& static_ratio,
 template <class S>
 S extrapolated_speed(const S& guess, const S& first, const S& second) noexcept {
   const S before = first - guess;
-  const bool settled = !(value_of(before) != 0.0);
-  const S ratio = settled ? S{0.0} : (second - first) / before;
-  const S factor = value_of(ratio) > 0.9 ? S{0.9} : value_of(ratio) < -10.0 ? S{-10.0} : ratio;
+  const S ratio = select(value_of(before) != 0.0, S((second - first) / before), S{0.0});
+  const S factor = select(value_of(ratio) > 0.9, S{0.9}, select(value_of(ratio) < -10.0, S{-10.0}, ratio));
   const S limit = (second - factor * first) / (1.0 - factor);
-  return value_of(limit) > 0.0 ? limit : S{0.0};
+  return select(value_of(limit) > 0.0, limit, S{0.0});
 }
 
 /// Bristle damping that dies with speed, damping e^{-(v/v_d)^2} with v_d = 2 sqrt(2e) level / damping: half of the bound
@@ -103,8 +103,8 @@ BristleStep<S> bristle_step(const S& speed, const S& level, const Bristle<S>& br
   // Below `kSmall` the quotients lose digits and the series is exact to 2e-15. Both are computed at every step and blended
   // by a weight of 0 or 1, which changes no bit, so that sticking and slipping cost the same: a choice would become a
   // branch.
-  const auto small = static_cast<double>(value_of(exponent) < kSmall);
-  const double large = 1.0 - small;
+  const auto small = one_where(value_of(exponent) < kSmall);
+  const auto large = 1.0 - small;
   const S within = small * exponent;
   const S series =
       0.5 - within * (1.0 / 6 - within * (1.0 / 24 - within * (1.0 / 120 - within * (1.0 / 720 - within * (1.0 / 5040)))));

@@ -40,20 +40,46 @@ class DelayLine {
     newest_ = (newest_ + 1) % Capacity;
     values_[newest_] = value;
     const S steps = delay / h;
-    if (value_of(steps) < 0.0) {
+    const auto is_early = value_of(steps) < 0.0;
+    if (everywhere(is_early)) {
       return ahead(-steps);
     }
-    const double plain = value_of(steps);
-    constexpr auto kLongest = static_cast<double>(Capacity - 2);
-    const auto whole = static_cast<std::size_t>(plain < kLongest ? plain : kLongest);
-    const S& later = values_[(newest_ + Capacity - whole) % Capacity];
-    const S& earlier = values_[(newest_ + Capacity - whole - 1) % Capacity];
-    return later + (earlier - later) * (steps - static_cast<double>(whole));
+    const S late = behind(steps);
+    return anywhere(is_early) ? select(is_early, ahead(-steps), late) : late;
+  }
+
+  /// Puts the state of a delay line of plain numbers into one lane; as many values have passed through both.
+  template <class Other>
+  void set_lane(int lane, const DelayLine<Other, Capacity>& other) noexcept {
+    newest_ = other.newest_;
+    for (std::size_t i = 0; i < Capacity; ++i) {
+      values_[i].set(lane, other.values_[i]);
+    }
   }
 
  private:
   template <class Other, std::size_t OtherCapacity>
   friend class DelayLine;
+
+  /// Whole steps in a delay, from none to the most that the memory holds.
+  static std::size_t whole_steps(double steps) noexcept {
+    constexpr auto kLongest = static_cast<double>(Capacity - 2);
+    return steps > 0.0 ? static_cast<std::size_t>(steps < kLongest ? steps : kLongest) : 0;
+  }
+  const S& ago(std::size_t steps) const noexcept { return values_[(newest_ + Capacity - steps) % Capacity]; }
+
+  S behind(const S& steps) const noexcept {
+    if constexpr (are_lanes<S>) {
+      const auto whole_in = [&](int lane) { return whole_steps(steps[lane]); };
+      const S whole = S::by_lane([&](int lane) { return static_cast<double>(whole_in(lane)); });
+      const S later = S::by_lane([&](int lane) { return ago(whole_in(lane))[lane]; });
+      const S earlier = S::by_lane([&](int lane) { return ago(whole_in(lane) + 1)[lane]; });
+      return later + (earlier - later) * (steps - whole);
+    } else {
+      const std::size_t whole = whole_steps(value_of(steps));
+      return ago(whole) + (ago(whole + 1) - ago(whole)) * (steps - static_cast<double>(whole));
+    }
+  }
 
   S ahead(const S& steps) const noexcept {
     const S& now = values_[newest_];

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numbers>
 #include <type_traits>
+#include <utility>
 
 namespace hotfire::model {
 
@@ -21,6 +22,12 @@ using std::sqrt;
 template <class S>
 using Precise = std::conditional_t<std::is_same_v<S, float>, double, S>;
 
+/// True for a scalar that is several numbers side by side (lanes.hpp).
+template <class S>
+inline constexpr bool are_lanes = requires {
+  S::kLanes;
+};
+
 /// The plain value behind a scalar: itself for a floating-point number, the real part of a dual number.
 template <std::floating_point S>
 constexpr double value_of(S x) noexcept {
@@ -31,6 +38,22 @@ constexpr double value_of(S x) noexcept {
 template <class Dual>
 requires requires(const Dual& x) { x.a; }
 constexpr double value_of(const Dual& x) noexcept { return static_cast<double>(x.a); }
+
+/// The type of the plain value behind a scalar.
+template <class S>
+using Plain = std::remove_cvref_t<decltype(value_of(std::declval<const S&>()))>;
+
+// Choices by value. A condition is a bool, or one for each of several numbers side by side (`Lanes`), which the model then
+// computes both ways. A branch that saves time asks `everywhere` or `anywhere`, and is right for a mixture as well.
+
+template <class S>
+constexpr S select(bool condition, const S& where_true, const S& where_false) noexcept {
+  return condition ? where_true : where_false;
+}
+/// 1 where the condition holds, 0 elsewhere: a weight that makes no branch.
+constexpr double one_where(bool condition) noexcept { return static_cast<double>(condition); }
+constexpr bool everywhere(bool condition) noexcept { return condition; }
+constexpr bool anywhere(bool condition) noexcept { return condition; }
 
 /// -1, 0 or 1, by value.
 template <class S>
@@ -46,10 +69,25 @@ constexpr double sign_of(const S& x) noexcept {
 /// x = k ln 2 + r with |r| <= ln 2 / 2, e^-r by its series to r^13 (4e-18), 2^-k by its bits: within 2 units of the last
 /// place.
 inline constexpr double kLongestFade = 500.0;
-inline double plain_fading_exponential(double x) noexcept {
-  constexpr double kWhole = 0x1.8p52;  // added to a number below 2^51 it rounds to whole numbers
+inline constexpr double kWholeNumbers = 0x1.8p52;  // added to a number below 2^51 it rounds to whole numbers
+
+/// e^-r of that, for x = `limited` and k = `whole`.
+template <class S>
+S fading_series(const S& limited, const S& whole) noexcept {
   constexpr double kLog2 = 0x1.62e42fee00000p-1;
   constexpr double kRestOfLog2 = 0x1.a39ef35793c76p-33;
+  const S r = (whole * kLog2 - limited) + whole * kRestOfLog2;
+  const S r2 = r * r;
+  const S r4 = r2 * r2;
+  // 1 / n!, grouped by powers of r^4 so that the processor works on several at once.
+  const S low = 1.0 + r + r2 * (1.0 / 2 + r * (1.0 / 6));
+  const S middle = (1.0 / 24 + r * (1.0 / 120)) + r2 * (1.0 / 720 + r * (1.0 / 5040));
+  const S high = (1.0 / 40320 + r * (1.0 / 362880)) + r2 * (1.0 / 3628800 + r * (1.0 / 39916800));
+  const S highest = 1.0 / 479001600 + r * (1.0 / 6227020800.0);
+  return low + r4 * (middle + r4 * (high + r4 * highest));
+}
+
+inline double plain_fading_exponential(double x) noexcept {
   double limited = x < kLongestFade ? x : kLongestFade;
   // The compiler must not know the number: it would branch to the constant result of the limit, and the time of a step would
   // depend on the state.
@@ -58,17 +96,8 @@ inline double plain_fading_exponential(double x) noexcept {
 #elif defined(__aarch64__)
   __asm__("" : "+w"(limited));
 #endif
-  const double shifted = limited * std::numbers::log2e + kWhole;
-  const double whole = shifted - kWhole;
-  const double r = (whole * kLog2 - limited) + whole * kRestOfLog2;
-  const double r2 = r * r;
-  const double r4 = r2 * r2;
-  // 1 / n!, grouped by powers of r^4 so that the processor works on several at once.
-  const double low = 1.0 + r + r2 * (1.0 / 2 + r * (1.0 / 6));
-  const double middle = (1.0 / 24 + r * (1.0 / 120)) + r2 * (1.0 / 720 + r * (1.0 / 5040));
-  const double high = (1.0 / 40320 + r * (1.0 / 362880)) + r2 * (1.0 / 3628800 + r * (1.0 / 39916800));
-  const double highest = 1.0 / 479001600 + r * (1.0 / 6227020800.0);
-  const double series = low + r4 * (middle + r4 * (high + r4 * highest));
+  const double shifted = limited * std::numbers::log2e + kWholeNumbers;
+  const double series = fading_series(limited, shifted - kWholeNumbers);
   // The last bits of `shifted` are k.
   const auto power = (std::uint64_t{1023} << 52) - (std::bit_cast<std::uint64_t>(shifted) << 52);
   return series * std::bit_cast<double>(power);

@@ -53,11 +53,9 @@ ModeMotion<S> advance_overdamped_mode(const ModeMotion<S>& from, const S& w, con
           from.velocity * (fade - fast * spread) - from.displacement * (slow * fast) * spread};
 }
 
-/// The exact advance of eta'' + 2 zeta w eta' + w^2 eta = 0 over `h` [s]. Under a force that is held it is that of the
-/// deviation from force / w^2, where the mode would come to rest. `w` is the undamped natural frequency [rad/s], above 0;
-/// zeta is 0 or more.
+/// `advance_mode` in a scalar that is a single number.
 template <class S>
-ModeMotion<S> advance_mode(const ModeMotion<S>& from, const S& w, const S& damping_ratio, double h) noexcept {
+ModeMotion<S> advance_mode_of_number(const ModeMotion<S>& from, const S& w, const S& damping_ratio, double h) noexcept {
   using std::cos;
   using std::sin;
   constexpr double kNearlyCritical = 1e-3;  // off a damping ratio of 1: the series has full precision
@@ -74,6 +72,25 @@ ModeMotion<S> advance_mode(const ModeMotion<S>& from, const S& w, const S& dampi
   const S s = sin(damped * h) * envelope;
   return {from.displacement * c + (from.velocity + decay_rate * from.displacement) / damped * s,
           from.velocity * c - (from.velocity * decay_rate + from.displacement * (w * w)) / damped * s};
+}
+
+/// The exact advance of eta'' + 2 zeta w eta' + w^2 eta = 0 over `h` [s]. Under a force that is held it is that of the
+/// deviation from force / w^2, where the mode would come to rest. `w` is the undamped natural frequency [rad/s], above 0;
+/// zeta is 0 or more.
+template <class S>
+ModeMotion<S> advance_mode(const ModeMotion<S>& from, const S& w, const S& damping_ratio, double h) noexcept {
+  if constexpr (are_lanes<S>) {
+    ModeMotion<S> to;
+    for (int lane = 0; lane < S::kLanes; ++lane) {
+      const ModeMotion<double> own =
+          advance_mode<double>({from.displacement[lane], from.velocity[lane]}, w[lane], damping_ratio[lane], h);
+      to.displacement.set(lane, own.displacement);
+      to.velocity.set(lane, own.velocity);
+    }
+    return to;
+  } else {
+    return advance_mode_of_number<S>(from, w, damping_ratio, h);
+  }
 }
 
 }  // namespace hotfire::model

@@ -8,6 +8,7 @@
 
 #include "tests/benchmark/page.hpp"
 #include "tests/benchmark/rivals/cases.hpp"
+#include "tests/simulate/parameter_sets.hpp"
 
 namespace hotfire::test {
 namespace {
@@ -112,6 +113,28 @@ void ours_masv(benchmark::State& run) { ours_vehicle<Masv>(run); }
 void cvode_taos(benchmark::State& run) { cvode_vehicle<Taos>(run); }
 void cvode_masv(benchmark::State& run) { cvode_vehicle<Masv>(run); }
 
+/// As many parameter sets as a dispersion has; 2 s of each.
+constexpr int kSets = 1000;
+constexpr std::size_t kRows = 1000;
+
+template <class Simulate>
+void batch(benchmark::State& run, Simulate&& simulate) {
+  const ParameterSets sets(kSets, kRows);
+  for (auto _ : run) {
+    simulate(sets);
+  }
+  run.counters["simulated"] = sets.simulated_seconds();
+}
+
+void batch_alone(benchmark::State& run) {
+  batch(run, [](const ParameterSets& sets) { sets.simulate_alone(); });
+}
+void batch_together(benchmark::State& run) {
+  batch(run, [](const ParameterSets& sets) { sets.simulate_together(); });
+}
+
+BENCHMARK(batch_alone);
+BENCHMARK(batch_together);
 BENCHMARK(step_axis);
 BENCHMARK(step_taos);
 BENCHMARK(step_masv)->Arg(0)->Arg(16)->Arg(32)->Arg(48)->Arg(64);

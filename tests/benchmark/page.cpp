@@ -8,6 +8,7 @@
 #include <iterator>
 #include <vector>
 
+#include "model/numerics/step_size.hpp"
 #include "tests/benchmark/operations.hpp"
 
 namespace hotfire::test {
@@ -87,6 +88,57 @@ void append_steps(std::string& text, const Results& measured) {
       "from that line. `ctest -R vehicle_cost` checks the number of instructions, which does not depend on other "
       "load.\n",
       1e9 * line.constant, 1e9 * line.slope, 100.0 * line.deviation);
+}
+
+/// How many plants step within half of a period: the other half is for inputs, outputs, the recorder and the latency.
+void append_axes_of_a_core(std::string& text, const Results& measured) {
+  struct Plant {
+    const char* name;
+    const char* words;
+    int axes;
+  };
+  constexpr Plant kPlants[] = {{"step_axis", "one axis, friction, soft spring, dead band", 1},
+                               {"step_taos", "TAOS, hot fire", 2},
+                               {"step_masv/64", "MASV, hot fire, 64 modes", 8}};
+  constexpr double kShare = 0.5;
+  constexpr double kPeriods[] = {1e-3, 2.5e-4, 1e-4};
+  if (std::any_of(std::begin(kPlants), std::end(kPlants), [&](const Plant& own) { return !measured.contains(own.name); })) {
+    return;
+  }
+  const auto add = std::back_inserter(text);
+  text.append(
+      "\n## Axes of one core\n\nThis many axes step within half of a period. The other half is for inputs, outputs, the "
+      "recorder\nand the latency of the machine. A period of 1 ms has two steps of 0.5 ms.\n\n"
+      "| plant | 1 kHz | 4 kHz | 10 kHz |\n|---|---|---|---|\n");
+  for (const Plant& own : kPlants) {
+    fmt::format_to(add, "| {} |", own.words);
+    for (const double period : kPeriods) {
+      const double step = model::steps_per_period(period) * measured.at(own.name).seconds;
+      fmt::format_to(add, " {} |", own.axes * static_cast<int>(kShare * period / step));
+    }
+    text.append("\n");
+  }
+}
+
+void append_batches(std::string& text, const Results& measured) {
+  const auto alone = measured.find("batch_alone");
+  const auto together = measured.find("batch_together");
+  if (alone == measured.end() || together == measured.end()) {
+    return;
+  }
+  const auto add = std::back_inserter(text);
+  text.append(
+      "\n## Many parameter sets\n\n"
+      "1,000 parameter sets of one axis with friction, soft spring and dead band, 2 s each, on one core. Side by side, "
+      "eight\n"
+      "runs share the registers of the core (`hotfire.simulate_many`). Each run has the bits that it has alone.\n\n"
+      "| | simulated seconds a second | over one after the other | target |\n|---|---|---|---|\n");
+  const auto row = [&](const char* name, const Measured& own, const char* wanted) {
+    fmt::format_to(add, "| {} | {:.0f} | {:.2f} | {} |\n", name, own.counters.at("simulated") / own.seconds,
+                   alone->second.seconds / own.seconds, wanted);
+  };
+  row("one after the other", alone->second, "");
+  row("side by side", together->second, "3");
 }
 
 /// What the arithmetic of a step is, beside which its instructions stand.
@@ -291,6 +343,8 @@ std::string performance_page(const Results& measured) {
       "depend on\n"
       "the machine.\n";
   append_steps(text, measured);
+  append_axes_of_a_core(text, measured);
+  append_batches(text, measured);
   append_contents(text, measured);
   append_work_precision(text, measured);
   append_rivals(text, measured);

@@ -75,6 +75,37 @@ def test_a_batch_has_the_bits_of_single_runs_in_their_order(model, record):
         hotfire.simulate_many(models, hotfire.Record({"piston": np.zeros(100)}, period=1e-3))
 
 
+@pytest.mark.parametrize("threads", [1, 3])
+def test_a_batch_of_unlike_models_has_the_bits_of_single_runs_in_their_order(model, record, threads):
+    stiff = model.with_values({"actuator.leakage": 1e-11})
+    models = []
+    for i in range(11):
+        models += [(model if i % 2 else stiff).with_values({"engine.inertia": 8e3 + 100.0 * i}), model_of("simplex")]
+    inputs = [record] * len(models)
+    models.insert(5, model_of("taos"))
+    inputs.insert(5, inputs_of("taos"))
+    batch = hotfire.simulate_many(models, inputs, threads=threads)
+    assert len(batch) == len(models)
+    for own, expected, driven_by in zip(batch, models, inputs):
+        alone = hotfire.simulate(expected, driven_by)
+        assert list(own) == list(alone)
+        for name in alone:
+            assert np.array_equal(own[name].values, alone[name].values), name
+
+
+def test_the_first_run_that_fails_is_what_a_batch_fails_with(model, record):
+    unstable = [model.with_values({"servovalve.position_gain": gain}) for gain in (9e5, 8e5)]
+    alone = []
+    for own in unstable:
+        with pytest.raises(hotfire.FileError, match="runs away") as failure:
+            hotfire.simulate(own, record)
+        alone.append(str(failure.value))
+    models = [model, model.with_values({"engine.inertia": 9e3}), *unstable, model.with_values({"engine.inertia": 1e4})]
+    with pytest.raises(hotfire.FileError) as failure:
+        hotfire.simulate_many(models, record, threads=1)
+    assert str(failure.value) == alone[0]
+
+
 def test_other_threads_of_python_go_on_while_a_model_runs(model):
     # A thread that counts every millisecond gets nowhere while another holds the lock of the interpreter.
     ticks = []

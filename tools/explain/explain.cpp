@@ -85,7 +85,7 @@ void add_common_bias(const Dataset& data, const SearchResult& found, Explanation
 }  // namespace
 
 Explanation explain(const ModelFile& model, const std::vector<Record>& records, const ExplainOptions& options) {
-  const Dataset data = make_dataset(model, records, options.exclusions);
+  Dataset data = make_dataset(model, records, options.exclusions);
   const std::vector<Dataset> kept_back = held_out_data(model, options);
   const SearchOptions search_options{options.threads, options.most_effects, options.watch};
   SearchResult found = search(data, model, search_options);

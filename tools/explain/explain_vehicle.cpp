@@ -61,7 +61,7 @@ Watch watch_of(const Watch& watch, const std::string& axis, std::size_t searches
   return own;
 }
 
-Found search_axis(const AxisOfVehicle& axis, const ExplainOptions& options, std::size_t searches_to_come) {
+Found search_axis(AxisOfVehicle& axis, const ExplainOptions& options, std::size_t searches_to_come) {
   try {
     return search(axis.data, axis.model,
                   {options.threads, options.most_effects, watch_of(options.watch, axis.name, searches_to_come)});

@@ -13,6 +13,7 @@
 #include "tools/files/text/error.hpp"
 #include "tools/python/models.hpp"
 #include "tools/python/vehicle_gradients.hpp"
+#include "tools/simulate/batch/side_by_side.hpp"
 #include "tools/simulate/gradients.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
@@ -43,22 +44,61 @@ Record run(const Model& model, const Record& inputs, const RunOptions& options) 
   return simulate(std::get<ModelFile>(model.file), inputs, options.fit_start);
 }
 
+using Runs = std::vector<std::pair<const Model*, const Record*>>;
+
+/// The places of the runs that one task does: alone, or several side by side.
+std::vector<std::vector<std::size_t>> tasks_of(const Runs& runs, const RunOptions& options, unsigned threads) {
+  std::vector<std::vector<std::size_t>> tasks;
+  std::vector<OpenLoopRun> of_one_axis;
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto* file = std::get_if<ModelFile>(&runs[i].first->file);
+    if (file == nullptr || options.fit_start > 0) {
+      tasks.push_back({i});
+    } else {
+      of_one_axis.push_back({file, runs[i].second});
+      places.push_back(i);
+    }
+  }
+  for (std::vector<std::size_t>& group : groups_side_by_side(of_one_axis, threads)) {
+    for (std::size_t& member : group) {
+      member = places[member];
+    }
+    tasks.push_back(std::move(group));
+  }
+  return tasks;
+}
+
 /// Several runs on several threads; the first that fails, in the order of the runs, is what fails.
-std::vector<Record> run_many(const std::vector<std::pair<const Model*, const Record*>>& runs, const RunOptions& options,
-                             unsigned threads) {
-  std::vector<Record> records(runs.size());
-  std::vector<std::exception_ptr> failures(runs.size());
-  explain::parallel_for(runs.size(), threads, [&](std::size_t i) {
+std::vector<Record> run_many(const Runs& runs, const RunOptions& options, unsigned threads) {
+  std::vector<RunOutcome> outcomes(runs.size());
+  const auto tasks = tasks_of(runs, options, threads);
+  explain::parallel_for(tasks.size(), threads, [&](std::size_t t) {
+    const std::vector<std::size_t>& members = tasks[t];
     try {
-      records[i] = run(*runs[i].first, *runs[i].second, options);
+      if (members.size() == 1) {
+        const auto& [model, inputs] = runs[members.front()];
+        outcomes[members.front()].record = run(*model, *inputs, options);
+        return;
+      }
+      std::vector<OpenLoopRun> together;
+      for (const std::size_t member : members) {
+        together.push_back({&std::get<ModelFile>(runs[member].first->file), runs[member].second});
+      }
+      std::vector<RunOutcome> own = simulate_side_by_side(together);
+      for (std::size_t i = 0; i < members.size(); ++i) {
+        outcomes[members[i]] = std::move(own[i]);
+      }
     } catch (...) {
-      failures[i] = std::current_exception();
+      outcomes[members.front()].failure = std::current_exception();
     }
   });
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) {
-      std::rethrow_exception(failure);
+  std::vector<Record> records;
+  for (RunOutcome& outcome : outcomes) {
+    if (outcome.failure) {
+      std::rethrow_exception(outcome.failure);
     }
+    records.push_back(std::move(outcome.record));
   }
   return records;
 }
@@ -144,8 +184,7 @@ void add_runs(py::module_& module) {
       py::arg("model"), py::arg("inputs"), py::arg("fit_start"), py::arg("seed"));
   module.def(
       "simulate_many",
-      [](const std::vector<std::pair<const Model*, const Record*>>& runs, std::size_t fit_start, unsigned seed,
-         unsigned threads) {
+      [](const Runs& runs, std::size_t fit_start, unsigned seed, unsigned threads) {
         const py::gil_scoped_release released;
         return run_many(runs, {fit_start, seed}, threads);
       },

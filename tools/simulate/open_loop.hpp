@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "tools/files/record/record.hpp"
+#include "tools/files/text/error.hpp"
 #include "tools/simulate/run.hpp"
 
 namespace hotfire {
@@ -19,6 +23,23 @@ inline std::span<const double> values_of(const Record& inputs, std::string_view 
 /// Piston position at the first row of a record of a hydraulic axis, if it is measured there [m]; otherwise 0.
 inline double first_piston(const Record& inputs, double moment_arm) {
   return first_piston(values_of(inputs, "piston"), values_of(inputs, "engine"), moment_arm);
+}
+
+/// An output record with the rows of `inputs`. It holds the input channel only.
+inline Record beside(const Record& inputs, const Channel& input) {
+  Record outputs;
+  outputs.start = inputs.start;
+  outputs.period = inputs.period;
+  outputs.rows = inputs.rows;
+  outputs.channels.push_back(input);
+  return outputs;
+}
+
+/// The error for a model that runs away at a row.
+inline FileError runaway_error(const Record& inputs, std::size_t row, std::string_view input_channel) {
+  return FileError(fmt::format("{}: the model runs away at {:.6g} s: its parameters make it unstable for this {}",
+                               inputs.path.string(), inputs.start + static_cast<double>(row) * inputs.period,
+                               input_channel));
 }
 
 /// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command

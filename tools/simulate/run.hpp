@@ -17,6 +17,7 @@ namespace hotfire {
 
 /// A reading beyond this is a simulation that ran away, in any unit.
 inline constexpr double kRunaway = 1e12;
+inline bool is_runaway(double reading) { return !(std::abs(reading) < kRunaway); }
 
 /// Piston position at the first row of a hydraulic axis, by what is measured there [m]; 0 where neither is.
 inline double first_piston(std::span<const double> piston, std::span<const double> engine, double moment_arm) {
@@ -51,7 +52,7 @@ bool run_rows(std::size_t rows, const typename Plant::State& state, int steps, A
   for (std::size_t row = 0; row < rows; ++row) {
     const auto& readings = Plant::measured(state);
     for (const S& reading : readings) {
-      if (!(std::abs(model::value_of(reading)) < kRunaway)) {
+      if (is_runaway(model::value_of(reading))) {
         return false;
       }
     }

@@ -3,7 +3,6 @@
 
 #include <ceres/jet.h>
 #include <ceres/tiny_solver.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
@@ -95,11 +94,7 @@ std::string unit_of_motion(const Record& inputs, std::string_view channel, const
 template <class Plant>
 Record run_open_loop(const Plant& plant, typename Plant::State state, const Record& inputs, int steps) {
   const Channel& input = *inputs.find(std::string(Plant::input_channel));
-  Record outputs;
-  outputs.start = inputs.start;
-  outputs.period = inputs.period;
-  outputs.rows = inputs.rows;
-  outputs.channels.push_back(input);
+  Record outputs = beside(inputs, input);
   bool input_is_position = false;
   if constexpr (std::is_same_v<typename Plant::Parameters, ElectromechanicalParameters>) {
     input_is_position = has_position_loop(plant.parameters());
@@ -117,9 +112,7 @@ Record run_open_loop(const Plant& plant, typename Plant::State state, const Reco
     }
   };
   if (!run_record(plant, inputs, state, steps, keep)) {
-    throw FileError(fmt::format(
-        "{}: the model runs away at {:.6g} s: its parameters make it unstable for this {}", inputs.path.string(),
-        inputs.start + static_cast<double>(outputs.channels[1].values.size()) * inputs.period, Plant::input_channel));
+    throw runaway_error(inputs, outputs.channels[1].values.size(), Plant::input_channel);
   }
   return outputs;
 }

@@ -47,10 +47,18 @@ struct PistonFriction {
   static S step(const Params<S>& params, State<S>& state, const Motion<S>& input) noexcept {
     const S level = stribeck_level<S>(input.velocity, params.coulomb_force, params.static_ratio, params.stribeck_velocity);
     // A level of zero is no friction: the bristle is not divided by it.
-    if (law_of<PistonFriction>(params) == Law::lugre && value_of(level) > 0.0) {
-      return bristle_force<S>(state.deflection, input, level, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
+    const auto rubs = value_of(level) > 0.0;
+    if (law_of<PistonFriction>(params) == Law::elastoplastic || !anywhere(rubs)) {
+      return elastoplastic_force<S>(state.deflection, input, level, params.stiffness);
     }
-    return elastoplastic_force<S>(state.deflection, input, level, params.stiffness);
+    S elsewhere = state.deflection;
+    const S force = bristle_force<S>(state.deflection, input, level, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
+    if (everywhere(rubs)) {
+      return force;
+    }
+    const S force_elsewhere = elastoplastic_force<S>(elsewhere, input, level, params.stiffness);
+    state.deflection = select(rubs, state.deflection, elsewhere);
+    return select(rubs, force, force_elsewhere);
   }
 };
 

@@ -37,7 +37,8 @@ struct RateLimit {
 
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {
-    if (!(value_of(params.rate) < kNoLimit)) {
+    const auto is_limited = value_of(params.rate) < kNoLimit;
+    if (!anywhere(is_limited)) {
       state.output = input.value;
       return input.value;
     }
@@ -45,10 +46,10 @@ struct RateLimit {
     const S wanted = input.value - start;
     const S largest = params.rate * input.h;
     const S change = clamp_symmetric<S>(wanted, largest);
-    state.output = start + change;
+    state.output = select(is_limited, S(start + change), input.value);
     // Mean over the step: a ramp of slope `rate` for as long as it takes, then the command itself.
     const S ramp_part = change * sign_of(change) / largest;
-    return start + change * (1.0 - 0.5 * ramp_part);
+    return select(is_limited, S(start + change * (1.0 - 0.5 * ramp_part)), input.value);
   }
 };
 

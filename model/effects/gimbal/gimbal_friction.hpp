@@ -70,9 +70,23 @@ struct GimbalFriction {
       return coulomb_force<S>(input, params.coulomb_torque);
     }
     // A level of zero is no friction: the bristle is not divided by it.
-    if (!(value_of(params.coulomb_torque) > 0.0)) {
+    const auto rubs = value_of(params.coulomb_torque) > 0.0;
+    if (!anywhere(rubs)) {
       return S{0.0};
     }
+    const S start = state.deflection;
+    const S torque = bristle(params, state, input, law);
+    if (everywhere(rubs)) {
+      return torque;
+    }
+    state.deflection = select(rubs, state.deflection, start);
+    return select(rubs, torque, S{0.0});
+  }
+
+ private:
+  /// The torque of a bristle by one of its laws.
+  template <class S>
+  static S bristle(const Params<S>& params, State<S>& state, const Motion<S>& input, Law law) noexcept {
     if (law == Law::dahl) {
       return bristle_force<S>(state.deflection, input, params.coulomb_torque, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
     }
@@ -86,19 +100,25 @@ struct GimbalFriction {
     return lugre(params, state, input, speed, level, S(params.coulomb_torque * params.vibration_ratio));
   }
 
- private:
   /// Length of the slip. At rest the root has no slope.
   template <class S>
   static S speed_of(const S& own, const S& other) noexcept {
+    const S along = own * sign_of(own);
+    const auto turns_across = value_of(other) != 0.0;
+    if (!anywhere(turns_across)) {
+      return along;
+    }
     const S squared = own * own + other * other;
-    return value_of(other) != 0.0 && value_of(squared) > 0.0 ? S(sqrt(squared)) : S(own * sign_of(own));
+    const auto has_length = value_of(squared) > 0.0;
+    const S length = sqrt(select(has_length, squared, S{1.0}));
+    return select(turns_across, select(has_length, length, along), along);
   }
 
   /// `least` is the least level that the law reaches: the bound of passivity holds for it.
   template <class S>
   static S lugre(const Params<S>& params, State<S>& state, const Motion<S>& input, const S& speed, const S& level,
                  const S& least) noexcept {
-    const S damping = value_of(least) > 0.0 ? passive_damping<S>(params.damping, least, speed) : S{0.0};
+    const S damping = select(value_of(least) > 0.0, passive_damping<S>(params.damping, least, speed), S{0.0});
     return bristle_force<S>(state.deflection, input, speed, level, Bristle<S>{params.stiffness, damping, S{0.0}});
   }
 };

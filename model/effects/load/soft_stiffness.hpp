@@ -57,7 +57,7 @@ struct SoftStiffness {
 
   template <class S>
   struct State {
-    double magnitude = 0.0;  ///< force of the last evaluation, where the next one begins [N]
+    Plain<S> magnitude{0.0};  ///< force of the last evaluation, where the next one begins [N]
   };
 
   template <class S>
@@ -92,14 +92,14 @@ struct SoftStiffness {
 
   template <class S>
   static Spring<S> step(const Params<S>& params, State<S>& state, const Spring<S>& input) noexcept {
-    const double direction = sign_of(input.deflection);
+    const auto direction = sign_of(input.deflection);
     const S deflection = input.deflection * direction;
     Spring<S> output = input;
     if (law_of<SoftStiffness>(params) == Law::table) {
       output.deflection = table_force(params, input, deflection) * direction / input.stiffness;
       return output;
     }
-    const double near = curve_of<double>(params, input).halley(state.magnitude, value_of(deflection));
+    const Plain<S> near = curve_of<Plain<S>>(params, input).halley(state.magnitude, value_of(deflection));
     const S solved = curve_of<S>(params, input).newton(S(near), deflection);
     state.magnitude = value_of(solved);
     output.deflection = solved * direction / input.stiffness;
@@ -145,7 +145,7 @@ struct SoftStiffness {
     T newton(const T& force, const T& deflection) const noexcept {
       const Point here = at(force);
       const T next = force - (here.deflection - deflection) / here.compliance;
-      return value_of(next) > 0.0 ? next : T{0.0};
+      return select(value_of(next) > 0.0, next, T{0.0});
     }
 
     T halley(const T& force, const T& deflection) const noexcept {
@@ -155,8 +155,8 @@ struct SoftStiffness {
       const T half{0.5};
       const T curved = here.compliance - half * off * here.bend / here.compliance;
       const T least = half * here.compliance;
-      const T next = force - off / (curved > least ? curved : least);
-      return value_of(next) > 0.0 ? next : T{0.0};
+      const T next = force - off / select(curved > least, curved, least);
+      return select(value_of(next) > 0.0, next, T{0.0});
     }
   };
 
@@ -171,7 +171,7 @@ struct SoftStiffness {
     };
     const T actuator = plain(input.actuator_stiffness);
     const T given = plain(params.low_stiffness);
-    const T low = given < actuator ? given : actuator;
+    const T low = select(given < actuator, given, actuator);
     const Law law = law_of<SoftStiffness>(params);
     return {plain(params.load_scale), T(1.0 / actuator), T(1.0 / plain(input.load_stiffness)),
             law == Law::stiffness ? T(actuator - low) : T(1.0 / low - 1.0 / actuator), law};
@@ -181,21 +181,24 @@ struct SoftStiffness {
   static S table_force(const Params<S>& params, const Spring<S>& input, const S& deflection) noexcept {
     const auto& table = params.table;
     const S load_compliance = 1.0 / input.load_stiffness;
+    // Of the point below the deflection: its force, its deflection, and the compliance from there on. Every point is looked
+    // at, so that the time depends on their number alone.
     S force_below{0.0};
     S deflection_below{0.0};
     S compliance = 1.0 / table.y[0] + load_compliance;
+    S force_before{0.0};
+    S deflection_here{0.0};
+    S through = compliance;
     for (int i = 0; i < table.points; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const S own = i == 0 ? 1.0 / table.y[0] : 0.5 * (1.0 / table.y[k] + 1.0 / table.y[k - 1]);
-      const S through = own + load_compliance;
-      const S deflection_here = deflection_below + (table.x[k] - force_below) * through;
-      if (deflection < deflection_here) {
-        compliance = through;
-        return force_below + (deflection - deflection_below) / compliance;
-      }
-      force_below = table.x[k];
-      deflection_below = deflection_here;
-      compliance = 1.0 / table.y[k] + load_compliance;
+      deflection_here = deflection_here + (table.x[k] - force_before) * through;
+      force_before = table.x[k];
+      const S own = i + 1 == table.points ? 1.0 / table.y[k] : 0.5 * (1.0 / table.y[k + 1] + 1.0 / table.y[k]);
+      through = own + load_compliance;
+      const auto is_short = deflection < deflection_here;
+      force_below = select(is_short, force_below, force_before);
+      deflection_below = select(is_short, deflection_below, deflection_here);
+      compliance = select(is_short, compliance, through);
     }
     return force_below + (deflection - deflection_below) / compliance;
   }

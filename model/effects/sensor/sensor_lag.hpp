@@ -41,14 +41,15 @@ struct SensorLag {
     const S slope = input.value - state.last;
     state.last = input.value;
     // Below a thousandth of the step the lag is that of the linear motion itself, tau times the slope.
-    if (value_of(params.time_constant) < 1e-3 * input.h) {
-      state.output = input.value - slope * (params.time_constant / input.h);
+    const auto is_short = value_of(params.time_constant) < 1e-3 * input.h;
+    const S ratio = params.time_constant / input.h;
+    const S behind = input.value - slope * ratio;
+    if (everywhere(is_short)) {
+      state.output = behind;
       return state.output;
     }
-    const S ratio = params.time_constant / input.h;
     const S decay = exp(-1.0 / ratio);
-    const S steady = input.value - slope * ratio;
-    state.output = steady + (state.output - (steady - slope)) * decay;
+    state.output = select(is_short, behind, S(behind + (state.output - (behind - slope)) * decay));
     return state.output;
   }
 };

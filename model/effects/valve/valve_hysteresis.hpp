@@ -37,8 +37,7 @@ struct ValveHysteresis {
     const S start = stop_after<S>(state.distance, input.value - half_change - state.last, params.half_width);
     const S end = stop_after<S>(start, input.change, params.half_width);
     // The share of the step after which the play is taken up.
-    const bool moves = value_of(input.change) != 0.0;
-    const S share = moves ? S((end - start) / input.change) : S{0.0};
+    const S share = select(value_of(input.change) != 0.0, S((end - start) / input.change), S{0.0});
     state.distance = end;
     state.last = input.value + half_change;
     return input.value - (end - 0.5 * share * (end - start));

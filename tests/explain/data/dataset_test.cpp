@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/explain/latent/missing_effect.hpp"
 #include "tests/support/refusal.hpp"
 #include "tools/files/text/error.hpp"
 
@@ -227,4 +228,58 @@ TEST(Dataset, AMeasuredTorqueIsAnInputAndAChannelWithoutAPlaceIsNamed) {
   STRCMP_EQUAL("force", data.experiments[0].unused[0].c_str());
   const auto thin = hotfire::explain::thinned(data, 4e-3);
   LONGS_EQUAL(values.size() / 2, thin.experiments[0].torque.size());
+}
+
+// A step of the command, of which the record begins some time constants later: the slope of its first rows is within the
+// noise, and what is left of the motion is many times the noise.
+TEST(Dataset, ARecordOfAnAxisThatMovedBeforeItIsComparedWhereTheStartIsForgotten) {
+  using hotfire::Record;
+  const hotfire::ModelFile model = hotfire::test::declared();
+  const Record whole = hotfire::test::record_under(model, [](double t) { return t < 1.0 ? 0.0 : 0.02; });
+  const auto cut = [&](std::size_t first) {
+    Record record = whole;
+    record.rows -= first;
+    for (hotfire::Channel& channel : record.channels) {
+      channel.values.erase(channel.values.begin(), channel.values.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+    return record;
+  };
+  const auto forgets = [&](const Record& record, std::size_t& first_scored) {
+    auto data = hotfire::explain::make_dataset(model, {record});
+    LONGS_EQUAL(0, data.experiments.front().first_scored);
+    std::vector<std::vector<double>> predicted;
+    const Record modelled = hotfire::simulate(model, record);
+    for (const std::string& channel : data.channels) {
+      predicted.push_back(modelled.find(channel)->values);
+    }
+    const bool any = hotfire::explain::forget_moving_starts(model.parameters, {predicted}, data);
+    first_scored = data.experiments.front().first_scored;
+    for (const auto& block : data.experiments.front().scored()) {
+      CHECK(block.first >= first_scored);
+    }
+    return any;
+  };
+  std::size_t first_scored = 0;
+  CHECK(forgets(cut(640), first_scored));
+  // Two seconds of the reference axis.
+  CHECK(first_scored > 900);
+  CHECK(first_scored < 1100);
+  CHECK(!forgets(cut(0), first_scored));
+  LONGS_EQUAL(0, first_scored);
+}
+
+// A delay of the command shows nothing in the first rows, however much it leaves half a second later.
+TEST(Dataset, WhatAMissingEffectLeavesOfTheFirstMotionIsNoStartInMotion) {
+  using hotfire::Record;
+  const hotfire::ModelFile declared = hotfire::test::declared();
+  const hotfire::ModelFile late = hotfire::test::with_effect<hotfire::model::CommandDelay>({0.02});
+  const Record record = hotfire::test::record_under(late, [](double t) { return t < 0.1 ? 0.0 : 0.02; });
+  auto data = hotfire::explain::make_dataset(declared, {record});
+  std::vector<std::vector<double>> predicted;
+  const Record modelled = hotfire::simulate(declared, record);
+  for (const std::string& channel : data.channels) {
+    predicted.push_back(modelled.find(channel)->values);
+  }
+  CHECK(!hotfire::explain::forget_moving_starts(declared.parameters, {predicted}, data));
+  LONGS_EQUAL(0, data.experiments.front().first_scored);
 }

@@ -75,3 +75,37 @@ TEST(StartState, ARecordOfFewRowsTakesItsFirstRowAsPosition) {
   DOUBLES_EQUAL(0.1, start.position, 0.0);
   CHECK(!start.moves());
 }
+
+namespace {
+
+/// White noise of one, and at the start what the axis remembers, `size` at the first row and e^-1 of it every 100 rows.
+std::vector<double> left_by_a_model(double size, double noise, std::size_t rows) {
+  std::mt19937_64 generator(11);
+  std::normal_distribution<double> normal(0.0, noise);
+  std::vector<double> left;
+  for (std::size_t row = 0; row < rows; ++row) {
+    left.push_back(size * std::exp(-0.01 * static_cast<double>(row)) + normal(generator));
+  }
+  return left;
+}
+
+}  // namespace
+
+// Over two time constants the mean square of e^-t is a quarter: a start of four times the noise adds four of its squares.
+TEST(StartState, WhatDiesOutAtTheStartIsAMotionBeforeTheRecord) {
+  using hotfire::explain::dies_out_at_start;
+  constexpr std::size_t kMemory = 900;
+  CHECK(dies_out_at_start(left_by_a_model(5.0, 1.0, 5000), kMemory, 1.0));
+  CHECK(!dies_out_at_start(left_by_a_model(2.0, 1.0, 5000), kMemory, 1.0));
+  CHECK(!dies_out_at_start(left_by_a_model(0.0, 1.0, 5000), kMemory, 1.0));
+  // It is no larger than what the model leaves anyhow.
+  CHECK(!dies_out_at_start(left_by_a_model(5.0, 3.0, 5000), kMemory, 1.0));
+  // It stays.
+  std::vector<double> stays = left_by_a_model(0.0, 1.0, 5000);
+  for (std::size_t row = 0; row < kMemory; ++row) {
+    stays[row] += 5.0;
+  }
+  CHECK(!dies_out_at_start(stays, kMemory, 1.0));
+  // There is nothing beyond the memory to compare with.
+  CHECK(!dies_out_at_start(left_by_a_model(5.0, 1.0, kMemory), kMemory, 1.0));
+}

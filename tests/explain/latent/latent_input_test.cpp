@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/latent/latent_input.hpp"
+#include "tools/explain/latent/locate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -179,4 +180,20 @@ TEST(LatentInput, TheFlowOfARowIsThatOfTheSimulation) {
   const double simulated = modelled.find("engine")->values[100];
   // Half as many steps as `simulate` takes, and a torque that starts within the first of them.
   DOUBLES_EQUAL(simulated, angle, 0.01 * std::abs(simulated));
+}
+
+TEST(LatentInput, WhatAnEffectMayLeaveOfItsOwnLawRefutesNoOtherSite) {
+  explain::Place torque;
+  torque.sites = {"engine_torque"};
+  torque.is_possible = true;
+  torque.is_likely = true;
+  explain::Place sensor;
+  sensor.sites = {"sensor.engine"};
+  const explain::Located single{{torque, sensor}, true};
+  CHECK(single.refutes("sensor.engine", {}));
+  CHECK(single.refutes("sensor.engine", {"flow"}));
+  CHECK(!single.refutes("sensor.engine", {"flow", "engine_torque"}));
+  CHECK(!single.refutes("engine_torque", {}));
+  const explain::Located several{{torque, sensor}, false};
+  CHECK(!several.refutes("sensor.engine", {}));
 }

@@ -8,6 +8,7 @@
 
 #include "tests/explain/readings.hpp"
 #include "tests/support/add_effect.hpp"
+#include "tools/explain/fit/fit.hpp"
 #include "tools/explain/terms/candidates.hpp"
 #include "tools/simulate/simulate.hpp"
 

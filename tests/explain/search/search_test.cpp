@@ -17,7 +17,7 @@ using test::oscillator;
 
 explain::SearchResult found_in(const Record& record, int most_effects = 4, double declared_stiffness = 97.0) {
   const ModelFile model = declared_oscillator(declared_stiffness);
-  const auto data = explain::make_dataset(model, {record});
+  auto data = explain::make_dataset(model, {record});
   return explain::search(data, model, {2, most_effects, {}});
 }
 
@@ -25,6 +25,24 @@ explain::SearchResult found_in(const Record& record, int most_effects = 4, doubl
 
 TEST_GROUP(Search){};
 TEST_GROUP(SearchAtLength){};
+
+// A record that begins a third of a second after a step of the command: 160 rows later, its start is forgotten.
+TEST(Search, NothingIsFoundInARecordOfAnAxisThatMovedBeforeIt) {
+  const ModelFile model = test::declared();
+  Record record = test::record_under(
+      model, [](double t) { return t < 1.0 ? 0.0 : 0.02 + 5e-3 * std::sin(3.0 * std::max(0.0, t - 4.0)); });
+  constexpr std::size_t kCut = 640;
+  record.rows -= kCut;
+  for (Channel& channel : record.channels) {
+    channel.values.erase(channel.values.begin(), channel.values.begin() + kCut);
+  }
+  auto data = explain::make_dataset(model, {record});
+  LONGS_EQUAL(0, data.experiments.front().first_scored);
+  const auto found = explain::search(data, model, {2, 4, {}});
+  CHECK(data.experiments.front().first_scored > 900);
+  CHECK(found.kept.empty());
+  CHECK(explain::reaches_noise(data, found.explained));
+}
 
 // The reference axis has 2 ms: closer rows cost time and separate nothing, and there are no others to leave out.
 TEST(Search, CandidatesAreRankedOnRowsThatTheServoFollows) {
@@ -92,7 +110,7 @@ TEST(Search, ADeclaredEffectIsCalibratedWithinItsToleranceAndOneWithoutSupportIs
   test::add_effect<model::CubicStiffness>(parameters, [](auto& values) { values.stiffness = 250.0; });
   test::add_effect<model::QuadraticStiffness>(parameters, [](auto& values) { values.stiffness = 1e-3; });
   model.tolerance["effects.cubic_stiffness.stiffness"] = 0.5;
-  const auto data = explain::make_dataset(model, {oscillator(400.0, 1e-3)});
+  auto data = explain::make_dataset(model, {oscillator(400.0, 1e-3)});
   const auto found = explain::search(data, model, {2, 4, {}});
   LONGS_EQUAL(0, found.kept.size());
   const auto& calibrated = found.calibrated.model;

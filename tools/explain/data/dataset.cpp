@@ -215,6 +215,31 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   return data;
 }
 
+bool forget_moving_starts(const ModelParameters& model, const std::vector<std::vector<std::vector<double>>>& predicted,
+                          Dataset& data) {
+  const auto* axis = std::get_if<SimplexParameters>(&model);
+  bool any = false;
+  for (std::size_t e = 0; axis != nullptr && e < data.experiments.size(); ++e) {
+    Experiment& experiment = data.experiments[e];
+    const std::size_t memory = rows_of_memory(*axis, experiment.rows(), experiment.period);
+    const bool is_bridged = std::ranges::any_of(experiment.excluded, [&](const Block& b) { return b.first < memory; });
+    bool moves = false;
+    for (std::size_t c = 0; experiment.first_scored == 0 && !is_bridged && c < experiment.measured.size(); ++c) {
+      std::vector<double> left(experiment.measured[c]);
+      for (std::size_t row = 0; row < left.size(); ++row) {
+        left[row] -= predicted[e][c][row];
+      }
+      moves = moves || dies_out_at_start(left, memory, experiment.noise[c]);
+    }
+    if (moves) {
+      any = true;
+      experiment.first_scored = memory;
+      share_out(experiment);
+    }
+  }
+  return any;
+}
+
 std::vector<double> position_of(const Experiment& mass) {
   using Mass = model::Direct<double>;
   if (mass.measured.size() < Mass::channels.size()) {

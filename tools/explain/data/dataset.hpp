@@ -10,6 +10,7 @@
 #include "tools/explain/data/block.hpp"
 #include "tools/explain/data/exclusions.hpp"
 #include "tools/explain/data/other_axis.hpp"
+#include "tools/explain/data/plants.hpp"
 #include "tools/explain/data/start_state.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/record/record.hpp"
@@ -77,6 +78,12 @@ struct Dataset {
 /// leaves nothing of a record.
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
+
+/// Takes the first rows of a record of a hydraulic axis out of the comparison if the residual of the calibrated model decays
+/// there (`dies_out_at_start`): the axis moved before. A record with excluded rows at its start is left as it is.
+/// `predicted` is by record, channel and row. Returns whether there is such a record.
+bool forget_moving_starts(const ModelParameters& model, const std::vector<std::vector<std::vector<double>>>& predicted,
+                          Dataset& data);
 
 /// Position of a force-driven mass by row: as measured, else from its velocity or its acceleration by `integral_of`.
 std::vector<double> position_of(const Experiment& mass);

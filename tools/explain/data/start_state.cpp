@@ -9,6 +9,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 
 #include "model/numerics/step_size.hpp"
 #include "tools/simulate/run.hpp"
@@ -108,6 +109,37 @@ StartState start_state(const DirectParameters& parameters, std::span<const doubl
   return start;
 }
 
+std::size_t rows_of_memory(const SimplexParameters& parameters, std::size_t rows, double period) {
+  const auto& valve = parameters.servovalve;
+  const double washout =
+      valve.position_feedback != 0.0 || valve.pressure_feedback_gain > 0.0 ? 1.0 / valve.pressure_feedback_corner : 0.0;
+  const double loop = valve.position_feedback != 0.0 ? parameters.actuator.piston_area /
+                                                           (valve.rated_flow * valve.position_gain * valve.position_feedback)
+                                                     : 2.0 * valve.damping_ratio / valve.natural_frequency;
+  const double seconds = -std::log(kForgotten) * (loop + washout);
+  return std::min(rows / 4, static_cast<std::size_t>(seconds / period));
+}
+
+bool dies_out_at_start(std::span<const double> left, std::size_t memory, double noise) {
+  constexpr double kStandsOut = 4.0;  // mean square: with two time constants in it, chance gives less
+  constexpr double kGone = 0.5;
+  const std::size_t part = memory / 4;
+  if (part == 0 || left.size() <= memory) {
+    return false;
+  }
+  const auto mean_square = [](std::span<const double> values) {
+    const double square = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+    return square / static_cast<double>(values.size());
+  };
+  // A seventh of a time constant. What the first motion of the command shows of a missing effect comes later.
+  const std::size_t first_rows = std::max<std::size_t>(1, part / 16);
+  const double usual = std::max(noise * noise, mean_square(left.subspan(memory)));
+  const double at_first = mean_square(left.first(first_rows));
+  const double at_start = mean_square(left.first(part));
+  const double after = mean_square(left.subspan(part, part));
+  return std::min(at_first, at_start) > kStandsOut * usual && after - usual < kGone * (at_start - usual);
+}
+
 std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<const double> command,
                                  std::span<const std::vector<double>> measured, double period,
                                  std::span<const double> noise) {
@@ -116,13 +148,8 @@ std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<
   if (rows < 4) {
     return 0;
   }
-  const auto& valve = parameters.servovalve;
-  if (valve.position_feedback == 0.0) {
-    // The position stays; what is forgotten are the spool and the washout.
-    const double seconds =
-        -std::log(kForgotten) * (2.0 * valve.damping_ratio / valve.natural_frequency +
-                                 (valve.pressure_feedback_gain > 0.0 ? 1.0 / valve.pressure_feedback_corner : 0.0));
-    return std::min(command.size() / 4, static_cast<std::size_t>(seconds / period));
+  if (parameters.servovalve.position_feedback == 0.0) {
+    return rows_of_memory(parameters, command.size(), period);
   }
   const int steps = model::steps_per_period(period);
   const model::Simplex<double> axis(parameters, period / steps);
@@ -134,10 +161,7 @@ std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<
   if (simulated.size() < rows || is_steady(simulated, measured, noise)) {
     return 0;
   }
-  const double loop_gain =
-      valve.rated_flow * valve.position_gain * valve.position_feedback / parameters.actuator.piston_area;
-  const double seconds = -std::log(kForgotten) * (1.0 / loop_gain + 1.0 / valve.pressure_feedback_corner);
-  return std::min(command.size() / 4, static_cast<std::size_t>(seconds / period));
+  return rows_of_memory(parameters, command.size(), period);
 }
 
 std::size_t rows_to_forget_start(const ElectromechanicalParameters& parameters, std::span<const double> setpoint,

@@ -28,10 +28,20 @@ struct StartState {
 StartState start_state(const DirectParameters& parameters, std::span<const double> force,
                        std::span<const std::vector<double>> measured, double period, std::span<const double> noise);
 
-/// How many rows pass until a hydraulic axis has forgotten where it started; 0 if it starts in the steady state under its
-/// first command. It does not where measured minus simulated piston or engine motion has a slope over the first twenty rows
-/// that is beyond six standard errors. What is forgotten: the servo's position error and the pressure washout, each to a
-/// ten-thousandth.
+/// How many rows pass until a hydraulic axis has forgotten where it started, to a ten-thousandth: at most a quarter of them.
+/// What is forgotten: the servo's position error and the pressure washout; without position feedback the spool and the
+/// washout.
+std::size_t rows_of_memory(const SimplexParameters& parameters, std::size_t rows, double period);
+
+/// True if the residual `left` of a model decays at its start, as the error of an unknown start does. Its rms over the first
+/// rows, and over the first quarter of the memory (two time constants), is twice that of all rows beyond the memory, and
+/// twice the noise; most of it is gone in the second quarter. It separates a start in motion from a steady one only beside a
+/// calibrated model.
+bool dies_out_at_start(std::span<const double> left, std::size_t memory, double noise);
+
+/// How many rows pass until a hydraulic axis has forgotten where it started (`rows_of_memory`); 0 if it starts in the steady
+/// state under its first command. It does not where measured minus simulated piston or engine motion has a slope over the
+/// first twenty rows that is beyond six standard errors.
 std::size_t rows_to_forget_start(const SimplexParameters& parameters, std::span<const double> command,
                                  std::span<const std::vector<double>> measured, double period,
                                  std::span<const double> noise);

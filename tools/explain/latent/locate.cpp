@@ -46,8 +46,10 @@ bool Located::allows(const std::string& site) const {
          std::ranges::any_of(places, [&](const Place& place) { return place.is_likely && place.has(site); });
 }
 
-bool Located::refutes(const std::string& site) const {
-  return is_single && std::ranges::none_of(places, [&](const Place& place) { return place.is_possible && place.has(site); });
+bool Located::refutes(const std::string& site, const std::vector<std::string>& found) const {
+  const bool may_be_rest_of_a_law = std::ranges::any_of(found, [&](const std::string& own) { return allows(own); });
+  return is_single && !may_be_rest_of_a_law &&
+         std::ranges::none_of(places, [&](const Place& place) { return place.is_possible && place.has(site); });
 }
 
 std::vector<std::string> Located::likely_sites() const {

@@ -20,6 +20,8 @@
 #include "tools/explain/search/stopwatch.hpp"
 #include "tools/explain/search/unlisted_stage.hpp"
 #include "tools/explain/words/reasons.hpp"
+#include "tools/explain/words/refusals.hpp"
+#include "tools/files/text/error.hpp"
 
 namespace hotfire::explain {
 
@@ -49,7 +51,8 @@ class Search {
                  options.watch),
         unlisted_(data, refiner_, coarse_, scales_, options, result_) {}
 
-  SearchResult run() {
+  /// The declared model within its tolerances.
+  const Assessed& calibrate() {
     Fitted start;
     start.base = model_.parameters;
     start.free = declared_parameters(start.base, model_.tolerance);
@@ -64,6 +67,13 @@ class Search {
     }
     options_.watch.progress({Work::calibrating, "calibrating the declared parameters within their tolerances"});
     result_.calibrated = calibrated(start);
+    if (!result_.calibrated.good()) {
+      throw FileError(words::diverges_declared(model_.path.string()));
+    }
+    return result_.calibrated;
+  }
+
+  SearchResult run() {
     result_.explained = result_.calibrated;
     for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
       const int round = result_.next_round();
@@ -98,10 +108,14 @@ class Search {
   /// no candidate is supported.
   bool add_effect(int round, const Located& where) {
     const Fitted& current = result_.explained.model;
+    std::vector<std::string> found;
+    for (const Kept& kept : result_.kept) {
+      found.push_back(kept.trial.candidate.site);
+    }
     std::vector<Candidate> candidates = all_candidates(current.base, data_);
     std::erase_if(candidates, [&](const Candidate& c) {
       return is_active(current.base, c.effect) || !has_what_it_carries(current.base, c) || goes_in_and_out(c) ||
-             is_measured_load(data_, c.site) || where.refutes(c.site);
+             is_measured_load(data_, c.site) || where.refutes(c.site, found);
     });
     if (candidates.empty()) {
       return false;
@@ -110,18 +124,18 @@ class Search {
     const Screening screening(evaluator, current, scales_, options_.threads);
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     Round fits(round, data_, refiner_, result_.explained, std::move(screened), options_.watch);
-    RoundResult found = fits.run();
-    result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());
-    if (!found.kept) {
+    RoundResult best = fits.run();
+    result_.trials.insert(result_.trials.end(), best.trials.begin(), best.trials.end());
+    if (!best.kept) {
       return false;
     }
     if (result_.rival) {
       earlier_rivals_.push_back(std::move(*result_.rival));
     }
-    result_.kept.push_back(std::move(*found.kept));
-    result_.explained = std::move(found.model);
-    result_.rival = std::move(found.rival);
-    is_settled_ = found.settled;
+    result_.kept.push_back(std::move(*best.kept));
+    result_.explained = std::move(best.model);
+    result_.rival = std::move(best.rival);
+    is_settled_ = best.settled;
     polish_earlier(round);
     return true;
   }
@@ -366,8 +380,16 @@ Dataset rows_for_ranks(const Dataset& data, const ModelFile& model) {
              : data;
 }
 
-SearchResult search(const Dataset& data, const ModelFile& model, const SearchOptions& options) {
-  return Search(data, model, options).run();
+SearchResult search(Dataset& data, const ModelFile& model, const SearchOptions& options) {
+  {
+    Search first(data, model, options);
+    if (!forget_moving_starts(model.parameters, first.calibrate().prediction, data)) {
+      return first.run();
+    }
+  }
+  Search again(data, model, options);
+  again.calibrate();
+  return again.run();
 }
 
 }  // namespace hotfire::explain

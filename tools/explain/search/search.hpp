@@ -39,7 +39,8 @@ struct SearchOptions {
 /// Calibrates the declared model within its tolerances, then adds effects one by one while the data support them: every
 /// candidate is screened, the best are fitted jointly with everything else, and one is kept if it lowers the BIC and the
 /// error on held-out blocks. An effect that a later one makes superfluous is taken out again.
-SearchResult search(const Dataset& data, const ModelFile& model, const SearchOptions& options);
+/// The first rows of a record whose axis moved before it are taken out of the comparison in `data` (`forget_moving_starts`).
+SearchResult search(Dataset& data, const ModelFile& model, const SearchOptions& options);
 
 /// The rows on which candidates are ranked: those of an axis `thinned` to what its servo follows, of other plants all.
 Dataset rows_for_ranks(const Dataset& data, const ModelFile& model);

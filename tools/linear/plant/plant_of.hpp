@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "hal/arithmetic/denormals.hpp"
+#include "tools/interface/plant/copy_state.hpp"
 #include "tools/linear/plant/elements.hpp"
 #include "tools/linear/plant/parameters.hpp"
 #include "tools/linear/plant/topologies.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/interface/plant/copy_state.hpp"
+#include "model/numerics/members.hpp"
 #include "tools/linear/plant/plant.hpp"
 
 namespace hotfire::linear {
@@ -65,7 +65,7 @@ void visit_scalars(T& value, F&& f) {
       if constexpr (detail::is_tuple<T>) {
         return std::apply([](auto&... own) { return std::tie(own...); }, value);
       } else {
-        return plant::detail::tied(value);
+        return model::tied(value);
       }
     }();
     std::apply([&](auto&... own) { (visit_scalars<S>(own, f), ...); }, members);
@@ -85,7 +85,7 @@ constexpr bool hides() {
   } else if constexpr (detail::is_list<T>) {
     return hides<typename T::value_type>();
   } else {
-    using Members = decltype(plant::detail::tied(std::declval<T&>()));
+    using Members = decltype(model::tied(std::declval<T&>()));
     return []<class... M>(std::type_identity<std::tuple<M...>>) {
       return (hides<std::remove_cvref_t<M>>() || ...);
     }(std::type_identity<Members>{});

