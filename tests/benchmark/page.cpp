@@ -162,7 +162,8 @@ void append_contents(std::string& text, const Results& measured) {
       "multiplications (8 x 8, and 8 x 6 three times). A processor with AVX2 does four of them in one instruction. An\n"
       "exponential takes about 30 instructions. `ctest --test-dir build/release -R step_cost -V` prints the instructions of "
       "a\n"
-      "step. What they are beyond the arithmetic reads and writes constants and state.\n");
+      "step, how often it reads and writes data, its conditional branches, and its misses of the first cache. What the\n"
+      "instructions are beyond the arithmetic reads and writes constants and state.\n");
 }
 
 /// The fastest run of CVODE whose error is no larger; null if none is.

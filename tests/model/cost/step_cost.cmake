@@ -24,3 +24,10 @@ endif()
 if(most GREATER MOST OR least LESS 1200)
   message(FATAL_ERROR "step cost: a step must take 1200 to ${MOST} instructions")
 endif()
+
+count_memory(memory ${WORK} ${VALGRIND} hotfire_measured_step ${PROGRAM})
+foreach(count reads writes branches mispredicted misses)
+  quotient(${count} ${memory_${count}} 1000)
+endforeach()
+message(STATUS "step cost: a step reads data ${reads} times and writes ${writes} times, has ${branches} conditional branches "
+  "(${mispredicted} mispredicted), and misses the first cache ${misses} times, with another state each time")
