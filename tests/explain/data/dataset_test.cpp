@@ -260,7 +260,7 @@ TEST(Dataset, ARecordOfAnAxisThatMovedBeforeItIsComparedWhereTheStartIsForgotten
     return any;
   };
   std::size_t first_scored = 0;
-  CHECK(forgets(cut(640), first_scored));
+  CHECK(forgets(cut(690), first_scored));
   // Two seconds of the reference axis.
   CHECK(first_scored > 900);
   CHECK(first_scored < 1100);

@@ -121,7 +121,7 @@ std::size_t rows_of_memory(const SimplexParameters& parameters, std::size_t rows
 }
 
 bool dies_out_at_start(std::span<const double> left, std::size_t memory, double noise) {
-  constexpr double kStandsOut = 4.0;  // mean square: with two time constants in it, chance gives less
+  constexpr double kStandsOut = 4.0;  // mean square: fifteen rows of noise have less by chance
   constexpr double kGone = 0.5;
   const std::size_t part = memory / 4;
   if (part == 0 || left.size() <= memory) {
@@ -131,11 +131,10 @@ bool dies_out_at_start(std::span<const double> left, std::size_t memory, double 
     const double square = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
     return square / static_cast<double>(values.size());
   };
-  // A seventh of a time constant. What the first motion of the command shows of a missing effect comes later.
-  const std::size_t first_rows = std::max<std::size_t>(1, part / 16);
+  // Half a time constant, and a seventh: what the first motion of the command shows of a missing effect comes later.
   const double usual = std::max(noise * noise, mean_square(left.subspan(memory)));
-  const double at_first = mean_square(left.first(first_rows));
-  const double at_start = mean_square(left.first(part));
+  const double at_start = mean_square(left.first(std::max<std::size_t>(1, memory / 16)));
+  const double at_first = mean_square(left.first(std::max<std::size_t>(1, memory / 64)));
   const double after = mean_square(left.subspan(part, part));
   return std::min(at_first, at_start) > kStandsOut * usual && after - usual < kGone * (at_start - usual);
 }

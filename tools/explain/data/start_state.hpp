@@ -34,9 +34,9 @@ StartState start_state(const DirectParameters& parameters, std::span<const doubl
 std::size_t rows_of_memory(const SimplexParameters& parameters, std::size_t rows, double period);
 
 /// True if the residual `left` of a model decays at its start, as the error of an unknown start does. Its rms over the first
-/// rows, and over the first quarter of the memory (two time constants), is twice that of all rows beyond the memory, and
-/// twice the noise; most of it is gone in the second quarter. It separates a start in motion from a steady one only beside a
-/// calibrated model.
+/// seventh and the first half of a time constant is twice that of all rows beyond the memory, and twice the noise; most of
+/// it is gone in the second quarter of the memory. It separates a start in motion from a steady one only beside a calibrated
+/// model.
 bool dies_out_at_start(std::span<const double> left, std::size_t memory, double noise);
 
 /// How many rows pass until a hydraulic axis has forgotten where it started (`rows_of_memory`); 0 if it starts in the steady

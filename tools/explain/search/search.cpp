@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "tools/explain/data/measured_load.hpp"
 #include "tools/explain/fit/scales.hpp"
 #include "tools/explain/inference/channel_check.hpp"
 #include "tools/explain/inference/veto.hpp"
@@ -112,11 +111,8 @@ class Search {
     for (const Kept& kept : result_.kept) {
       found.push_back(kept.trial.candidate.site);
     }
-    std::vector<Candidate> candidates = all_candidates(current.base, data_);
-    std::erase_if(candidates, [&](const Candidate& c) {
-      return is_active(current.base, c.effect) || !has_what_it_carries(current.base, c) || goes_in_and_out(c) ||
-             is_measured_load(data_, c.site) || where.refutes(c.site, found);
-    });
+    std::vector<Candidate> candidates = candidates_beside(current.base, data_);
+    std::erase_if(candidates, [&](const Candidate& c) { return goes_in_and_out(c) || where.refutes(c.site, found); });
     if (candidates.empty()) {
       return false;
     }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/search/unlisted_stage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <span>
 
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
+#include "tools/explain/search/screening.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 #include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/reasons.hpp"
@@ -46,6 +50,7 @@ void UnlistedStage::finish() {
     look_instead();
     take_instead_if_better();
     add_beside();
+    name_terms();
     drop_light_names();
     drop_names_that_explain_little();
   }
@@ -62,6 +67,12 @@ bool UnlistedStage::leaves_clearly_less(const Assessed& model, double share) con
   const double left = excess_over_noise(data_, result_.explained.prediction);
   return left > policy().immaterial && excess_over_noise(data_, model.prediction) < share * left &&
          held_out_rows_agree(model, result_.explained);
+}
+
+/// True if a model leaves no more than the explained one beyond what chance decides, or nothing beyond noise.
+bool UnlistedStage::leaves_as_little(const Assessed& model) const {
+  return reaches_noise(data_, model) || policy().hardly_less * excess_over_noise(data_, model.prediction) <=
+                                            excess_over_noise(data_, result_.explained.prediction);
 }
 
 /// The share of what the listed effects leave that a term of unknown law has to stay below.
@@ -220,6 +231,79 @@ bool UnlistedStage::is_rest_of_a_term(const Located& left) const {
   });
 }
 
+/// A round of listed effects beside a model.
+RoundResult UnlistedStage::round_of(std::vector<Candidate> candidates, const Assessed& beside, const std::string& what) {
+  if (candidates.empty()) {
+    return {};
+  }
+  const Evaluator evaluator = refiner_.for_screening(beside.model);
+  const Screening screening(evaluator, beside.model, scales_, options_.threads);
+  Round round(result_.next_round(), data_, refiner_, beside, screening.run(candidates, what, options_.watch),
+              options_.watch);
+  RoundResult found = round.run();
+  result_.trials.insert(result_.trials.end(), found.trials.begin(), found.trials.end());
+  return found;
+}
+
+/// The best effect of the last round is not kept.
+void UnlistedStage::refuse(const RoundResult& found) {
+  const auto last = std::span(result_.trials).last(found.trials.size());
+  const auto best = std::ranges::find(last, "kept", &Trial::decision);
+  if (best != last.end()) {
+    best->decision = "dropped";
+    best->reason = words::not_clearly_less(best->held_out_ratio);
+  }
+}
+
+/// A listed effect beside what was found, where it leaves clearly less. Returns whether there is one.
+bool UnlistedStage::add_listed_beside(const Located& left) {
+  std::vector<Candidate> candidates = candidates_beside(result_.explained.model.base, data_);
+  std::erase_if(candidates, [&](const Candidate& c) { return left.refutes(c.site, {}); });
+  RoundResult found = round_of(std::move(candidates), result_.explained, "beside a term");
+  if (!found.kept || !leaves_clearly_less(found.model, policy().clearly_less) ||
+      !harm_of(data_, found.model.prediction, result_.calibrated.prediction).empty()) {
+    refuse(found);
+    return false;
+  }
+  result_.kept.push_back(std::move(*found.kept));
+  result_.rival = std::move(found.rival);
+  result_.explained = std::move(found.model);
+  return true;
+}
+
+/// A listed effect in the place of a term of unknown law at its site, where it leaves as little: a law costs less than a
+/// curve that does the same. A term alone was compared with the listed effects before. Of several, each was in the way of
+/// the others' laws.
+void UnlistedStage::name_terms() {
+  for (std::size_t i = 0; result_.kept.size() > 1 && i < result_.kept.size() && !options_.watch.interrupted(); ++i) {
+    const Candidate term = result_.kept[i].trial.candidate;
+    if (!is_unlisted(result_.kept[i])) {
+      continue;
+    }
+    std::vector<Candidate> laws = candidates_beside(result_.explained.model.base, data_);
+    std::erase_if(laws, [&](const Candidate& c) { return c.site != term.site; });
+    if (laws.empty()) {
+      continue;
+    }
+    const Assessed rest = refiner_.without(result_.explained.model, term);
+    if (!rest.good()) {
+      continue;
+    }
+    RoundResult found = round_of(std::move(laws), rest, fmt::format("a law in place of {}", label(term)));
+    if (found.kept && leaves_as_little(found.model)) {
+      result_.trials.push_back(result_.kept[i].trial);
+      result_.trials.back().decision = "taken out";
+      result_.trials.back().reason = words::has_a_law(label(found.kept->trial.candidate));
+      result_.kept[i] = std::move(*found.kept);
+      result_.rival = std::move(found.rival);
+      Assessed settled = refiner_.settled(found.model.model);
+      result_.explained = settled.good() ? std::move(settled) : std::move(found.model);
+    } else {
+      refuse(found);
+    }
+  }
+}
+
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
 void UnlistedStage::add_beside() {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
@@ -228,6 +312,9 @@ void UnlistedStage::add_beside() {
     const Located& left = locate_explained();
     if (is_rest_of_a_term(left)) {
       return;
+    }
+    if (has_unlisted() && add_listed_beside(left)) {
+      continue;
     }
     UnlistedTask task = task_beside(result_.explained, left);
     task.tables = !has_unlisted();

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "tools/explain/search/round.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/search/unlisted_search.hpp"
 
@@ -37,6 +38,7 @@ class UnlistedStage {
  private:
   bool is_worth_a_table() const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
+  bool leaves_as_little(const Assessed& model) const;
   double advantage() const;
   bool leaves_clearly_less(const Assessed& model, double share) const;
   bool is_unlisted(const Kept& kept) const;
@@ -52,6 +54,10 @@ class UnlistedStage {
   void take_instead_if_better();
   bool is_rest_of_a_term(const Located& left) const;
   void add_beside();
+  RoundResult round_of(std::vector<Candidate> candidates, const Assessed& beside, const std::string& what);
+  void refuse(const RoundResult& found);
+  bool add_listed_beside(const Located& left);
+  void name_terms();
   void drop_light_names();
   void drop_names_that_explain_little();
   void keep(const UnlistedSearch& found, std::size_t first_trial);

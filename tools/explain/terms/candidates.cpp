@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/terms/candidates.hpp"
+#include "tools/explain/data/measured_load.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -204,6 +205,14 @@ std::vector<Candidate> laws_of(const ModelParameters& plant, const Dataset& data
   std::vector<Candidate> laws = all_candidates(plant, data);
   std::erase_if(laws, [&](const Candidate& law) { return law.effect != candidate.effect || law.site != candidate.site; });
   return laws;
+}
+
+std::vector<Candidate> candidates_beside(const ModelParameters& plant, const Dataset& data) {
+  std::vector<Candidate> candidates = all_candidates(plant, data);
+  std::erase_if(candidates, [&](const Candidate& c) {
+    return is_active(plant, c.effect) || !has_what_it_carries(plant, c) || is_measured_load(data, c.site);
+  });
+  return candidates;
 }
 
 bool has_what_it_carries(const ModelParameters& parameters, const Candidate& candidate) {

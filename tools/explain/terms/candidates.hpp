@@ -30,6 +30,9 @@ std::vector<Candidate> laws_of(const ModelParameters& plant, const Dataset& data
 /// False for an effect that carries another one (`Effect` in model/declaration/effect.hpp) which is not active.
 bool has_what_it_carries(const ModelParameters& parameters, const Candidate& candidate);
 
+/// Those of `all_candidates` that can act beside what is active, at sites whose load is not measured.
+std::vector<Candidate> candidates_beside(const ModelParameters& plant, const Dataset& data);
+
 /// True if a candidate's effect is active in these parameters with the candidate's law.
 bool has_law(const ModelParameters& parameters, const Candidate& candidate);
 

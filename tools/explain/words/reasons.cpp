@@ -64,6 +64,12 @@ std::string replaces_listed(double share_left_by_listed) {
   return fmt::format("; the listed effects leave {:.1f} % and are removed", 100.0 * share_left_by_listed);
 }
 
+std::string has_a_law(const std::string& label) { return fmt::format("{} leaves as little", label); }
+
+std::string not_clearly_less(double share_of_error) {
+  return fmt::format("leaves {:.1f} % of the held-out error: not clearly less", 100.0 * share_of_error);
+}
+
 std::string explained_by_signal(const std::string& sites) {
   return fmt::format("one unknown signal at {} explains the records down to the noise", sites);
 }

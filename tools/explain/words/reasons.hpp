@@ -42,6 +42,9 @@ std::string leaves_noise(double share_of_error);
 std::string leaves_far_above_noise(double share_of_error);
 std::string replaces_listed(double share_left_by_listed);
 std::string explained_by_signal(const std::string& sites);
+/// Of a term of unknown law.
+std::string has_a_law(const std::string& label);
+std::string not_clearly_less(double share_of_error);
 
 /// Why a model with an effect is refused although its error as a whole is smaller.
 std::string worse_record(const std::string& record, double share, const std::string& channel);
