@@ -47,6 +47,7 @@ struct Counted {
   friend Counted sqrt(const Counted& x) { return counted(operations.roots, std::sqrt(x.a)); }
   friend Counted abs(const Counted& x) { return counted(operations.additions, std::abs(x.a)); }
   friend Counted exp(const Counted& x) { return counted(operations.exponentials, std::exp(x.a)); }
+  friend Counted expm1(const Counted& x) { return counted(operations.exponentials, std::expm1(x.a)); }
   friend Counted log(const Counted& x) { return counted(operations.exponentials, std::log(x.a)); }
   friend Counted pow(const Counted& x, const Counted& y) { return counted(operations.exponentials, std::pow(x.a, y.a)); }
   friend Counted sin(const Counted& x) { return counted(operations.exponentials, std::sin(x.a)); }

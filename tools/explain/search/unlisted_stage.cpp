@@ -310,7 +310,8 @@ void UnlistedStage::add_beside() {
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().immaterial && !options_.watch.interrupted()) {
     const Located& left = locate_explained();
-    if (is_rest_of_a_term(left)) {
+    // What explains less than half leaves another effect, perhaps at the same site.
+    if (is_rest_of_a_term(left) && left_by_listed() <= policy().little_explained) {
       return;
     }
     if (has_unlisted() && add_listed_beside(left)) {
