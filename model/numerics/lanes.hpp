@@ -84,8 +84,9 @@ struct Lanes {
     return *this;
   }
   template <class T>
+  // NOLINTNEXTLINE(google-explicit-constructor): as a number converts
   requires std::is_arithmetic_v<T> Lanes(T value)
-  noexcept {  // NOLINT(google-explicit-constructor): as a number converts
+  noexcept {
     const vectors::Numbers all = vectors::all(static_cast<double>(value));
     for (auto& part : parts) {
       part = all;
@@ -130,7 +131,7 @@ struct Lanes {
   /// A result of which each part is `f(part)`.
   template <class Result, class F>
   [[gnu::always_inline]] static Result by_part(F&& f) noexcept {
-    Result result;
+    Result result;  // NOLINT(cppcoreguidelines-pro-type-member-init): every part is set
     for (std::size_t i = 0; i < kParts; ++i) {
       result.parts[i] = f(i);
     }

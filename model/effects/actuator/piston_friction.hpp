@@ -52,7 +52,7 @@ struct PistonFriction {
       return elastoplastic_force<S>(state.deflection, input, level, params.stiffness);
     }
     S elsewhere = state.deflection;
-    const S force = bristle_force<S>(state.deflection, input, level, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
+    S force = bristle_force<S>(state.deflection, input, level, Bristle<S>{params.stiffness, S{0.0}, S{0.0}});
     if (everywhere(rubs)) {
       return force;
     }

@@ -75,7 +75,7 @@ struct GimbalFriction {
       return S{0.0};
     }
     const S start = state.deflection;
-    const S torque = bristle(params, state, input, law);
+    S torque = bristle(params, state, input, law);
     if (everywhere(rubs)) {
       return torque;
     }
@@ -103,7 +103,7 @@ struct GimbalFriction {
   /// Length of the slip. At rest the root has no slope.
   template <class S>
   static S speed_of(const S& own, const S& other) noexcept {
-    const S along = own * sign_of(own);
+    S along = own * sign_of(own);
     const auto turns_across = value_of(other) != 0.0;
     if (!anywhere(turns_across)) {
       return along;

@@ -232,7 +232,8 @@ bool UnlistedStage::is_rest_of_a_term(const Located& left) const {
 }
 
 /// A round of listed effects beside a model.
-RoundResult UnlistedStage::round_of(std::vector<Candidate> candidates, const Assessed& beside, const std::string& what) {
+RoundResult UnlistedStage::round_of(const std::vector<Candidate>& candidates, const Assessed& beside,
+                                    const std::string& what) {
   if (candidates.empty()) {
     return {};
   }
@@ -259,7 +260,7 @@ void UnlistedStage::refuse(const RoundResult& found) {
 bool UnlistedStage::add_listed_beside(const Located& left) {
   std::vector<Candidate> candidates = candidates_beside(result_.explained.model.base, data_);
   std::erase_if(candidates, [&](const Candidate& c) { return left.refutes(c.site, {}); });
-  RoundResult found = round_of(std::move(candidates), result_.explained, "beside a term");
+  RoundResult found = round_of(candidates, result_.explained, "beside a term");
   if (!found.kept || !leaves_clearly_less(found.model, policy().clearly_less) ||
       !harm_of(data_, found.model.prediction, result_.calibrated.prediction).empty()) {
     refuse(found);
@@ -289,7 +290,7 @@ void UnlistedStage::name_terms() {
     if (!rest.good()) {
       continue;
     }
-    RoundResult found = round_of(std::move(laws), rest, fmt::format("a law in place of {}", label(term)));
+    RoundResult found = round_of(laws, rest, fmt::format("a law in place of {}", label(term)));
     if (found.kept && leaves_as_little(found.model)) {
       result_.trials.push_back(result_.kept[i].trial);
       result_.trials.back().decision = "taken out";

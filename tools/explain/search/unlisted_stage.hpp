@@ -54,7 +54,7 @@ class UnlistedStage {
   void take_instead_if_better();
   bool is_rest_of_a_term(const Located& left) const;
   void add_beside();
-  RoundResult round_of(std::vector<Candidate> candidates, const Assessed& beside, const std::string& what);
+  RoundResult round_of(const std::vector<Candidate>& candidates, const Assessed& beside, const std::string& what);
   void refuse(const RoundResult& found);
   bool add_listed_beside(const Located& left);
   void name_terms();

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -38,7 +39,10 @@ struct Likeness {
   std::array<bool, Axis::Effects::size> active{};
   std::vector<int> choices;  ///< of every active effect: its law or channel, and the points of its tables
 
-  friend auto operator<=>(const Likeness&, const Likeness&) = default;
+  bool operator<(const Likeness& other) const {
+    return std::tie(period, rows, steps, has_torque, active, choices) <
+           std::tie(other.period, other.rows, other.steps, other.has_torque, other.active, other.choices);
+  }
 };
 
 bool has_unlisted_effect(const SimplexParameters& parameters) {
