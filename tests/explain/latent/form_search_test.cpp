@@ -40,8 +40,8 @@ Record with_reading(Law&& law, Record record = record_of(declared())) {
 
 /// The smoothed signal of the sensor's place for a record.
 struct AtSensor {
-  explicit AtSensor(const Record& record)
-      : data(explain::make_dataset(declared(), {record})),
+  explicit AtSensor(const Record& record, double period = 0.0)
+      : data(explain::thinned(explain::make_dataset(declared(), {record}), period)),
         problem(explain::latent_problem(data, about_declared(), 2)),
         input(explain::most_likely_input(problem, kPistonSensor)) {
     explain::smooth(problem, kPistonSensor, input);
@@ -56,8 +56,8 @@ struct AtSensor {
 
 /// The best form of the sensor's place for a record.
 struct Best {
-  explicit Best(const Record& record) {
-    const AtSensor sensor(record);
+  explicit Best(const Record& record, double period = 0.0) {
+    const AtSensor sensor(record, period);
     form = explain::search_forms(sensor.regression(), kPistonSensor, 1, 2).at(0);
   }
 
@@ -134,6 +134,19 @@ TEST(FormSearch, AHeldSignalIsFoundWithThePhaseOfItsSamples) {
   CHECK(best.form.form.memory.kind == Memory::hold);
   DOUBLES_EQUAL(kRows * 2e-3, best.form.form.memory.time, 1e-9);
   DOUBLES_EQUAL(2.0 * std::numbers::pi * kPassed / kRows, best.form.form.memory.phase, 2.0 * std::numbers::pi * 0.5 / kRows);
+}
+
+// Every other row is left out, and with them half of the samples.
+TEST(FormSearch, AHeldSignalIsFoundInThinnedRowsThatMissItsSamples) {
+  static constexpr int kRows = 7;
+  const Best best(with_reading([row = 0, held = 0.0](double command) mutable {
+                    held = row++ % kRows == 0 ? command : held;
+                    return 0.5 * (held - command);
+                  }),
+                  4e-3);
+  CHECK(best.form.form.memory.kind == Memory::hold);
+  CHECK(best.form.form.argument == Argument::command);
+  DOUBLES_EQUAL(kRows * 2e-3, best.form.form.memory.time, 1e-9);
 }
 
 // Half as wide again: the refinement goes on until the response explains most.

@@ -54,6 +54,18 @@ TEST(Locate, ADeadBandActsOnTheOilWhichWithoutItsPressureNoSignalSeparatesFromTh
   CHECK(!located.allows("load_spring"));
 }
 
+// Where a friction sticks and slips, the linear flow grows by two orders of magnitude from one row to the next.
+TEST(Locate, WhatIsMissingBesideAFrictionThatSticksIsLocated) {
+  const ModelFile rubbing = with_effect<model::PistonFriction>({3400.0, 1.4, 0.0104, 4.1e8});
+  ModelFile truth = rubbing;
+  add_effect<model::DuctHardening>(std::get<SimplexParameters>(truth.parameters), [](auto& duct) { duct.cubic = 3e9; });
+  explain::Fitted about = about_declared();
+  about.base = rubbing.parameters;
+  const Located located = explain::locate(data_of(truth), about, 2);
+  CHECK(located.allows("engine_torque"));
+  CHECK(!located.allows("load_spring"));
+}
+
 TEST(Locate, AnInvisibleMissingTermIsNoPlace) {
   // A thousandth of the torque that the test above locates: below what 20 s of the sensors show.
   CHECK(located_in(with_effect<model::DuctHardening>({3e6})).places.empty());

@@ -44,6 +44,27 @@ TEST(Search, NothingIsFoundInARecordOfAnAxisThatMovedBeforeIt) {
   CHECK(explain::reaches_noise(data, found.explained));
 }
 
+// A reading that is held for eight rows is late by half of that on average.
+TEST(Search, AListedEffectIsReplacedByTheTermThatItImitates) {
+  ModelFile truth = test::with_effect<model::Leakage>({6e-11});
+  test::add_effect<model::Term<model::Site::sensor, 1>>(std::get<SimplexParameters>(truth.parameters), [](auto& term) {
+    term.option = static_cast<int>(model::Memory::hold);
+    term.argument = static_cast<int>(model::Argument::angle);
+    term.gain = 1.0;
+    term.direct = -1.0;
+    term.time = 0.016;
+  });
+  auto data = test::data_of(truth);
+  const auto found = explain::search(data, test::declared(), {2, 4, {}});
+  LONGS_EQUAL(2, found.kept.size());
+  const auto is_kept = [&](const char* name) {
+    return std::ranges::any_of(found.kept, [&](const auto& kept) { return kept.trial.candidate.name == name; });
+  };
+  CHECK(is_kept("leakage"));
+  CHECK(is_kept("term_engine_reading"));
+  CHECK(explain::reaches_noise(data, found.explained));
+}
+
 // The reference axis has 2 ms: closer rows cost time and separate nothing, and there are no others to leave out.
 TEST(Search, CandidatesAreRankedOnRowsThatTheServoFollows) {
   Record record = test::record_of(test::declared());

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/search/watch.hpp"
 
 namespace hotfire {
 

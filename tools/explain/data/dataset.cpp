@@ -301,6 +301,7 @@ Dataset thinned(const Dataset& data, double period) {
     }
     experiment.vehicle.for_each_series(thin_rows);
     experiment.period *= static_cast<double>(every);
+    experiment.log_rows *= static_cast<int>(every);
     experiment.first_scored = kept(experiment.first_scored);
     thin_blocks(experiment.fitted);
     thin_blocks(experiment.held_out);

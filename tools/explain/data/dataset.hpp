@@ -22,6 +22,7 @@ struct Experiment {
   std::string name;
   double start = 0.0;
   double period = 0.0;
+  int log_rows = 1;  ///< rows of the log for each row here: more than one of a thinned record
   std::vector<double> input;
   std::vector<double> torque;                 ///< measured, on the engine of a hydraulic axis [N m]; empty: none
   std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record does not have the channel
@@ -39,6 +40,8 @@ struct Experiment {
 
   std::size_t rows() const { return input.size(); }
   double time_of(std::size_t row) const { return start + static_cast<double>(row) * period; }
+  /// Period of the log [s].
+  double log_period() const { return period / log_rows; }
   /// Rows that are compared with the model, fitted or held out, in their order.
   std::vector<Block> scored() const;
 };

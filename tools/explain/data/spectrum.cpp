@@ -62,6 +62,20 @@ double power_of(const Left& record, double frequency) {
 
 }  // namespace
 
+std::size_t fast_transform_length(std::size_t least) {
+  for (std::size_t length = std::max<std::size_t>(least, 1);; ++length) {
+    std::size_t rest = length;
+    for (const std::size_t factor : {2U, 3U, 5U}) {
+      while (rest % factor == 0) {
+        rest /= factor;
+      }
+    }
+    if (rest == 1) {
+      return length;
+    }
+  }
+}
+
 std::vector<double> strongest_frequencies(const Dataset& data,
                                           const std::vector<std::vector<std::vector<double>>>& prediction,
                                           std::size_t channel, std::size_t count) {

@@ -8,6 +8,9 @@
 
 namespace hotfire::explain {
 
+/// The least length from `least` on without a prime factor above 5: the fast Fourier transform is fast there.
+std::size_t fast_transform_length(std::size_t least);
+
 /// The strongest frequencies [Hz] of the residuals of one channel (measured minus predicted), strongest first, at most
 /// `count`, at least a quarter octave apart: where a missing mode may lie. Periodograms of Hann-windowed stretches, averaged
 /// (Welch 1967).

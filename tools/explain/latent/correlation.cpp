@@ -13,12 +13,21 @@ namespace hotfire::explain {
 namespace {
 
 constexpr std::size_t kBins = 32;
-/// Rows between those that are looked at, and values that the bins are laid by.
+/// One of so many rows is looked at, and values that the bins are laid by.
 constexpr Eigen::Index kEvery = 4;
 constexpr std::size_t kSampled = 500;
+/// The row within each group of `kEvery` changes from group to group: in step with the samples of a held signal it would
+/// show the signal only where it is its argument.
+constexpr std::array<Eigen::Index, 7> kRowInGroup{0, 2, 1, 3, 2, 0, 1};
 
 /// The rows of a column that are looked at.
-Eigen::VectorXd some_of(const Eigen::VectorXd& column) { return column(Eigen::seq(0, Eigen::last, Eigen::fix<kEvery>)); }
+Eigen::VectorXd some_of(const Eigen::VectorXd& column) {
+  Eigen::VectorXd some(column.size() / kEvery);
+  for (Eigen::Index i = 0; i < some.size(); ++i) {
+    some(i) = column(kEvery * i + kRowInGroup[static_cast<std::size_t>(i) % kRowInGroup.size()]);
+  }
+  return some;
+}
 
 void append(const Eigen::VectorXd& column, std::vector<double>& values) {
   values.insert(values.end(), column.begin(), column.end());

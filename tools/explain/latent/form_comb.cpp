@@ -41,8 +41,10 @@ constexpr std::array kStopWidths{0.05, 0.15, 0.35, 0.7};
 constexpr double kNarrowestPlay = 0.04;
 constexpr double kWidestPlay = 0.7;
 constexpr int kPlays = 5;
-/// The longest time for which a signal is held, in rows: of 500 Hz a tenth of a second.
-constexpr int kMostRowsHeld = 50;
+/// The longest time for which a signal is held, in time constants of the servo, of the reference axis 0.1 s, and about how
+/// many times there are up to it.
+constexpr double kLongestHold = 1.7;
+constexpr int kHolds = 50;
 /// Phases of the samples: at an eighth of a period from the right one most of a held signal shows.
 constexpr int kPhasesHeld = 4;
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -263,22 +265,35 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   for (int quarters = 3; quarters <= 40; ++quarters) {
     add(Memory::periodic, [&](auto& memory) { memory.width = 8.0 * size / quarters; });
   }
-  // At any other period than its own a held signal is soon out of step, and no fit moves it there. A logger that is
-  // synchronous with it has a whole number of rows. A product of two is held more rarely: its comb is coarser.
-  for (int rows = 2; rows <= kMostRowsHeld; rows += plain.factor ? 1 + rows / 4 : 1) {
-    for (int phase = 0; phase < (plain.factor ? 1 : kPhasesHeld); ++phase) {
-      add(Memory::hold, [&](auto& memory) {
-        memory.time = rows * period;
-        memory.phase = kTurn * phase / kPhasesHeld;
-      });
-    }
-  }
+  std::ranges::move(with_holds(regression, plain), std::back_inserter(forms));
   Form stops = plain;
   stops.memory.kind = Memory::stops;
   for (const double width : kStopWidths) {
     stops.points.push_back(width * size);
   }
   forms.push_back(std::move(stops));
+  return forms;
+}
+
+std::vector<Form> with_holds(const FormRegression& regression, const Form& plain) {
+  std::vector<Form> forms;
+  double row = HUGE_VAL;
+  for (const Experiment& experiment : regression.problem().data.experiments) {
+    row = std::min(row, experiment.log_period());
+  }
+  const double longest = kLongestHold * regression.problem().scales.time;
+  const double step = row * std::max(1.0, std::round(longest / kHolds / row));
+  // At any other period than its own a held signal is soon out of step, and no fit moves it there. A logger that is
+  // synchronous with it has a whole number of rows. A product of two is held more rarely: its comb is coarser.
+  for (int steps = 2; steps * step <= longest; steps += plain.factor ? 1 + steps / 4 : 1) {
+    for (int phase = 0; phase < (plain.factor ? 1 : kPhasesHeld); ++phase) {
+      Form form = plain;
+      form.memory.kind = Memory::hold;
+      form.memory.time = steps * step;
+      form.memory.phase = kTurn * phase / kPhasesHeld;
+      forms.push_back(std::move(form));
+    }
+  }
   return forms;
 }
 

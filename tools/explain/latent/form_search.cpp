@@ -175,12 +175,18 @@ std::vector<Form> screened_by_signal(const SignalCorrelation& correlation, std::
 
 /// Of the memories those whose response explains most of what is left. The smoothed signal is mostly noise where the plant
 /// hides what acts on it, and ranks a gain over the right memory of the right argument behind hundreds of others; the
-/// readings do not. A comb's parameter is that of the smoothed signal.
+/// readings do not. A comb's parameter is that of the smoothed signal, except of a hold: it is the readings that show when a
+/// signal is sampled.
 std::vector<Form> screened_by_response(const FormRegression& regression, const std::vector<ScoredForm>& moving,
                                        unsigned threads) {
   std::vector<Form> forms;
   for (ScoredForm& scored : best_of_each(moving, moving.size())) {
     forms.push_back(std::move(scored.form));
+  }
+  for (const ScoredForm& scored : moving) {
+    if (scored.form.memory.kind == model::Memory::hold && !scored.form.factor) {
+      forms.push_back(scored.form);
+    }
   }
   std::vector<ScoredForm> all = scored(regression, std::move(forms), threads);
   keep_best(all, all.size());

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "tools/explain/fit/slopes.hpp"
 #include "tools/explain/latent/row_products.hpp"
 
 namespace hotfire::explain {
@@ -20,6 +21,9 @@ constexpr double kSlowest = 8.5;
 constexpr std::array kFaster{1.4, 0.24};
 /// Deviation of the start from the simulated one, over the scales of the states: a twentieth of what full opening does.
 constexpr double kStartDeviation = 0.05;
+/// Deviation that a row adds to each state, over its scale: what the linear flow is wrong by at least. Far below what a sensor
+/// resolves, and far above the rounding that would make a covariance indefinite where friction sticks and slips.
+constexpr double kFlowDeviation = 1e-6;
 /// Sizes of the signal over its scale that are looked at, as logarithms: from what no sensor sees to all that the plant has.
 constexpr double kSmallest = -16.1;  // ln 1e-7
 constexpr double kLargest = 0.7;     // ln 2
@@ -184,6 +188,7 @@ class Filter {
     // Of this size Eigen's product for large matrices takes several times as long.
     const FilterMatrix spread = moves.lazyProduct(covariance.topRows<kFilterStates>());
     covariance = spread.lazyProduct(moves.topRows<kFilterStates>().transpose());
+    covariance.diagonal().head<kFlowStates>().array() += kFlowDeviation * kFlowDeviation;
     covariance(kSignal, kSignal) += variance_ * (1.0 - kept * kept);
     auto square = covariance.topRows<kFilterStates>();
     square = (0.5 * (square + square.transpose())).eval();
@@ -215,7 +220,7 @@ LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned
   Prediction prediction;
   Eigen::MatrixXd jacobian;
   if (!evaluator.predict(around.base, around.free, around.u, threads, prediction) ||
-      !evaluator.differentiate(around.base, around.free, around.u, declared, threads, jacobian)) {
+      !differentiate(evaluator, around.base, around.free, around.u, declared, Slopes::exact, threads, jacobian)) {
     return problem;
   }
   const auto count = static_cast<Eigen::Index>(declared.size());

@@ -3,9 +3,15 @@
 
 #include <ceres/jet.h>
 
+#include <array>
 #include <atomic>
 #include <memory>
+#include <tuple>
+#include <type_traits>
 
+#include "model/numerics/delay_line.hpp"
+#include "model/numerics/members.hpp"
+#include "model/numerics/memory.hpp"
 #include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/fit/parallel.hpp"
@@ -57,8 +63,48 @@ class PortedPlant : public DualPlant {
   Eigen::Matrix<double, kFlowStates, kPorts> response_;
 };
 
+/// Drops the derivatives of what an effect remembers, member by member: they are with respect to a row that is past.
+template <class T>
+void forget_slopes(T& member);
+
+/// A delay of the command or of a reading: no state of the plant acts on itself through one.
+template <std::size_t kCapacity>
+void forget_slopes(model::DelayLine<FlowDual, kCapacity>& /*line*/) {}
+
+void forget_slopes(model::MemoryState<FlowDual>& memory) {
+  memory = model::MemoryState<FlowDual>(model::MemoryState<double>(memory));
+}
+
+template <class T, std::size_t kSize>
+void forget_slopes(std::array<T, kSize>& members) {
+  for (T& member : members) {
+    forget_slopes(member);
+  }
+}
+
+template <class T>
+void forget_slopes(T& member) {
+  if constexpr (std::is_same_v<T, FlowDual>) {
+    member.v.setZero();
+  } else if constexpr (!std::is_arithmetic_v<T>) {
+    static_assert(std::is_aggregate_v<T>, "give forget_slopes an overload for this type");
+    std::apply([](auto&... members) { (forget_slopes(members), ...); }, model::tied(member));
+  }
+}
+
+/// The same of all effects that act.
+template <class Parameters, class List>
+void forget_slopes(const Parameters& effects, model::EffectStates<FlowDual, List>& states) {
+  List::for_each([&]<class E, std::size_t I>() {
+    if (effects.active[I]) {
+      forget_slopes(std::get<I>(states.values));
+    }
+  });
+  forget_slopes(states.outputs);
+}
+
 /// Reads the flow of the row that ends off the state, and starts that of the next.
-RowFlow take_flow(DualPlant::State& state, const FlowScales& scales) {
+RowFlow take_flow(const PortedPlant& plant, DualPlant::State& state, const FlowScales& scales) {
   RowFlow flow;
   for (int i = 0; i < kFlowStates; ++i) {
     for (int j = 0; j < kFlowStates; ++j) {
@@ -75,6 +121,7 @@ RowFlow take_flow(DualPlant::State& state, const FlowScales& scales) {
   }
   state.spring_force.v.setZero();
   state.built_up.v.setZero();
+  forget_slopes(plant.parameters().effects, state.effects);
   return flow;
 }
 
@@ -110,7 +157,7 @@ std::vector<Flow> linear_flow(const Dataset& data, const PlainPlant::Parameters&
     flows[e].states.reserve(experiment.rows());
     flows[e].piston_command.reserve(experiment.rows());
     const auto sink = [&](std::size_t row, const auto&) {
-      const RowFlow flow = take_flow(*state, scales);
+      const RowFlow flow = take_flow(plant, *state, scales);
       if (row > 0) {
         flows[e].rows.push_back(flow);
       }

@@ -70,6 +70,14 @@ Located Located::opened() const {
   return open;
 }
 
+Located Located::only_best() const {
+  Located best = *this;
+  for (std::size_t i = 0; i < best.places.size(); ++i) {
+    best.places[i].is_likely = i == 0;
+  }
+  return best;
+}
+
 Located Located::beyond(const Located& other) const {
   Located rest = *this;
   for (std::size_t i = 0; i < rest.places.size(); ++i) {

@@ -37,6 +37,8 @@ struct Located {
   std::vector<std::string> likely_sites() const;
   /// The same with every place where a signal leaves as little as at the best, likely or not.
   Located opened() const;
+  /// The same with no place likely but the best.
+  Located only_best() const;
   /// The same with only those places likely that are so here and not in `other`, place by place.
   Located beyond(const Located& other) const;
 };

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -14,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/explain/data/spectrum.hpp"
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/latent/form_comb.hpp"
 
@@ -84,12 +84,12 @@ class OscillationSearch {
     for (const Experiment& experiment : regression.problem().data.experiments) {
       period_ = std::max(period_, experiment.period);
     }
-    Eigen::Index longest = 0;
+    std::size_t longest = 0;
     for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
       records_.push_back(sampled(regression, e));
-      longest = std::max(longest, records_.back().signal.size());
+      longest = std::max(longest, static_cast<std::size_t>(records_.back().signal.size()));
     }
-    length_ = static_cast<Eigen::Index>(2 * std::bit_ceil(static_cast<std::size_t>(std::max<Eigen::Index>(longest, 8))));
+    length_ = static_cast<Eigen::Index>(fast_transform_length(2 * std::max<std::size_t>(longest, 8)));
   }
 
   /// The strongest oscillation that a quantity tunes by each of the bends; none if the quantity or the signal does not move.
@@ -106,12 +106,7 @@ class OscillationSearch {
         range = std::max(range, of_record.size() > 0 ? of_record.maxCoeff() - of_record.minCoeff() : 0.0);
       }
       const int tunings = std::clamp(static_cast<int>(most_tuned_ * range / kTunedApart), 1, kMostTunings);
-      Peak best;
-      best.argument = argument;
-      for (int k = 0; k <= tunings; ++k) {
-        take_peaks(turns, bend, most_tuned_ * k / tunings, best);
-      }
-      if (best.power > 0.0) {
+      if (const Peak best = strongest_of_bend(argument, bend, turns, tunings); best.power > 0.0) {
         peaks.push_back(best);
       }
     }
@@ -284,29 +279,46 @@ class OscillationSearch {
     return all;
   }
 
-  /// The signal demodulated by a tuning and transformed: positive frequencies are of that tuning, negative ones of its
-  /// opposite, because the signal is real.
-  void take_peaks(const std::vector<Eigen::VectorXd>& turns, double bend, double tuning, Peak& best) const {
-    Eigen::VectorXcd demodulated(length_);
-    Eigen::VectorXcd sum = Eigen::VectorXcd::Zero(length_);
-    Eigen::VectorXcd of_record(length_);
-    Eigen::FFT<double> transform;
+  /// The signal demodulated by one tuning after the other and transformed. The transform is linear: that of the sum over the
+  /// records is the sum of theirs. A step of the tuning turns each sample by the same angle.
+  Peak strongest_of_bend(Argument argument, double bend, const std::vector<Eigen::VectorXd>& turns, int tunings) const {
+    Peak best;
+    best.argument = argument;
+    best.bend = bend;
+    const double step = most_tuned_ / tunings;
+    std::vector<Eigen::VectorXcd> demodulated;
+    std::vector<Eigen::VectorXcd> turned;
     for (std::size_t e = 0; e < records_.size(); ++e) {
-      demodulated.setZero();
-      for (Eigen::Index i = 0; i < turns[e].size(); ++i) {
-        demodulated(i) = records_[e].signal(i) * std::polar(1.0, -kOscillationTurn * tuning * turns[e](i));
-      }
-      transform.fwd(of_record, demodulated);
-      sum += of_record;
+      demodulated.emplace_back(records_[e].signal);
+      turned.emplace_back(turns[e].unaryExpr([&](double own) { return std::polar(1.0, -kOscillationTurn * step * own); }));
     }
+    Eigen::FFT<double> transform;
+    Eigen::VectorXcd sum(length_);
+    Eigen::VectorXcd spectrum(length_);
+    for (int k = 0; k <= tunings; ++k) {
+      sum.setZero();
+      for (std::size_t e = 0; e < demodulated.size(); ++e) {
+        sum.head(demodulated[e].size()) += demodulated[e];
+        demodulated[e] = demodulated[e].cwiseProduct(turned[e]);
+      }
+      transform.fwd(spectrum, sum);
+      take_peaks(spectrum, step * k, best);
+    }
+    return best;
+  }
+
+  /// Positive frequencies are of the tuning, negative ones of its opposite, because the signal is real.
+  void take_peaks(const Eigen::VectorXcd& spectrum, double tuning, Peak& best) const {
     const double bin = 1.0 / (static_cast<double>(length_) * period_);
     const auto first = static_cast<Eigen::Index>(std::ceil(slowest_ / bin));
-    const auto last = std::min(length_ / 2 - 1, static_cast<Eigen::Index>(fastest_ / bin));
+    const auto last = std::min((length_ - 1) / 2, static_cast<Eigen::Index>(fastest_ / bin));
     for (Eigen::Index k = first; k <= last; ++k) {
       for (const bool is_opposite : {false, true}) {
-        const double power = std::norm(sum(is_opposite ? length_ - k : k));
+        const double power = std::norm(spectrum(is_opposite ? length_ - k : k));
         if (power > best.power) {
-          best = {best.argument, bend, static_cast<double>(k) * bin, is_opposite ? -tuning : tuning, power};
+          best.frequency = static_cast<double>(k) * bin;
+          best.tuning = is_opposite ? -tuning : tuning;
+          best.power = power;
         }
       }
     }

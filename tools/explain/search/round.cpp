@@ -9,7 +9,7 @@
 
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/finalists.hpp"
-#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/search/watch.hpp"
 #include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {

@@ -12,7 +12,7 @@
 #include "tools/explain/data/spectrum.hpp"
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/search/watch.hpp"
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/trial.hpp"
 #include "tools/explain/terms/unlisted.hpp"

@@ -46,11 +46,13 @@ void UnlistedStage::replace_names_that_explain_little() {
 
 void UnlistedStage::finish() {
   if (is_worth_a_table() && !options_.watch.interrupted()) {
+    const Found names = found();
     refuse_misplaced_names();
     look_instead();
     take_instead_if_better();
     add_beside();
     name_terms();
+    return_to_names_if_better(names);
     drop_light_names();
     drop_names_that_explain_little();
   }
@@ -109,25 +111,14 @@ const Located& UnlistedStage::locate_explained() {
   return beside_explained_;
 }
 
-void UnlistedStage::take_out_names(const std::string& why) {
-  const int round = result_.next_round();
-  for (const Kept& kept : result_.kept) {
-    Trial trial{round, kept.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", why};
-    compare(trial, result_.calibrated, result_.explained, result_.calibrated.goodness.fitted);
-    result_.trials.push_back(std::move(trial));
-  }
-  result_.kept.clear();
-  result_.rival.reset();
-  result_.explained = result_.calibrated;
+UnlistedStage::Found UnlistedStage::found() const {
+  return {result_.kept, result_.explained, result_.rival, result_.trials.size()};
 }
 
-/// One signal at a likely place explains all that is missing: names elsewhere imitate it.
-void UnlistedStage::refuse_misplaced_names() {
-  const bool misplaced = std::ranges::any_of(
-      result_.kept, [&](const Kept& kept) { return located().is_single && !located().allows(kept.trial.candidate.site); });
-  if (misplaced) {
-    take_out_names(words::explained_by_signal(words::listed(located().likely_sites(), "or")));
-  }
+void UnlistedStage::restore(Found found) {
+  result_.kept = std::move(found.kept);
+  result_.explained = std::move(found.explained);
+  result_.rival = std::move(found.rival);
 }
 
 UnlistedTask UnlistedStage::task_beside(const Assessed& model, const Located& located) const {
@@ -223,12 +214,24 @@ bool UnlistedStage::has_unlisted() const {
 }
 
 /// True if what is left acts most where a term of the grammar is: its law is not exact. A term at another site would imitate
-/// the rest of it.
+/// the rest of it. What explains less than half leaves another effect, perhaps at the same site.
 bool UnlistedStage::is_rest_of_a_term(const Located& left) const {
-  return !left.places.empty() && std::ranges::any_of(result_.kept, [&](const Kept& kept) {
-    const Candidate& candidate = kept.trial.candidate;
-    return is_unlisted(kept) && !candidate.choices.empty() && left.places.front().has(candidate.site);
-  });
+  return !left.places.empty() && left_by_listed() <= policy().little_explained &&
+         std::ranges::any_of(result_.kept, [&](const Kept& kept) {
+           const Candidate& candidate = kept.trial.candidate;
+           return is_unlisted(kept) && !candidate.choices.empty() && left.places.front().has(candidate.site);
+         });
+}
+
+/// The sites of the terms of unknown law that were found: what one of them leaves refutes no other effect.
+std::vector<std::string> UnlistedStage::sites_of_terms() const {
+  std::vector<std::string> sites;
+  for (const Kept& kept : result_.kept) {
+    if (is_unlisted(kept)) {
+      sites.push_back(kept.trial.candidate.site);
+    }
+  }
+  return sites;
 }
 
 /// A round of listed effects beside a model.
@@ -246,24 +249,30 @@ RoundResult UnlistedStage::round_of(const std::vector<Candidate>& candidates, co
   return found;
 }
 
-/// The best effect of the last round is not kept.
-void UnlistedStage::refuse(const RoundResult& found) {
+/// The best effect of the last round is not kept, for a reason that follows its held-out error.
+void UnlistedStage::refuse(const RoundResult& found, words::Reason why) {
   const auto last = std::span(result_.trials).last(found.trials.size());
   const auto best = std::ranges::find(last, "kept", &Trial::decision);
   if (best != last.end()) {
     best->decision = "dropped";
-    best->reason = words::not_clearly_less(best->held_out_ratio);
+    best->reason = words::leaves(best->held_out_ratio) + std::string(words::text(why));
   }
 }
 
-/// A listed effect beside what was found, where it leaves clearly less. Returns whether there is one.
+/// A listed effect beside what was found, where it leaves clearly less. What is left where a term of unknown law acts may be
+/// the rest of that term, and a listed effect may imitate it: there it has to leave only noise. Returns whether there is
+/// one.
 bool UnlistedStage::add_listed_beside(const Located& left) {
   std::vector<Candidate> candidates = candidates_beside(result_.explained.model.base, data_);
-  std::erase_if(candidates, [&](const Candidate& c) { return left.refutes(c.site, {}); });
+  std::erase_if(candidates, [&](const Candidate& c) { return left.refutes(c.site, sites_of_terms()); });
   RoundResult found = round_of(candidates, result_.explained, "beside a term");
-  if (!found.kept || !leaves_clearly_less(found.model, policy().clearly_less) ||
-      !harm_of(data_, found.model.prediction, result_.calibrated.prediction).empty()) {
-    refuse(found);
+  if (!found.kept) {
+    return false;
+  }
+  const bool is_enough = is_rest_of_a_term(left) ? excess_over_noise(data_, found.model.prediction) < policy().immaterial
+                                                 : leaves_clearly_less(found.model, policy().clearly_less);
+  if (!is_enough || !harm_of(data_, found.model.prediction, result_.calibrated.prediction).empty()) {
+    refuse(found, words::Reason::not_clearly_less);
     return false;
   }
   result_.kept.push_back(std::move(*found.kept));
@@ -272,51 +281,17 @@ bool UnlistedStage::add_listed_beside(const Located& left) {
   return true;
 }
 
-/// A listed effect in the place of a term of unknown law at its site, where it leaves as little: a law costs less than a
-/// curve that does the same. A term alone was compared with the listed effects before. Of several, each was in the way of
-/// the others' laws.
-void UnlistedStage::name_terms() {
-  for (std::size_t i = 0; result_.kept.size() > 1 && i < result_.kept.size() && !options_.watch.interrupted(); ++i) {
-    const Candidate term = result_.kept[i].trial.candidate;
-    if (!is_unlisted(result_.kept[i])) {
-      continue;
-    }
-    std::vector<Candidate> laws = candidates_beside(result_.explained.model.base, data_);
-    std::erase_if(laws, [&](const Candidate& c) { return c.site != term.site; });
-    if (laws.empty()) {
-      continue;
-    }
-    const Assessed rest = refiner_.without(result_.explained.model, term);
-    if (!rest.good()) {
-      continue;
-    }
-    RoundResult found = round_of(laws, rest, fmt::format("a law in place of {}", label(term)));
-    if (found.kept && leaves_as_little(found.model)) {
-      result_.trials.push_back(result_.kept[i].trial);
-      result_.trials.back().decision = "taken out";
-      result_.trials.back().reason = words::has_a_law(label(found.kept->trial.candidate));
-      result_.kept[i] = std::move(*found.kept);
-      result_.rival = std::move(found.rival);
-      Assessed settled = refiner_.settled(found.model.model);
-      result_.explained = settled.good() ? std::move(settled) : std::move(found.model);
-    } else {
-      refuse(found);
-    }
-  }
-}
-
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
 void UnlistedStage::add_beside() {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().immaterial && !options_.watch.interrupted()) {
     const Located& left = locate_explained();
-    // What explains less than half leaves another effect, perhaps at the same site.
-    if (is_rest_of_a_term(left) && left_by_listed() <= policy().little_explained) {
-      return;
-    }
-    if (has_unlisted() && add_listed_beside(left)) {
+    if ((has_unlisted() && add_listed_beside(left)) || replace_misfit(left)) {
       continue;
+    }
+    if (is_rest_of_a_term(left)) {
+      return;
     }
     UnlistedTask task = task_beside(result_.explained, left);
     task.tables = !has_unlisted();
@@ -330,46 +305,6 @@ void UnlistedStage::add_beside() {
     }
     result_.rival.reset();
     keep(beside, first);
-  }
-}
-
-/// A name beside a term of unknown law that hardly leaves more without it is the term's.
-void UnlistedStage::drop_light_names() {
-  if (!has_unlisted()) {
-    return;
-  }
-  for (std::size_t i = result_.kept.size(); i-- > 0;) {
-    if (is_unlisted(result_.kept[i]) || options_.watch.interrupted()) {
-      continue;
-    }
-    Trial trial{result_.next_round(),
-                result_.kept[i].trial.candidate,
-                true,
-                0.0,
-                1.0,
-                0.0,
-                "taken out",
-                std::string(words::text(words::Reason::beside_unlisted))};
-    Assessed rest = refiner_.without(result_.explained.model, trial.candidate);
-    if (!rest.good()) {
-      continue;
-    }
-    compare(trial, rest, result_.explained, rest.goodness.fitted);
-    if (policy().clearly_less * trial.held_out_ratio < 1.0) {
-      result_.trials.push_back(std::move(trial));
-      result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
-      Assessed settled = refiner_.settled(rest.model);
-      result_.explained = settled.good() ? std::move(settled) : std::move(rest);
-    }
-  }
-}
-
-/// Names that leave most of the error, and far more than noise, are not what is missing: saying less is no error.
-void UnlistedStage::drop_names_that_explain_little() {
-  const bool names_alone = !result_.kept.empty() && !has_unlisted();
-  if (names_alone && left_by_listed() > policy().little_explained &&
-      excess_over_noise(data_, result_.explained.prediction) > policy().near_noise) {
-    take_out_names(words::leaves_far_above_noise(left_by_listed()));
   }
 }
 

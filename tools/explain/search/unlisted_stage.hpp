@@ -6,6 +6,7 @@
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/search/unlisted_search.hpp"
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -36,6 +37,16 @@ class UnlistedStage {
   }
 
  private:
+  /// What a search has found so far.
+  struct Found {
+    std::vector<Kept> kept;
+    Assessed explained;
+    std::optional<Rival> rival;
+    std::size_t trials = 0;  ///< so far
+  };
+
+  Found found() const;
+  void restore(Found found);
   bool is_worth_a_table() const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
   bool leaves_as_little(const Assessed& model) const;
@@ -55,9 +66,12 @@ class UnlistedStage {
   bool is_rest_of_a_term(const Located& left) const;
   void add_beside();
   RoundResult round_of(const std::vector<Candidate>& candidates, const Assessed& beside, const std::string& what);
-  void refuse(const RoundResult& found);
+  void refuse(const RoundResult& found, words::Reason why);
+  std::vector<std::string> sites_of_terms() const;
   bool add_listed_beside(const Located& left);
+  bool replace_misfit(const Located& left);
   void name_terms();
+  void return_to_names_if_better(const Found& names);
   void drop_light_names();
   void drop_names_that_explain_little();
   void keep(const UnlistedSearch& found, std::size_t first_trial);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <functional>
 #include <string>
 
@@ -35,6 +37,17 @@ struct Watch {
   /// From any thread, and from one at a time.
   std::function<void(const Doing&)> progress = [](const Doing&) {};
   std::function<bool()> interrupted = [] { return false; };
+};
+
+/// Time since it was made [s]: on the wall, and of the processor by all threads of the program.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+  double processor_seconds() const { return static_cast<double>(std::clock() - processor_began_) / CLOCKS_PER_SEC; }
+
+ private:
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  std::clock_t processor_began_ = std::clock();
 };
 
 }  // namespace hotfire::explain

@@ -16,6 +16,9 @@ std::string_view text(Reason reason) noexcept {
       ", but its signal falls where it should rise",
       ", but its friction adds energy",
       ", as much as the term that is kept at another site",
+      ": not clearly less",
+      ", more than the term of unknown law",
+      "; the other hypothesis explains more",
       "fitted jointly before the search was interrupted; other candidates were not",
       "screened before the search was interrupted",
       "not fitted before the search was interrupted"};
@@ -66,8 +69,8 @@ std::string replaces_listed(double share_left_by_listed) {
 
 std::string has_a_law(const std::string& label) { return fmt::format("{} leaves as little", label); }
 
-std::string not_clearly_less(double share_of_error) {
-  return fmt::format("leaves {:.1f} % of the held-out error: not clearly less", 100.0 * share_of_error);
+std::string imitates(const std::string& label) {
+  return fmt::format("what it leaves acts at its own site, where {} leaves clearly less", label);
 }
 
 std::string explained_by_signal(const std::string& sites) {

@@ -19,11 +19,14 @@ enum class Reason {
   falls_as_it_rises,
   feeds_energy,
   tied_site,
+  not_clearly_less,
+  leaves_more,
+  other_hypothesis,
   interrupted_refined,
   interrupted_screened,
   interrupted_before
 };
-inline constexpr std::size_t kReasons = 12;
+inline constexpr std::size_t kReasons = 15;
 std::string_view text(Reason reason) noexcept;
 
 /// How a law compares with another one of the same effect, whose label follows.
@@ -44,7 +47,8 @@ std::string replaces_listed(double share_left_by_listed);
 std::string explained_by_signal(const std::string& sites);
 /// Of a term of unknown law.
 std::string has_a_law(const std::string& label);
-std::string not_clearly_less(double share_of_error);
+/// Of a listed effect.
+std::string imitates(const std::string& label);
 
 /// Why a model with an effect is refused although its error as a whole is smaller.
 std::string worse_record(const std::string& record, double share, const std::string& channel);

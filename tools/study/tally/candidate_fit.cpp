@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "tools/explain/search/search.hpp"
-#include "tools/explain/search/stopwatch.hpp"
+#include "tools/explain/search/watch.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/study/tally/judge.hpp"
 

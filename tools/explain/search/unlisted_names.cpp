@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// The names of listed effects in the part of a search that knows none: which are refused, and where one replaces a term.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "tools/explain/inference/veto.hpp"
+#include "tools/explain/policy/policy.hpp"
+#include "tools/explain/search/unlisted_stage.hpp"
+#include "tools/explain/words/conclusions.hpp"
+#include "tools/explain/words/reasons.hpp"
+
+namespace hotfire::explain {
+
+void UnlistedStage::take_out_names(const std::string& why) {
+  const int round = result_.next_round();
+  for (const Kept& kept : result_.kept) {
+    Trial trial{round, kept.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", why};
+    compare(trial, result_.calibrated, result_.explained, result_.calibrated.goodness.fitted);
+    result_.trials.push_back(std::move(trial));
+  }
+  result_.kept.clear();
+  result_.rival.reset();
+  result_.explained = result_.calibrated;
+}
+
+/// One signal at a likely place explains all that is missing: names elsewhere imitate it.
+void UnlistedStage::refuse_misplaced_names() {
+  const bool misplaced = std::ranges::any_of(
+      result_.kept, [&](const Kept& kept) { return located().is_single && !located().allows(kept.trial.candidate.site); });
+  if (misplaced) {
+    take_out_names(words::explained_by_signal(words::listed(located().likely_sites(), "or")));
+  }
+}
+
+/// A listed effect in the place of a term of unknown law at its site, where it leaves as little: a law costs less than a
+/// curve that does the same. A term alone was compared with the listed effects before. Of several, each was in the way of
+/// the others' laws.
+void UnlistedStage::name_terms() {
+  for (std::size_t i = 0; result_.kept.size() > 1 && i < result_.kept.size() && !options_.watch.interrupted(); ++i) {
+    const Candidate term = result_.kept[i].trial.candidate;
+    if (!is_unlisted(result_.kept[i])) {
+      continue;
+    }
+    std::vector<Candidate> laws = candidates_beside(result_.explained.model.base, data_);
+    std::erase_if(laws, [&](const Candidate& c) { return c.site != term.site; });
+    if (laws.empty()) {
+      continue;
+    }
+    const Assessed rest = refiner_.without(result_.explained.model, term);
+    if (!rest.good()) {
+      continue;
+    }
+    RoundResult found = round_of(laws, rest, fmt::format("a law in place of {}", label(term)));
+    if (found.kept && leaves_as_little(found.model)) {
+      result_.trials.push_back(result_.kept[i].trial);
+      result_.trials.back().decision = "taken out";
+      result_.trials.back().reason = words::has_a_law(label(found.kept->trial.candidate));
+      result_.kept[i] = std::move(*found.kept);
+      result_.rival = std::move(found.rival);
+      Assessed settled = refiner_.settled(found.model.model);
+      result_.explained = settled.good() ? std::move(settled) : std::move(found.model);
+    } else {
+      refuse(found, words::Reason::leaves_more);
+    }
+  }
+}
+
+/// A term of unknown law in the place of a listed effect where what is left acts at the effect's own site: its law imitates
+/// another. The term has to leave clearly less. Returns whether there is one.
+bool UnlistedStage::replace_misfit(const Located& left) {
+  for (std::size_t i = 0; !left.places.empty() && i < result_.kept.size() && !options_.watch.interrupted(); ++i) {
+    const Candidate name = result_.kept[i].trial.candidate;
+    if (is_unlisted(result_.kept[i]) || !left.places.front().has(name.site)) {
+      continue;
+    }
+    const Assessed rest = refiner_.without(result_.explained.model, name);
+    if (!rest.good()) {
+      continue;
+    }
+    const Located here = left.only_best();
+    UnlistedSearch term = search_unlisted(task_beside(rest, here));
+    term.mark_tied_sites();
+    const std::size_t first = result_.trials.size();
+    result_.trials.insert(result_.trials.end(), term.trials.begin(), term.trials.end());
+    if (!term.has_evidence() || !leaves_clearly_less(term.model, policy().clearly_less) ||
+        !harm_of(data_, term.model.prediction, result_.calibrated.prediction).empty()) {
+      continue;
+    }
+    result_.trials.push_back(result_.kept[i].trial);
+    result_.trials.back().round = result_.trials[first].round;
+    result_.trials.back().decision = "taken out";
+    result_.trials.back().reason = words::imitates(label(result_.trials[first + *term.best].candidate));
+    result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
+    result_.rival.reset();
+    keep(term, first);
+    return true;
+  }
+  return false;
+}
+
+/// The other hypothesis where names were given up: the same names with terms of unknown law beside them. A signal without a
+/// law explains what a name does as well, and a law may need the name.
+void UnlistedStage::return_to_names_if_better(const Found& names) {
+  const auto is_kept = [&](const Kept& name) {
+    return std::ranges::any_of(result_.kept,
+                               [&](const Kept& kept) { return label(kept.trial.candidate) == label(name.trial.candidate); });
+  };
+  if (std::ranges::all_of(names.kept, is_kept) || !is_hydraulic_axis(names.explained.model.base) ||
+      excess_over_noise(data_, result_.explained.prediction) <= policy().immaterial || options_.watch.interrupted()) {
+    return;
+  }
+  Found without = found();
+  const std::size_t first = result_.trials.size();
+  restore(names);
+  add_beside();
+  name_terms();
+  const double left = excess_over_noise(data_, without.explained.prediction);
+  const bool is_better = result_.kept.size() > names.kept.size() &&
+                         excess_over_noise(data_, result_.explained.prediction) < policy().clearly_less * left &&
+                         held_out_rows_agree(result_.explained, without.explained);
+  const auto drop = [](std::span<Trial> trials) {
+    for (Trial& trial : trials) {
+      if (trial.decision == "kept") {
+        trial.decision = "dropped";
+        trial.reason += words::text(words::Reason::other_hypothesis);
+      }
+    }
+  };
+  const std::span<Trial> trials = result_.trials;
+  if (!is_better) {
+    drop(trials.subspan(first));
+    restore(std::move(without));
+    return;
+  }
+  drop(trials.subspan(names.trials, first - names.trials));
+  for (const Kept& kept : names.kept) {
+    result_.trials.push_back(kept.trial);
+    result_.trials.back().round = trials.back().round;
+  }
+}
+
+/// A name beside a term of unknown law that hardly leaves more without it is the term's.
+void UnlistedStage::drop_light_names() {
+  if (!has_unlisted()) {
+    return;
+  }
+  for (std::size_t i = result_.kept.size(); i-- > 0;) {
+    if (is_unlisted(result_.kept[i]) || options_.watch.interrupted()) {
+      continue;
+    }
+    Trial trial{result_.next_round(),
+                result_.kept[i].trial.candidate,
+                true,
+                0.0,
+                1.0,
+                0.0,
+                "taken out",
+                std::string(words::text(words::Reason::beside_unlisted))};
+    Assessed rest = refiner_.without(result_.explained.model, trial.candidate);
+    if (!rest.good()) {
+      continue;
+    }
+    compare(trial, rest, result_.explained, rest.goodness.fitted);
+    if (policy().clearly_less * trial.held_out_ratio < 1.0) {
+      result_.trials.push_back(std::move(trial));
+      result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
+      Assessed settled = refiner_.settled(rest.model);
+      result_.explained = settled.good() ? std::move(settled) : std::move(rest);
+    }
+  }
+}
+
+/// Names that leave most of the error, and far more than noise, are not what is missing: saying less is no error.
+void UnlistedStage::drop_names_that_explain_little() {
+  const bool names_alone = !result_.kept.empty() && !has_unlisted();
+  if (names_alone && left_by_listed() > policy().little_explained &&
+      excess_over_noise(data_, result_.explained.prediction) > policy().near_noise) {
+    take_out_names(words::leaves_far_above_noise(left_by_listed()));
+  }
+}
+
+}  // namespace hotfire::explain
