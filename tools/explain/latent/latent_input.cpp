@@ -21,8 +21,8 @@ constexpr double kSlowest = 8.5;
 constexpr std::array kFaster{1.4, 0.24};
 /// Deviation of the start from the simulated one, over the scales of the states: a twentieth of what full opening does.
 constexpr double kStartDeviation = 0.05;
-/// Deviation that a row adds to each state, over its scale: what the linear flow is wrong by at least. Far below what a sensor
-/// resolves, and far above the rounding that would make a covariance indefinite where friction sticks and slips.
+/// Deviation that a row adds to each state, over its scale: what the linear flow is wrong by at least. Far below what a
+/// sensor resolves, and far above the rounding that would make a covariance indefinite where friction sticks and slips.
 constexpr double kFlowDeviation = 1e-6;
 /// Sizes of the signal over its scale that are looked at, as logarithms: from what no sensor sees to all that the plant has.
 constexpr double kSmallest = -16.1;  // ln 1e-7
