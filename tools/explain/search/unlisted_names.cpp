@@ -53,17 +53,16 @@ void UnlistedStage::name_terms() {
     if (!rest.good()) {
       continue;
     }
+    const std::size_t first = result_.trials.size();
     RoundResult found = round_of(laws, rest, fmt::format("a law in place of {}", label(term)));
     if (found.kept && leaves_as_little(found.model)) {
-      result_.trials.push_back(result_.kept[i].trial);
-      result_.trials.back().decision = "taken out";
-      result_.trials.back().reason = words::has_a_law(label(found.kept->trial.candidate));
+      take_out(result_.kept[i].trial, words::has_a_law(label(found.kept->trial.candidate)));
       result_.kept[i] = std::move(*found.kept);
       result_.rival = std::move(found.rival);
       Assessed settled = refiner_.settled(found.model.model);
       result_.explained = settled.good() ? std::move(settled) : std::move(found.model);
     } else {
-      refuse(found, words::Reason::leaves_more);
+      refuse(first, words::Reason::leaves_more);
     }
   }
 }
@@ -89,10 +88,7 @@ bool UnlistedStage::replace_misfit(const Located& left) {
         !harm_of(data_, term.model.prediction, result_.calibrated.prediction).empty()) {
       continue;
     }
-    result_.trials.push_back(result_.kept[i].trial);
-    result_.trials.back().round = result_.trials[first].round;
-    result_.trials.back().decision = "taken out";
-    result_.trials.back().reason = words::imitates(label(result_.trials[first + *term.best].candidate));
+    take_out(result_.kept[i].trial, words::imitates(label(term.trials[*term.best].candidate)));
     result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
     result_.rival.reset();
     keep(term, first);
@@ -115,7 +111,7 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
   Found without = found();
   const std::size_t first = result_.trials.size();
   restore(names);
-  add_beside();
+  add_beside(Names::given);
   name_terms();
   const double left = excess_over_noise(data_, without.explained.prediction);
   const bool is_better = result_.kept.size() > names.kept.size() &&

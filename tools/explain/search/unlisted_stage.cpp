@@ -50,7 +50,7 @@ void UnlistedStage::finish() {
     refuse_misplaced_names();
     look_instead();
     take_instead_if_better();
-    add_beside();
+    add_beside(Names::open);
     name_terms();
     return_to_names_if_better(names);
     drop_light_names();
@@ -213,14 +213,20 @@ bool UnlistedStage::has_unlisted() const {
   return std::ranges::any_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
 }
 
-/// True if what is left acts most where a term of the grammar is: its law is not exact. A term at another site would imitate
-/// the rest of it. What explains less than half leaves another effect, perhaps at the same site.
-bool UnlistedStage::is_rest_of_a_term(const Located& left) const {
-  return !left.places.empty() && left_by_listed() <= policy().little_explained &&
-         std::ranges::any_of(result_.kept, [&](const Kept& kept) {
-           const Candidate& candidate = kept.trial.candidate;
-           return is_unlisted(kept) && !candidate.choices.empty() && left.places.front().has(candidate.site);
-         });
+/// The term of the grammar whose site what is left acts most at, by its place: its law is not exact, and a term at another
+/// site would imitate the rest of it. None where what was found explains less than half: that leaves another effect, perhaps
+/// at the same site.
+std::optional<std::size_t> UnlistedStage::term_of_rest(const Located& left) const {
+  if (left.places.empty() || left_by_listed() > policy().little_explained) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < result_.kept.size(); ++i) {
+    const Candidate& candidate = result_.kept[i].trial.candidate;
+    if (is_unlisted(result_.kept[i]) && !candidate.choices.empty() && left.places.front().has(candidate.site)) {
+      return i;
+    }
+  }
+  return std::nullopt;
 }
 
 /// The sites of the terms of unknown law that were found: what one of them leaves refutes no other effect.
@@ -249,11 +255,11 @@ RoundResult UnlistedStage::round_of(const std::vector<Candidate>& candidates, co
   return found;
 }
 
-/// The best effect of the last round is not kept, for a reason that follows its held-out error.
-void UnlistedStage::refuse(const RoundResult& found, words::Reason why) {
-  const auto last = std::span(result_.trials).last(found.trials.size());
-  const auto best = std::ranges::find(last, "kept", &Trial::decision);
-  if (best != last.end()) {
+/// The best effect of a round whose trials begin at `first` is not kept, for a reason that follows its held-out error.
+void UnlistedStage::refuse(std::size_t first, words::Reason why) {
+  const auto of_round = std::span(result_.trials).subspan(first);
+  const auto best = std::ranges::find(of_round, "kept", &Trial::decision);
+  if (best != of_round.end()) {
     best->decision = "dropped";
     best->reason = words::leaves(best->held_out_ratio) + std::string(words::text(why));
   }
@@ -265,15 +271,20 @@ void UnlistedStage::refuse(const RoundResult& found, words::Reason why) {
 bool UnlistedStage::add_listed_beside(const Located& left) {
   std::vector<Candidate> candidates = candidates_beside(result_.explained.model.base, data_);
   std::erase_if(candidates, [&](const Candidate& c) { return left.refutes(c.site, sites_of_terms()); });
+  const std::size_t first = result_.trials.size();
   RoundResult found = round_of(candidates, result_.explained, "beside a term");
   if (!found.kept) {
     return false;
   }
-  const bool is_enough = is_rest_of_a_term(left) ? excess_over_noise(data_, found.model.prediction) < policy().immaterial
-                                                 : leaves_clearly_less(found.model, policy().clearly_less);
+  const std::optional<std::size_t> term = term_of_rest(left);
+  const bool is_enough = term ? excess_over_noise(data_, found.model.prediction) < policy().immaterial
+                              : leaves_clearly_less(found.model, policy().clearly_less);
   if (!is_enough || !harm_of(data_, found.model.prediction, result_.calibrated.prediction).empty()) {
-    refuse(found, words::Reason::not_clearly_less);
-    return false;
+    const bool is_revised = term && revise_term(*term, found, left);
+    if (!is_revised) {
+      refuse(first, words::Reason::not_clearly_less);
+    }
+    return is_revised;
   }
   result_.kept.push_back(std::move(*found.kept));
   result_.rival = std::move(found.rival);
@@ -281,16 +292,47 @@ bool UnlistedStage::add_listed_beside(const Located& left) {
   return true;
 }
 
+/// The term whose rest is left, by its place, is searched for once more beside the listed effect of a round: without that
+/// effect it had to represent both. Returns whether the two leave clearly less.
+bool UnlistedStage::revise_term(std::size_t term, const RoundResult& listed, const Located& left) {
+  const Assessed rest = refiner_.without(listed.model.model, result_.kept[term].trial.candidate);
+  if (!rest.good() || options_.watch.interrupted()) {
+    return false;
+  }
+  const Located here = left.only_best();
+  UnlistedSearch again = search_unlisted(task_beside(rest, here));
+  again.mark_tied_sites();
+  const std::size_t first = result_.trials.size();
+  result_.trials.insert(result_.trials.end(), again.trials.begin(), again.trials.end());
+  if (!again.has_evidence() || !leaves_clearly_less(again.model, policy().clearly_less) ||
+      !harm_of(data_, again.model.prediction, result_.calibrated.prediction).empty()) {
+    return false;
+  }
+  take_out(result_.kept[term].trial, words::imitates(label(again.trials[*again.best].candidate)));
+  result_.kept[term] = *listed.kept;
+  result_.rival.reset();
+  keep(again, first);
+  return true;
+}
+
+/// Files that an effect is taken out.
+void UnlistedStage::take_out(Trial trial, std::string why) {
+  trial.round = result_.trials.back().round;
+  trial.decision = "taken out";
+  trial.reason = std::move(why);
+  result_.trials.push_back(std::move(trial));
+}
+
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
-void UnlistedStage::add_beside() {
+void UnlistedStage::add_beside(Names names) {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().immaterial && !options_.watch.interrupted()) {
     const Located& left = locate_explained();
-    if ((has_unlisted() && add_listed_beside(left)) || replace_misfit(left)) {
+    if ((has_unlisted() && add_listed_beside(left)) || (names == Names::open && replace_misfit(left))) {
       continue;
     }
-    if (is_rest_of_a_term(left)) {
+    if (term_of_rest(left)) {
       return;
     }
     UnlistedTask task = task_beside(result_.explained, left);

@@ -45,6 +45,9 @@ class UnlistedStage {
     std::size_t trials = 0;  ///< so far
   };
 
+  /// Whether a term may replace a name that was found.
+  enum class Names { open, given };
+
   Found found() const;
   void restore(Found found);
   bool is_worth_a_table() const;
@@ -63,12 +66,14 @@ class UnlistedStage {
   void look_elsewhere();
   bool is_better(const UnlistedSearch& found) const;
   void take_instead_if_better();
-  bool is_rest_of_a_term(const Located& left) const;
-  void add_beside();
+  std::optional<std::size_t> term_of_rest(const Located& left) const;
+  void add_beside(Names names);
   RoundResult round_of(const std::vector<Candidate>& candidates, const Assessed& beside, const std::string& what);
-  void refuse(const RoundResult& found, words::Reason why);
+  void refuse(std::size_t first, words::Reason why);
+  void take_out(Trial trial, std::string why);
   std::vector<std::string> sites_of_terms() const;
   bool add_listed_beside(const Located& left);
+  bool revise_term(std::size_t term, const RoundResult& listed, const Located& left);
   bool replace_misfit(const Located& left);
   void name_terms();
   void return_to_names_if_better(const Found& names);
