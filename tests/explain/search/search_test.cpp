@@ -4,10 +4,15 @@
 #include <CppUTest/TestHarness.h>
 
 #include <algorithm>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "tests/explain/latent/missing_effect.hpp"
 #include "tests/explain/oscillator.hpp"
 #include "tests/support/add_effect.hpp"
+#include "tools/explain/fit/goodness.hpp"
+#include "tools/explain/policy/policy.hpp"
 
 namespace {
 
@@ -19,6 +24,18 @@ explain::SearchResult found_in(const Record& record, int most_effects = 4, doubl
   const ModelFile model = declared_oscillator(declared_stiffness);
   auto data = explain::make_dataset(model, {record});
   return explain::search(data, model, {2, most_effects, {}});
+}
+
+/// Checks that a search in records of `truth` finds these effects and no others, and leaves noise.
+void check_found(const ModelFile& truth, std::vector<std::string> wanted) {
+  auto data = test::data_of(truth);
+  const auto found = explain::search(data, test::declared(), {2, 4, {}});
+  std::vector<std::string> names;
+  std::ranges::transform(found.kept, std::back_inserter(names), [](const auto& kept) { return kept.trial.candidate.name; });
+  std::ranges::sort(names);
+  std::ranges::sort(wanted);
+  CHECK(names == wanted);
+  CHECK(explain::excess_over_noise(data, found.explained.prediction) < explain::policy().visible);
 }
 
 }  // namespace
@@ -54,15 +71,20 @@ TEST(Search, AListedEffectIsReplacedByTheTermThatItImitates) {
     term.direct = -1.0;
     term.time = 0.016;
   });
-  auto data = test::data_of(truth);
-  const auto found = explain::search(data, test::declared(), {2, 4, {}});
-  LONGS_EQUAL(2, found.kept.size());
-  const auto is_kept = [&](const char* name) {
-    return std::ranges::any_of(found.kept, [&](const auto& kept) { return kept.trial.candidate.name == name; });
-  };
-  CHECK(is_kept("leakage"));
-  CHECK(is_kept("term_engine_reading"));
-  CHECK(explain::reaches_noise(data, found.explained));
+  check_found(truth, {"leakage", "term_engine_reading"});
+}
+
+// Each alone is at the sensor, where a term without the listed effect represents both.
+TEST(Search, OfTwoEffectsOfOneSensorTheListedOneGetsItsName) {
+  ModelFile truth = test::with_effect<model::SensorNonlinearity>({9.0, 300.0}, 0);
+  test::add_effect<model::Term<model::Site::sensor, 0>>(std::get<SimplexParameters>(truth.parameters), [](auto& term) {
+    term.option = static_cast<int>(model::Memory::delay);
+    term.argument = static_cast<int>(model::Argument::position);
+    term.factor = 1 + static_cast<int>(model::Argument::flow);
+    term.gain = 300.0;
+    term.time = 0.014;
+  });
+  check_found(truth, {"sensor_nonlinearity", "term_piston_reading"});
 }
 
 // The reference axis has 2 ms: closer rows cost time and separate nothing, and there are no others to leave out.
