@@ -74,7 +74,7 @@ TEST(Search, AListedEffectIsReplacedByTheTermThatItImitates) {
   check_found(truth, {"leakage", "term_engine_reading"});
 }
 
-// Each alone is at the sensor, where a term without the listed effect represents both.
+// Both effects are at one sensor. A term alone would represent both.
 TEST(Search, OfTwoEffectsOfOneSensorTheListedOneGetsItsName) {
   ModelFile truth = test::with_effect<model::SensorNonlinearity>({9.0, 300.0}, 0);
   test::add_effect<model::Term<model::Site::sensor, 0>>(std::get<SimplexParameters>(truth.parameters), [](auto& term) {

@@ -159,7 +159,7 @@ class EverySentence {
   void of_reasons() {
     for (std::size_t i = 0; i < words::kReasons; ++i) {
       const std::string text(words::text(static_cast<words::Reason>(i)));
-      check_.add(text.starts_with(",") ? words::leaves(0.123) + text : text);
+      check_.add(std::string(",:;").find(text.front()) != std::string::npos ? words::leaves(0.123) + text : text);
     }
     const std::string label = "gimbal_friction (lugre)";
     for (std::size_t i = 0; i < words::kLawChanges; ++i) {
@@ -169,6 +169,7 @@ class EverySentence {
     check_.add(words::leaves_noise(0.998));
     check_.add(words::leaves(0.123) + words::replaces_listed(0.5));
     check_.add(words::explained_by_signal("load_spring or structure"));
+    check_.add(words::imitates(label) + ". " + words::has_a_law(label) + ". " + words::is_revised(label, label));
     for (const std::string& harm :
          {words::worse_record("sweep_low.csv", 0.3, "load_pressure"), words::worse_band("load_pressure", 0.4, 2.0, 2.83)}) {
       check_.add(words::refused(harm));

@@ -15,38 +15,11 @@ namespace hotfire::explain {
 
 namespace {
 
-/// The newest sample of an argument by row. A sampling instant between two rows has the value on the line between theirs:
-/// thinned rows need not contain the instants of a clock that is synchronous with the log.
-template <class Output>
-void hold_samples(const model::MemoryParameters<double>& memory, const Eigen::VectorXd& argument, double period,
-                  Output&& output) {
-  const double rows = memory.time / period;
-  const double turns = memory.phase / (2.0 * std::numbers::pi);
-  const double passed = (turns - std::floor(turns)) * rows;
-  double value = argument.size() > 0 ? argument(0) : 0.0;
-  double next = rows - passed;
-  for (Eigen::Index row = 0; row < argument.size(); ++row) {
-    const double now = static_cast<double>(row) * (1.0 + 1e-9);
-    if (next <= now) {
-      next += rows * std::floor((now - next) / rows);
-      const auto before = std::min(static_cast<Eigen::Index>(next), row);
-      const Eigen::Index after = std::min(before + 1, row);
-      value = std::lerp(argument(before), argument(after), next - static_cast<double>(before));
-      next += rows;
-    }
-    output(row) = value;
-  }
-}
-
 /// Output of a memory by row. A search runs thousands of them over all rows: of a kind that the compiler knows, with all
 /// that it calls in one function, the constants of the run leave the loop.
 template <model::Memory kKind>
 [[gnu::flatten]] void run_memory(model::MemoryParameters<double> memory, const Eigen::VectorXd& argument, double period,
                                  Eigen::VectorXd& output) {
-  if constexpr (kKind == model::Memory::hold) {
-    hold_samples(memory, argument, period, output);
-    return;
-  }
   model::MemoryState<double> state;
   memory.kind = kKind;
   for (Eigen::Index row = 0; row < argument.size(); ++row) {
@@ -58,12 +31,6 @@ template <model::Memory kKind>
 [[gnu::flatten]] void run_memory(std::array<model::MemoryParameters<double>, kSideBySide> memories,
                                  const Eigen::VectorXd& argument, double period,
                                  Eigen::Matrix<double, kSideBySide, Eigen::Dynamic>& output) {
-  if constexpr (kKind == model::Memory::hold) {
-    for (std::size_t k = 0; k < kSideBySide; ++k) {
-      hold_samples(memories[k], argument, period, output.row(static_cast<Eigen::Index>(k)));
-    }
-    return;
-  }
   std::array<model::MemoryState<double>, kSideBySide> states;
   for (auto& memory : memories) {
     memory.kind = kKind;

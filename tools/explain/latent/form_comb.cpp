@@ -218,6 +218,29 @@ void add_plays_and_slews(const Form& plain, double size, double rate, std::vecto
   }
 }
 
+/// Holds of the form's argument over the comb of their period and of the instants of their samples.
+std::vector<Form> with_holds(const FormRegression& regression, const Form& plain) {
+  std::vector<Form> forms;
+  double row = HUGE_VAL;
+  for (const Experiment& experiment : regression.problem().data.experiments) {
+    row = std::min(row, experiment.log_period());
+  }
+  const double longest = kLongestHold * regression.problem().scales.time;
+  const double step = row * std::max(1.0, std::round(longest / kHolds / row));
+  // At any other period than its own a held signal is soon out of step, and no fit moves it there. A logger that is
+  // synchronous with it has a whole number of rows. A product of two is held more rarely: its comb is coarser.
+  for (int steps = 2; steps * step <= longest; steps += plain.factor ? 1 + steps / 4 : 1) {
+    for (int phase = 0; phase < (plain.factor ? 1 : kPhasesHeld); ++phase) {
+      Form form = plain;
+      form.memory.kind = Memory::hold;
+      form.memory.time = steps * step;
+      form.memory.phase = kTurn * phase / kPhasesHeld;
+      forms.push_back(std::move(form));
+    }
+  }
+  return forms;
+}
+
 }  // namespace
 
 std::vector<Form> with_memories(const FormRegression& regression, const Form& plain) {
@@ -272,28 +295,6 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
     stops.points.push_back(width * size);
   }
   forms.push_back(std::move(stops));
-  return forms;
-}
-
-std::vector<Form> with_holds(const FormRegression& regression, const Form& plain) {
-  std::vector<Form> forms;
-  double row = HUGE_VAL;
-  for (const Experiment& experiment : regression.problem().data.experiments) {
-    row = std::min(row, experiment.log_period());
-  }
-  const double longest = kLongestHold * regression.problem().scales.time;
-  const double step = row * std::max(1.0, std::round(longest / kHolds / row));
-  // At any other period than its own a held signal is soon out of step, and no fit moves it there. A logger that is
-  // synchronous with it has a whole number of rows. A product of two is held more rarely: its comb is coarser.
-  for (int steps = 2; steps * step <= longest; steps += plain.factor ? 1 + steps / 4 : 1) {
-    for (int phase = 0; phase < (plain.factor ? 1 : kPhasesHeld); ++phase) {
-      Form form = plain;
-      form.memory.kind = Memory::hold;
-      form.memory.time = steps * step;
-      form.memory.phase = kTurn * phase / kPhasesHeld;
-      forms.push_back(std::move(form));
-    }
-  }
   return forms;
 }
 

@@ -188,17 +188,16 @@ std::vector<Form> screened_by_response(const FormRegression& regression, const s
       forms.push_back(scored.form);
     }
   }
-  std::vector<ScoredForm> all = scored(regression, std::move(forms), threads);
-  keep_best(all, all.size());
+  const std::size_t count = forms.size();
   std::vector<ScoredForm> best;
-  for (ScoredForm& scored : all) {
+  for (ScoredForm& form : best_of_each(scored(regression, std::move(forms), threads), count)) {
     const auto of_same =
-        std::ranges::count_if(best, [&](const ScoredForm& other) { return is_of_same(scored.form, other.form); });
+        std::ranges::count_if(best, [&](const ScoredForm& other) { return is_of_same(form.form, other.form); });
     if (best.size() == kScreenedByResponse) {
       break;
     }
     if (of_same < kResponsesOfOne) {
-      best.push_back(std::move(scored));
+      best.push_back(std::move(form));
     }
   }
   refine(regression, best, threads);
@@ -214,8 +213,11 @@ std::vector<Form> screened(const FormRegression& regression, const std::vector<F
   const std::vector<ScoredForm> moving = scored_by_signal(correlation, remembering, threads);
   std::vector<Form> best = screened_by_signal(correlation, scored_by_signal(correlation, plain, threads), moving, threads);
   for (Form& form : screened_by_response(regression, moving, threads)) {
-    if (std::ranges::none_of(best, [&](const Form& other) { return is_alike(form, other); })) {
+    const auto same = std::ranges::find_if(best, [&](const Form& other) { return is_alike(form, other); });
+    if (same == best.end()) {
       best.push_back(std::move(form));
+    } else if (form.memory.kind == model::Memory::hold) {
+      *same = std::move(form);
     }
   }
   return best;

@@ -87,7 +87,7 @@ void forget_slopes(T& member) {
   if constexpr (std::is_same_v<T, FlowDual>) {
     member.v.setZero();
   } else if constexpr (!std::is_arithmetic_v<T>) {
-    static_assert(std::is_aggregate_v<T>, "give forget_slopes an overload for this type");
+    static_assert(std::is_aggregate_v<T>);  // another type gets an overload above
     std::apply([](auto&... members) { (forget_slopes(members), ...); }, model::tied(member));
   }
 }

@@ -137,7 +137,8 @@ Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
                         }));
     place.is_likely = place.is_possible && (!located.is_single || place.gain >= tied_from);
   }
-  std::ranges::stable_sort(tried, std::ranges::greater{}, [](const auto& t) { return t.first.gain; });
+  std::ranges::stable_sort(tried, std::ranges::greater{},
+                           [](const auto& t) { return std::pair(t.first.is_likely, t.first.gain); });
   for (auto& [place, input] : tried) {
     located.places.push_back(std::move(place));
   }

@@ -280,7 +280,7 @@ class OscillationSearch {
   }
 
   /// The signal demodulated by one tuning after the other and transformed. The transform is linear: that of the sum over the
-  /// records is the sum of theirs. A step of the tuning turns each sample by the same angle.
+  /// records is the sum of theirs. A step of the tuning turns a sample by an angle of its own, the same at every step.
   Peak strongest_of_bend(Argument argument, double bend, const std::vector<Eigen::VectorXd>& turns, int tunings) const {
     Peak best;
     best.argument = argument;

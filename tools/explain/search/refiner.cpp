@@ -43,7 +43,7 @@ bool are_alike(const Evaluator& evaluator, const Eigen::VectorXd& left, const Ei
   return true;
 }
 
-/// How many rows the period of a hold may be off from where the regression of every second row has it.
+/// How many rows the period of a hold may be off from where the regression has it.
 constexpr int kPeriodOff = 4;
 /// How many rows the samples may be off then.
 constexpr int kSamplesOff = 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names of listed effects in the part of a search that knows none: which are refused, and where one replaces a term.
+// Listed effects beside terms of unknown law: which are removed, which replace a term and which a term replaces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void UnlistedStage::name_terms() {
       Assessed settled = refiner_.settled(found.model.model);
       result_.explained = settled.good() ? std::move(settled) : std::move(found.model);
     } else {
-      refuse(first, words::Reason::leaves_more);
+      refuse(first, words::text(words::Reason::leaves_more));
     }
   }
 }
@@ -76,23 +76,13 @@ bool UnlistedStage::replace_misfit(const Located& left) {
       continue;
     }
     const Assessed rest = refiner_.without(result_.explained.model, name);
-    if (!rest.good()) {
-      continue;
-    }
-    const Located here = left.only_best();
-    UnlistedSearch term = search_unlisted(task_beside(rest, here));
-    term.mark_tied_sites();
     const std::size_t first = result_.trials.size();
-    result_.trials.insert(result_.trials.end(), term.trials.begin(), term.trials.end());
-    if (!term.has_evidence() || !leaves_clearly_less(term.model, policy().clearly_less) ||
-        !harm_of(data_, term.model.prediction, result_.calibrated.prediction).empty()) {
-      continue;
+    if (const auto term = better_term(rest, left.only_best(), !has_unlisted())) {
+      take_out(result_.kept[i].trial, words::imitates(label(term->trials[*term->best].candidate)));
+      result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
+      keep(*term, first);
+      return true;
     }
-    take_out(result_.kept[i].trial, words::imitates(label(term.trials[*term.best].candidate)));
-    result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
-    result_.rival.reset();
-    keep(term, first);
-    return true;
   }
   return false;
 }
@@ -108,8 +98,7 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
       excess_over_noise(data_, result_.explained.prediction) <= policy().immaterial || options_.watch.interrupted()) {
     return;
   }
-  Found without = found();
-  const std::size_t first = result_.trials.size();
+  Found without{result_.kept, result_.explained, result_.rival};
   restore(names);
   add_beside(Names::given);
   name_terms();
@@ -117,24 +106,38 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
   const bool is_better = result_.kept.size() > names.kept.size() &&
                          excess_over_noise(data_, result_.explained.prediction) < policy().clearly_less * left &&
                          held_out_rows_agree(result_.explained, without.explained);
-  const auto drop = [](std::span<Trial> trials) {
-    for (Trial& trial : trials) {
-      if (trial.decision == "kept") {
-        trial.decision = "dropped";
-        trial.reason += words::text(words::Reason::other_hypothesis);
-      }
-    }
-  };
-  const std::span<Trial> trials = result_.trials;
   if (!is_better) {
-    drop(trials.subspan(first));
     restore(std::move(without));
-    return;
   }
-  drop(trials.subspan(names.trials, first - names.trials));
-  for (const Kept& kept : names.kept) {
-    result_.trials.push_back(kept.trial);
-    result_.trials.back().round = trials.back().round;
+  file_hypothesis();
+}
+
+/// Brings the decisions of all trials in line with the effects that are kept: those of the other hypothesis are dropped, and
+/// an effect that was taken out and came back is filed once more.
+void UnlistedStage::file_hypothesis() {
+  const int round = result_.trials.back().round;
+  const auto last_of = [&](const std::string& name) {
+    const auto is_decided = [&](const Trial& trial) {
+      return label(trial.candidate) == name && (trial.decision == "kept" || trial.decision == "taken out");
+    };
+    return std::find_if(result_.trials.rbegin(), result_.trials.rend(), is_decided);
+  };
+  for (Trial& trial : result_.trials) {
+    const std::string name = label(trial.candidate);
+    const bool is_kept =
+        std::ranges::any_of(result_.kept, [&](const Kept& kept) { return label(kept.trial.candidate) == name; });
+    if (trial.decision == "kept" && !is_kept && &*last_of(name) == &trial) {
+      trial.decision = "dropped";
+      trial.reason += words::text(words::Reason::other_hypothesis);
+    }
+  }
+  for (const Kept& kept : result_.kept) {
+    const auto last = last_of(label(kept.trial.candidate));
+    if (last != result_.trials.rend() && last->decision == "taken out") {
+      Trial again = kept.trial;
+      again.round = round;
+      result_.trials.push_back(std::move(again));
+    }
   }
 }
 

@@ -46,7 +46,7 @@ void UnlistedStage::replace_names_that_explain_little() {
 
 void UnlistedStage::finish() {
   if (is_worth_a_table() && !options_.watch.interrupted()) {
-    const Found names = found();
+    const Found names{result_.kept, result_.explained, result_.rival};
     refuse_misplaced_names();
     look_instead();
     take_instead_if_better();
@@ -109,10 +109,6 @@ const Located& UnlistedStage::locate_explained() {
     beside_values_ = result_.explained.model.u;
   }
   return beside_explained_;
-}
-
-UnlistedStage::Found UnlistedStage::found() const {
-  return {result_.kept, result_.explained, result_.rival, result_.trials.size()};
 }
 
 void UnlistedStage::restore(Found found) {
@@ -188,11 +184,11 @@ void UnlistedStage::take_instead_if_better() {
     result_.trials[instead_trials_ + *instead_->best].reason += words::replaces_listed(left_by_listed());
   }
   result_.kept.clear();
-  result_.rival.reset();
   keep(*instead_, instead_trials_);
 }
 
 void UnlistedStage::keep(const UnlistedSearch& found, std::size_t first_trial) {
+  result_.rival.reset();
   Trial& best = result_.trials[first_trial + *found.best];
   best.decision = "kept";
   Kept kept{best, {}};
@@ -213,9 +209,9 @@ bool UnlistedStage::has_unlisted() const {
   return std::ranges::any_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
 }
 
-/// The term of the grammar whose site what is left acts most at, by its place: its law is not exact, and a term at another
-/// site would imitate the rest of it. None where what was found explains less than half: that leaves another effect, perhaps
-/// at the same site.
+/// Index among the kept effects of the term of the grammar at whose site most of the rest acts: its law is not exact, and a
+/// term at another site would imitate the rest of it. None where what was found explains less than half: that leaves another
+/// effect, perhaps at the same site.
 std::optional<std::size_t> UnlistedStage::term_of_rest(const Located& left) const {
   if (left.places.empty() || left_by_listed() > policy().little_explained) {
     return std::nullopt;
@@ -256,18 +252,18 @@ RoundResult UnlistedStage::round_of(const std::vector<Candidate>& candidates, co
 }
 
 /// The best effect of a round whose trials begin at `first` is not kept, for a reason that follows its held-out error.
-void UnlistedStage::refuse(std::size_t first, words::Reason why) {
+void UnlistedStage::refuse(std::size_t first, std::string_view why) {
   const auto of_round = std::span(result_.trials).subspan(first);
   const auto best = std::ranges::find(of_round, "kept", &Trial::decision);
   if (best != of_round.end()) {
     best->decision = "dropped";
-    best->reason = words::leaves(best->held_out_ratio) + std::string(words::text(why));
+    best->reason = words::leaves(best->held_out_ratio) + std::string(why);
   }
 }
 
-/// A listed effect beside what was found, where it leaves clearly less. What is left where a term of unknown law acts may be
-/// the rest of that term, and a listed effect may imitate it: there it has to leave only noise. Returns whether there is
-/// one.
+/// A listed effect beside what was found, where it leaves clearly less. Where most of the rest acts at the site of a term,
+/// any listed effect may imitate the rest of that term: it has to leave only noise, or to explain clearly more together with
+/// another law of the term. Returns whether there is one.
 bool UnlistedStage::add_listed_beside(const Located& left) {
   std::vector<Candidate> candidates = candidates_beside(result_.explained.model.base, data_);
   std::erase_if(candidates, [&](const Candidate& c) { return left.refutes(c.site, sites_of_terms()); });
@@ -279,10 +275,13 @@ bool UnlistedStage::add_listed_beside(const Located& left) {
   const std::optional<std::size_t> term = term_of_rest(left);
   const bool is_enough = term ? excess_over_noise(data_, found.model.prediction) < policy().immaterial
                               : leaves_clearly_less(found.model, policy().clearly_less);
-  if (!is_enough || !harm_of(data_, found.model.prediction, result_.calibrated.prediction).empty()) {
+  const std::string harm = harm_of(data_, found.model.prediction, result_.calibrated.prediction);
+  if (!is_enough || !harm.empty()) {
     const bool is_revised = term && revise_term(*term, found, left);
     if (!is_revised) {
-      refuse(first, words::Reason::not_clearly_less);
+      refuse(first, !harm.empty()
+                        ? "; " + words::refused(harm)
+                        : std::string(words::text(term ? words::Reason::rest_of_term : words::Reason::not_clearly_less)));
     }
     return is_revised;
   }
@@ -292,26 +291,38 @@ bool UnlistedStage::add_listed_beside(const Located& left) {
   return true;
 }
 
-/// The term whose rest is left, by its place, is searched for once more beside the listed effect of a round: without that
-/// effect it had to represent both. Returns whether the two leave clearly less.
+/// A term of unknown law beside a model that leaves clearly less than what was found. All that is tried is filed. `tables`:
+/// as of a task.
+std::optional<UnlistedSearch> UnlistedStage::better_term(const Assessed& beside, const Located& where, bool tables) {
+  if (!beside.good() || options_.watch.interrupted()) {
+    return std::nullopt;
+  }
+  UnlistedTask task = task_beside(beside, where);
+  task.tables = tables;
+  UnlistedSearch search = search_unlisted(task);
+  search.mark_tied_sites();
+  result_.trials.insert(result_.trials.end(), search.trials.begin(), search.trials.end());
+  if (!search.has_evidence() || !leaves_clearly_less(search.model, policy().clearly_less) ||
+      !harm_of(data_, search.model.prediction, result_.calibrated.prediction).empty()) {
+    return std::nullopt;
+  }
+  return search;
+}
+
+/// The term whose rest is left is searched for once more beside the listed effect of a round: without that effect it had to
+/// represent both. `term` is its index among the kept effects. Returns whether the two leave clearly less.
 bool UnlistedStage::revise_term(std::size_t term, const RoundResult& listed, const Located& left) {
   const Assessed rest = refiner_.without(listed.model.model, result_.kept[term].trial.candidate);
-  if (!rest.good() || options_.watch.interrupted()) {
-    return false;
-  }
-  const Located here = left.only_best();
-  UnlistedSearch again = search_unlisted(task_beside(rest, here));
-  again.mark_tied_sites();
+  const auto terms = std::ranges::count_if(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
   const std::size_t first = result_.trials.size();
-  result_.trials.insert(result_.trials.end(), again.trials.begin(), again.trials.end());
-  if (!again.has_evidence() || !leaves_clearly_less(again.model, policy().clearly_less) ||
-      !harm_of(data_, again.model.prediction, result_.calibrated.prediction).empty()) {
+  const auto again = better_term(rest, left.only_best(), terms == 1);
+  if (!again) {
     return false;
   }
-  take_out(result_.kept[term].trial, words::imitates(label(again.trials[*again.best].candidate)));
+  take_out(result_.kept[term].trial,
+           words::is_revised(label(again->trials[*again->best].candidate), label(listed.kept->trial.candidate)));
   result_.kept[term] = *listed.kept;
-  result_.rival.reset();
-  keep(again, first);
+  keep(*again, first);
   return true;
 }
 
@@ -335,18 +346,12 @@ void UnlistedStage::add_beside(Names names) {
     if (term_of_rest(left)) {
       return;
     }
-    UnlistedTask task = task_beside(result_.explained, left);
-    task.tables = !has_unlisted();
-    UnlistedSearch beside = search_unlisted(task);
-    beside.mark_tied_sites();
     const std::size_t first = result_.trials.size();
-    result_.trials.insert(result_.trials.end(), beside.trials.begin(), beside.trials.end());
-    if (!beside.has_evidence() || !leaves_clearly_less(beside.model, policy().clearly_less) ||
-        !harm_of(data_, beside.model.prediction, result_.calibrated.prediction).empty()) {
+    const auto beside = better_term(result_.explained, left, !has_unlisted());
+    if (!beside) {
       return;
     }
-    result_.rival.reset();
-    keep(beside, first);
+    keep(*beside, first);
   }
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/search/unlisted_search.hpp"
-#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -24,7 +26,8 @@ class UnlistedStage {
   void replace_names_that_explain_little();
 
   /// The end of a search: names that the located place refutes are taken out; a term of unknown law takes the place of the
-  /// names or comes beside them where it leaves clearly less; names without weight are dropped; what is left is located.
+  /// names or comes beside them where it leaves clearly less; names that were given up are tried again with terms beside
+  /// them; names without weight are dropped; what is left is located.
   void finish();
 
   /// Where the term acts that the explained model is missing; nowhere for a mass, which has one place only.
@@ -42,13 +45,11 @@ class UnlistedStage {
     std::vector<Kept> kept;
     Assessed explained;
     std::optional<Rival> rival;
-    std::size_t trials = 0;  ///< so far
   };
 
   /// Whether a term may replace a name that was found.
   enum class Names { open, given };
 
-  Found found() const;
   void restore(Found found);
   bool is_worth_a_table() const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
@@ -69,14 +70,16 @@ class UnlistedStage {
   std::optional<std::size_t> term_of_rest(const Located& left) const;
   void add_beside(Names names);
   RoundResult round_of(const std::vector<Candidate>& candidates, const Assessed& beside, const std::string& what);
-  void refuse(std::size_t first, words::Reason why);
+  void refuse(std::size_t first, std::string_view why);
   void take_out(Trial trial, std::string why);
   std::vector<std::string> sites_of_terms() const;
   bool add_listed_beside(const Located& left);
+  std::optional<UnlistedSearch> better_term(const Assessed& beside, const Located& where, bool tables);
   bool revise_term(std::size_t term, const RoundResult& listed, const Located& left);
   bool replace_misfit(const Located& left);
   void name_terms();
   void return_to_names_if_better(const Found& names);
+  void file_hypothesis();
   void drop_light_names();
   void drop_names_that_explain_little();
   void keep(const UnlistedSearch& found, std::size_t first_trial);

@@ -17,8 +17,9 @@ std::string_view text(Reason reason) noexcept {
       ", but its friction adds energy",
       ", as much as the term that is kept at another site",
       ": not clearly less",
+      ", more than noise at the site of a term of unknown law",
       ", more than the term of unknown law",
-      "; the other hypothesis explains more",
+      "; another hypothesis is kept",
       "fitted jointly before the search was interrupted; other candidates were not",
       "screened before the search was interrupted",
       "not fitted before the search was interrupted"};
@@ -68,6 +69,10 @@ std::string replaces_listed(double share_left_by_listed) {
 }
 
 std::string has_a_law(const std::string& label) { return fmt::format("{} leaves as little", label); }
+
+std::string is_revised(const std::string& term, const std::string& listed) {
+  return fmt::format("{} and {} together leave clearly less", term, listed);
+}
 
 std::string imitates(const std::string& label) {
   return fmt::format("what it leaves acts at its own site, where {} leaves clearly less", label);

@@ -7,8 +7,8 @@
 
 namespace hotfire::explain::words {
 
-/// Reasons of the search without a figure: the column `reason` of `search` in report.json. Those that begin with a comma or
-/// follow a label are parts of a sentence.
+/// Reasons of the search without a figure: the column `reason` of `search` in report.json. Those that begin with a
+/// punctuation mark or follow a label are parts of a sentence.
 enum class Reason {
   not_screened,
   no_lower_criterion,
@@ -20,13 +20,14 @@ enum class Reason {
   feeds_energy,
   tied_site,
   not_clearly_less,
+  rest_of_term,
   leaves_more,
   other_hypothesis,
   interrupted_refined,
   interrupted_screened,
   interrupted_before
 };
-inline constexpr std::size_t kReasons = 15;
+inline constexpr std::size_t kReasons = 16;
 std::string_view text(Reason reason) noexcept;
 
 /// How a law compares with another one of the same effect, whose label follows.
@@ -47,6 +48,7 @@ std::string replaces_listed(double share_left_by_listed);
 std::string explained_by_signal(const std::string& sites);
 /// Of a term of unknown law.
 std::string has_a_law(const std::string& label);
+std::string is_revised(const std::string& term, const std::string& listed);
 /// Of a listed effect.
 std::string imitates(const std::string& label);
 
