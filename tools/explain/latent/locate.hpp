@@ -25,8 +25,9 @@ struct Place {
 
 /// Where the term acts that a model is missing.
 struct Located {
-  std::vector<Place> places;  ///< likely ones first, each by its gain; empty where nothing is missing or the model could not be simulated
-  bool is_single = false;     ///< one signal at a likely place leaves noise alone
+  std::vector<Place>
+      places;  ///< likely ones first, each by its gain; empty where nothing is missing or the model could not be simulated
+  bool is_single = false;  ///< one signal at a likely place leaves noise alone
 
   /// False if a term at `site` cannot be what is missing.
   bool allows(const std::string& site) const;
