@@ -23,7 +23,7 @@ constexpr std::array kFaster{1.4, 0.24};
 constexpr double kStartDeviation = 0.05;
 /// Deviation that a row adds to each state, over its scale: what the linear flow is wrong by at least. Far below what a
 /// sensor resolves, and far above the rounding that would make a covariance indefinite where friction sticks and slips.
-constexpr double kFlowDeviation = 1e-6;
+constexpr double kFlowDeviation = 1e-7;
 /// Sizes of the signal over its scale that are looked at, as logarithms: from what no sensor sees to all that the plant has.
 constexpr double kSmallest = -16.1;  // ln 1e-7
 constexpr double kLargest = 0.7;     // ln 2
