@@ -16,7 +16,7 @@ struct ChannelSlopes {
 };
 
 /// The exact derivatives of what `simulate` gives for the model and the record, start included, by the parameters of these
-/// keys, "engine.inertia": the run is made with dual numbers, as a fit makes it. Throws UsageError for a key that does not
+/// keys, "engine.inertia": the run is made with dual numbers. Throws UsageError for a key that does not
 /// act in the model, of an inactive effect or of a law that is not chosen, and what `simulate` throws.
 std::vector<ChannelSlopes> gradients(const ModelFile& model, const Record& inputs, const std::vector<std::string>& keys);
 

@@ -48,11 +48,12 @@ typename model::Electromechanical<S>::State at_first_row(const model::Electromec
 template <class Plant, class Advance, class Sink>
 bool run_rows(std::size_t rows, const typename Plant::State& state, int steps, Advance&& advance, Sink&& sink) {
   using S = typename Plant::Scalar;
+  using model::value_of;
   const hal::FlushDenormals flush;
   for (std::size_t row = 0; row < rows; ++row) {
     const auto& readings = Plant::measured(state);
     for (const S& reading : readings) {
-      if (is_runaway(model::value_of(reading))) {
+      if (is_runaway(value_of(reading))) {
         return false;
       }
     }

@@ -44,7 +44,7 @@ room(model/effects unlisted "terms of unknown law: the grammar, tables, short la
 room(tools/explain policy "the constants by which the finder decides")
 room(tools/explain words "every sentence of the report and every refusal, from names and numbers")
 room(tools/explain data "records as the finder uses them: rows to fit, to hold out, to exclude; noise; start states" words)
-room(tools/explain fit "simulation error, exact gradients and the least-squares fit" data words policy)
+room(tools/explain fit "simulation error, gradients and the least-squares fit" data words policy)
 room(tools/explain vehicle "a vehicle as axes, each beside the motion of the others" fit data words policy)
 room(tools/explain inference "confidence intervals, identifiability, the veto, and faults of a channel" fit data words policy)
 room(tools/explain latent "an unknown signal at each place: where the missing term acts" fit data words policy)

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/fit/evaluator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "tools/explain/fit/slopes.hpp"
 #include "tools/explain/terms/candidates.hpp"
+#include "tools/explain/terms/trial.hpp"
+#include "tools/explain/terms/unlisted.hpp"
+#include "tools/simulate/gradients.hpp"
 
 #include <CppUTest/TestHarness.h>
 
@@ -37,6 +41,15 @@ Dataset smooth_dataset() {
   return data;
 }
 
+/// The command of an experiment, as a record.
+hotfire::Record record_of(const Experiment& experiment) {
+  hotfire::Record record;
+  record.period = experiment.period;
+  record.rows = experiment.rows();
+  record.channels.push_back({"command", "rad", experiment.input});
+  return record;
+}
+
 /// That axis with two of its declared parameters free.
 struct InertiaAndStiffness {
   const Dataset data = smooth_dataset();
@@ -61,7 +74,7 @@ struct InertiaAndStiffness {
 
 TEST_GROUP(Evaluator){};
 
-TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAndAnEffect) {
+TEST(Evaluator, GradientsMeetCentralDifferencesForEveryDeclaredParameterAndAnEffect) {
   const Dataset data = smooth_dataset();
   const Evaluator evaluator(data, Resolution::fine);
   ModelParameters base = hotfire::SimplexParameters();
@@ -101,9 +114,59 @@ TEST(Evaluator, ExactGradientsMeetCentralDifferencesForEveryDeclaredParameterAnd
     moved[k] = u[k] - h;
     CHECK(evaluator.predict(base, free, moved, 1, low));
     const Eigen::VectorXd difference = (evaluator.residuals(high) - evaluator.residuals(low)) / (2.0 * h);
-    const Eigen::VectorXd exact = jacobian.col(static_cast<Eigen::Index>(k));
-    CHECK_TEXT((difference - exact).norm() <= 1e-5 * exact.norm() + 1e-4, free[k].key.c_str());
+    const Eigen::VectorXd narrow = jacobian.col(static_cast<Eigen::Index>(k));
+    // Differences over 1e-5: that share of the second derivative, ten times the first at a resonance, and rounding of 2e-4
+    // in 1600 rows.
+    CHECK_TEXT((difference - narrow).norm() <= 2e-4 * narrow.norm() + 5e-4, free[k].key.c_str());
   }
+}
+
+TEST(Evaluator, GradientsAreThoseOfDualNumbersForEveryListedEffectHoweverItBranches) {
+  const Dataset data = smooth_dataset();
+  const Evaluator evaluator(data, Resolution::fine);
+  const hotfire::Record inputs = record_of(data.experiments.front());
+  const hotfire::SimplexParameters plain;
+  int compared = 0;
+  for (const Candidate& candidate : all_candidates(plain, data)) {
+    if (is_unlisted(plain, candidate) || !candidate.choices.empty()) {
+      continue;
+    }
+    ModelParameters base = plain;
+    activate(base, candidate);
+    std::vector<FreeParameter> free = effect_parameters(base, candidate, {});
+    std::erase_if(free, [](const FreeParameter& p) { return p.is_ordinate() || p.is_initial_state(); });
+    std::vector<double> u;
+    std::vector<std::string> keys;
+    for (const FreeParameter& parameter : free) {
+      u.push_back(parameter.coordinate(std::clamp(parameter.unit_size, parameter.lower, parameter.upper)));
+      keys.push_back(parameter.key);
+    }
+    std::vector<std::size_t> all(free.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    Eigen::MatrixXd jacobian;
+    CHECK_TRUE_TEXT(evaluator.differentiate(base, free, u, all, 2, jacobian), label(candidate).c_str());
+    hotfire::ModelFile model;
+    model.parameters = with_values(base, free, u);
+    const auto exact = hotfire::gradients(model, inputs, keys);
+    for (const Stretch& s : evaluator.stretches()) {
+      for (std::size_t k = 0; s.experiment == 0 && k < free.size(); ++k) {
+        double off = 0.0;
+        double size = 0.0;
+        for (std::size_t row = s.first; row < s.last; ++row) {
+          const double slope = exact[s.channel].slopes[row * free.size() + k] * free[k].slope(u[k]) / data.noise[s.channel];
+          const double narrow = jacobian(static_cast<Eigen::Index>(s.offset + row - s.first), static_cast<Eigen::Index>(k));
+          off += (narrow - slope) * (narrow - slope);
+          size += slope * slope;
+        }
+        // A resonance bends most over a unit. The elastoplastic law extrapolates what it iterates: it moves by rounding,
+        // 1e-10 of a reading, and the quotient of its least parameter by a half.
+        const double bend = candidate.option_name == "elastoplastic" ? 0.5 : 2e-4;
+        CHECK_TRUE_TEXT(std::sqrt(off) <= bend * std::sqrt(size) + 5e-4, (label(candidate) + " " + free[k].key).c_str());
+        ++compared;
+      }
+    }
+  }
+  CHECK_TRUE(compared > 100);
 }
 
 TEST(Evaluator, TheResultDoesNotDependOnTheNumberOfThreads) {
@@ -173,6 +236,6 @@ TEST(Evaluator, DerivativesThatAreAskedForWideAreDifferencesOverTheWidthOfARippl
     CHECK((difference - wide.col(static_cast<Eigen::Index>(k))).norm() <= 1e-12 * difference.norm());
   }
   Eigen::MatrixXd exact;
-  CHECK(differentiate(evaluator, base, free, u, all, Slopes::exact, 2, exact) == Slopes::exact);
+  CHECK(differentiate(evaluator, base, free, u, all, Slopes::narrow, 2, exact) == Slopes::narrow);
   CHECK((exact - wide).norm() > 0.0);
 }

@@ -53,7 +53,7 @@ struct LeakingAxis {
     }
     const Evaluator evaluator(data, Resolution::fine);
     fitted.temper.assign(data.channels.size(), 1.0);
-    CHECK_TRUE(fit(evaluator, fitted, {30, 1, 1e-9, Slopes::exact, nullptr}));
+    CHECK_TRUE(fit(evaluator, fitted, {30, 1, 1e-9, Slopes::narrow, nullptr}));
   }
 
   const Address& leak() const { return fitted.free.front().address; }

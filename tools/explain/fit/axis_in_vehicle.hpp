@@ -68,7 +68,8 @@ class AxisInVehicle {
       bearing_->go_to(row, k);
     }
     // A first guess, which the passes replace: it has no slope of its own.
-    softening_ = S(model::value_of(softening_));
+    using model::value_of;
+    softening_ = S(value_of(softening_));
     typename Plant::Advance advance;
     plant_.begin(state, command, advance);
     for (int pass = 0; pass < Plant::kPasses; ++pass) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/fit/evaluator.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -12,6 +10,7 @@
 #include <memory>
 #include <numeric>
 
+#include "model/numerics/perturbed.hpp"
 #include "model/numerics/step_size.hpp"
 #include "tools/explain/fit/experiment_run.hpp"
 #include "tools/explain/fit/parallel.hpp"
@@ -21,39 +20,43 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Derivatives carried by one simulation: as many as one wide register holds. More spill, and cost more each.
-constexpr std::size_t kLanes = 4;
-using Dual = ceres::Jet<double, kLanes>;
+/// A run beside three others under a changed parameter: as many as one wide register holds. More spill, and cost more each.
+using Number = model::Perturbed<4>;
+constexpr std::size_t kAtOnce = Number::kChanges;
+/// Change of a coordinate for a difference quotient. The unit of a coordinate is a factor e or a tolerance, over which a
+/// reading bends: the quotient is off by 1e-5 of itself. A run rounds by 1e-15 of a reading, the quotient by 1e-10, which is
+/// a hundred-thousandth of the noise of a sensor of five digits.
+constexpr double kChange = 1e-5;
 
-/// The parameters whose derivatives one simulation carries, a lane each.
+/// The parameters that one simulation changes, each for itself.
 struct Chunk {
   std::span<const FreeParameter> free;
   std::span<const double> u;
-  std::span<const std::size_t> wanted;  ///< at most kLanes of them
+  std::span<const std::size_t> wanted;  ///< at most kAtOnce of them
   Eigen::Index first_column = 0;
 
-  /// Parameter k as a dual number.
-  Dual value(std::size_t k) const {
-    Dual dual(free[k].value(u[k]));
-    seed(k, dual);
-    return dual;
+  /// Parameter k and what it is under each change.
+  Number value(std::size_t k) const {
+    Number number(free[k].value(u[k]));
+    change(k, number);
+    return number;
   }
 
-  void seed(std::size_t k, Dual& dual) const {
-    for (std::size_t lane = 0; lane < wanted.size(); ++lane) {
-      if (wanted[lane] == k) {
-        dual.v[static_cast<Eigen::Index>(lane)] = free[k].slope(u[k]);
+  void change(std::size_t k, Number& number) const {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (wanted[i] == k) {
+        number.set_changed(static_cast<int>(i), number.value() + kChange * free[k].slope(u[k]));
       }
     }
   }
 
   template <class Parameters>
-  void seed_all(Parameters& parameters) const {
+  void change_all(Parameters& parameters) const {
     std::size_t index = 0;
-    model::visit_values(parameters, [&](Dual& value) {
+    model::visit_values(parameters, [&](Number& value) {
       for (const std::size_t k : wanted) {
         if (!free[k].is_initial_state() && free[k].index == index) {
-          seed(k, value);
+          change(k, value);
         }
       }
       ++index;
@@ -74,7 +77,7 @@ class Writer {
   }
 
   /// False if a derivative is not finite.
-  bool write(std::size_t row, std::size_t channel, const Dual& reading, const Chunk& chunk) {
+  bool write(std::size_t row, std::size_t channel, const Number& reading, const Chunk& chunk) {
     const auto& stretches = by_channel_[channel];
     std::size_t& next = next_[channel];
     while (next < stretches.size() && row >= stretches[next]->last) {
@@ -85,11 +88,13 @@ class Writer {
     }
     const auto i = static_cast<Eigen::Index>(stretches[next]->offset + row - stretches[next]->first);
     const double weight = 1.0 / data_.experiments[stretches[next]->experiment].noise[channel];
-    const auto lanes = static_cast<Eigen::Index>(chunk.wanted.size());
-    for (Eigen::Index lane = 0; lane < lanes; ++lane) {
-      jacobian_(i, chunk.first_column + lane) = reading.v[lane] * weight;
+    bool finite = true;
+    for (int change = 0; change < static_cast<int>(chunk.wanted.size()); ++change) {
+      const double slope = (reading.changed(change) - reading.value()) / kChange;
+      finite = finite && std::isfinite(slope);
+      jacobian_(i, chunk.first_column + change) = slope * weight;
     }
-    return reading.v.allFinite();
+    return finite;
   }
 
  private:
@@ -138,16 +143,17 @@ bool simulate(const Parameters& parameters, const Course& course, std::span<cons
   return finite;
 }
 
-/// Simulates all experiments in dual numbers, once for every chunk. False if a state or a derivative did not stay finite.
+/// Simulates all experiments beside changed parameters, once for every chunk. False if a state or a derivative did not stay
+/// finite.
 template <class Parameters>
-bool simulate_dual(const Parameters& plain, const Course& course, const std::vector<Chunk>& chunks,
-                   const std::vector<Stretch>& stretches, Eigen::MatrixXd& jacobian) {
-  using Plant = PlantOf<Parameters, Dual>;
+bool simulate_changed(const Parameters& plain, const Course& course, const std::vector<Chunk>& chunks,
+                      const std::vector<Stretch>& stretches, Eigen::MatrixXd& jacobian) {
+  using Plant = PlantOf<Parameters, Number>;
   const Dataset& data = course.data;
   std::vector<std::map<double, std::unique_ptr<Plant>>> plants(chunks.size());
   parallel_for(chunks.size(), course.threads, [&](std::size_t c) {
     auto parameters = with_scalar<typename Plant::Parameters>(plain);
-    chunks[c].seed_all(parameters);
+    chunks[c].change_all(parameters);
     plants[c] = plants_by_period<Plant>(data, parameters, course.steps);
   });
   std::atomic<bool> finite{true};
@@ -156,8 +162,8 @@ bool simulate_dual(const Parameters& plain, const Course& course, const std::vec
     const std::size_t e = course.order[task / chunks.size()];
     const Experiment& experiment = data.experiments[e];
     const auto& plant = *plants[task % chunks.size()].at(experiment.period);
-    const auto start = start_of<Dual>(data, e, chunk.free, [&](std::size_t k) { return chunk.value(k); });
-    // A dual state is tens of kilobytes: it lives on the heap, not on a thread's stack.
+    const auto start = start_of<Number>(data, e, chunk.free, [&](std::size_t k) { return chunk.value(k); });
+    // Such a state is tens of kilobytes: it lives on the heap, not on a thread's stack.
     auto state = std::make_unique<typename Plant::State>(initial_state(plant, data, experiment, start));
     Writer writer(data, stretches, e, jacobian);
     bool good = true;
@@ -292,13 +298,14 @@ bool Evaluator::differentiate(const ModelParameters& base, std::span<const FreeP
                               std::span<const std::size_t> wanted, unsigned threads, Eigen::MatrixXd& jacobian) const {
   jacobian.resize(static_cast<Eigen::Index>(fit_rows_), static_cast<Eigen::Index>(wanted.size()));
   std::vector<Chunk> chunks;
-  for (std::size_t first = 0; first < wanted.size(); first += kLanes) {
-    const std::size_t count = std::min(kLanes, wanted.size() - first);
+  for (std::size_t first = 0; first < wanted.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, wanted.size() - first);
     chunks.push_back({free, u, wanted.subspan(first, count), static_cast<Eigen::Index>(first)});
   }
   const Course course{data_, longest_first_, [&](const Experiment& e) { return steps_of(base, e, slopes_); }, threads};
-  const bool finite = std::visit([&](const auto& own) { return simulate_dual(own, course, chunks, stretches_, jacobian); },
-                                 with_values(base, free, u));
+  const bool finite =
+      std::visit([&](const auto& own) { return simulate_changed(own, course, chunks, stretches_, jacobian); },
+                 with_values(base, free, u));
   for_each_zero([&](Eigen::Index first, Eigen::Index rows, double precision) {
     auto part = jacobian.middleRows(first, rows);
     part.rowwise() -= (1.0 - 1.0 / std::sqrt(1.0 + precision)) * part.colwise().mean();

@@ -32,9 +32,9 @@ enum class Resolution { fine, coarse, rough };
 /// Puts the coordinates `u` into parameters.
 ModelParameters with_values(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u);
 
-/// Simulates every experiment of a dataset under given parameters, and differentiates the simulation exactly by dual
-/// numbers: the one that it makes, or one of longer steps. The end of a fit is where residuals say, and a fit still closes
-/// in on it along derivatives that are off by a few percent.
+/// Simulates every experiment of a dataset under given parameters, and differentiates the simulation by narrow difference
+/// quotients (`model::Perturbed`): the one that it makes, or one of longer steps. The end of a fit is where residuals say,
+/// and a fit still closes in on it along derivatives that are off by a few percent.
 class Evaluator {
  public:
   Evaluator(const Dataset& data, Resolution resolution) : Evaluator(data, resolution, resolution) {}

@@ -27,6 +27,10 @@ struct Compressed {
   Eigen::VectorXd residual;  ///< n + 1
 };
 
+/// Share of the largest eigenvalue (at most n) below which a direction carries no information: the square of what the
+/// derivatives are off by.
+constexpr double kNoInformation = 1e-10;
+
 Compressed compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradient, double cost) {
   const Eigen::Index n = normal.rows();
   Eigen::VectorXd scale = normal.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -38,8 +42,7 @@ Compressed compress(const Eigen::MatrixXd& normal, const Eigen::VectorXd& gradie
   double explained = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {
     const double value = eigen.eigenvalues()(i);
-    // Below rounding of the largest (at most n) a direction carries no information.
-    if (value > 1e-14 * static_cast<double>(n)) {
+    if (value > kNoInformation * static_cast<double>(n)) {
       const double root = std::sqrt(value);
       compressed.jacobian.row(i) = root * (eigen.eigenvectors().col(i).cwiseProduct(scale)).transpose();
       compressed.residual(i) = rotated(i) / root;
@@ -131,7 +134,7 @@ class SimulationError : public ceres::CostFunction {
       return false;
     }
     if (want_jacobian) {
-      fitted_.chaotic = options_.slopes == Slopes::exact && tangent_.slopes() == Slopes::wide;
+      fitted_.chaotic = options_.slopes == Slopes::narrow && tangent_.slopes() == Slopes::wide;
     }
     residual = tangent_.residual();
     if (options_.frozen != nullptr && !options_.frozen->u.empty()) {

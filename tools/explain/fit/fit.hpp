@@ -26,7 +26,7 @@ struct Fitted {
   Temper temper;
   Eigen::MatrixXd normal;  ///< J^T J of the last derivative, priors included
   bool converged = false;
-  bool chaotic = false;  ///< exact derivatives ran away where it ended
+  bool chaotic = false;  ///< narrow derivatives ran away where it ended
 
   /// `base` with what the fit moved where it ended.
   ModelParameters parameters() const { return with_values(base, free, u); }
@@ -43,7 +43,7 @@ struct FitOptions {
   int iterations = 30;
   unsigned threads = 1;
   double tolerance = 1e-5;         ///< relative change of the cost at which a fit has converged
-  Slopes slopes = Slopes::exact;   ///< how derivatives are asked for
+  Slopes slopes = Slopes::narrow;  ///< how derivatives are asked for
   const Frozen* frozen = nullptr;  ///< for the first frozen->u.size() parameters
 };
 

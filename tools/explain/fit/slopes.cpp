@@ -51,9 +51,9 @@ std::optional<Slopes> differentiate(const Evaluator& evaluator, const ModelParam
                                     std::span<const FreeParameter> free, std::span<const double> u,
                                     std::span<const std::size_t> wanted, Slopes asked, unsigned threads,
                                     Eigen::MatrixXd& jacobian) {
-  if (asked == Slopes::exact && evaluator.differentiate(base, free, u, wanted, threads, jacobian) &&
+  if (asked == Slopes::narrow && evaluator.differentiate(base, free, u, wanted, threads, jacobian) &&
       (jacobian.size() == 0 || jacobian.cwiseAbs().maxCoeff() < kRunawaySlope)) {
-    return Slopes::exact;
+    return Slopes::narrow;
   }
   return differences(evaluator, base, free, u, wanted, threads, jacobian) ? std::optional(Slopes::wide) : std::nullopt;
 }

@@ -11,8 +11,8 @@
 namespace hotfire::explain {
 
 /// Residuals along the way of a fit, with derivatives that are taken again only where they no longer hold: a simulation with
-/// derivatives costs as much as a dozen without. Exact ones hold as long as the residuals have moved as they said; wide ones
-/// over the width of their differences, within which they resolve nothing finer.
+/// derivatives costs as much as several without. Narrow ones hold as long as the residuals have moved as they said; wide
+/// ones over the width of their differences, within which they resolve nothing finer.
 class Tangent {
  public:
   /// Of `evaluator` under `base` with the coordinates of `free`, with derivatives for the parameters `wanted`, taken as
@@ -55,7 +55,7 @@ class Tangent {
   std::vector<double> taken_at_;  ///< where the derivatives were taken, with `taken_residual_`
   Eigen::VectorXd taken_residual_;
   Eigen::MatrixXd jacobian_;
-  Slopes slopes_ = Slopes::exact;
+  Slopes slopes_ = Slopes::narrow;
   int revision_ = 0;
 };
 

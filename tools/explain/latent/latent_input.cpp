@@ -220,7 +220,7 @@ LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned
   Prediction prediction;
   Eigen::MatrixXd jacobian;
   if (!evaluator.predict(around.base, around.free, around.u, threads, prediction) ||
-      !differentiate(evaluator, around.base, around.free, around.u, declared, Slopes::exact, threads, jacobian)) {
+      !differentiate(evaluator, around.base, around.free, around.u, declared, Slopes::narrow, threads, jacobian)) {
     return problem;
   }
   const auto count = static_cast<Eigen::Index>(declared.size());

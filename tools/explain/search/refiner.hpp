@@ -52,7 +52,7 @@ class Refiner {
   }
 
   /// A model that leaves something, but less beyond the noise than the ripples of its error are high, may sit in one: it is
-  /// fitted along differences that are wider than a ripple, and then along exact derivatives, from where those ended. The
+  /// fitted along differences that are wider than a ripple, and then along narrow derivatives, from where those ended. The
   /// best of all. `height`: of the ripples, over the noise.
   Assessed over_ripples(Assessed fitted, double height = policy().near_noise) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.

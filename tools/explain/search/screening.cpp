@@ -66,7 +66,7 @@ Screening::Screening(const Evaluator& evaluator, const Fitted& current, const Sc
   frozen_.u = current.u;
   std::vector<std::size_t> all(current.free.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  differentiate(evaluator, current.base, current.free, current.u, all, Slopes::exact, threads, frozen_.jacobian);
+  differentiate(evaluator, current.base, current.free, current.u, all, Slopes::narrow, threads, frozen_.jacobian);
   evaluator.predict(current.base, current.free, current.u, threads, prediction_);
   current_.temper = temper_of(evaluator, evaluator.residuals(prediction_));
   goodness_ = goodness(evaluator.data(), prediction_);
@@ -342,7 +342,7 @@ void Screening::improve(Screened& screened, Stage stage) const {
   const Stopwatch stopwatch;
   const int iterations = stage == Stage::scan ? 0 : stage == Stage::short_fit ? kShortFit : kFullFit;
   Fitted& fitted = screened.fitted;
-  screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, Slopes::exact, &frozen_});
+  screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, Slopes::narrow, &frozen_});
   Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
   if (residual.size() == 0) {
     screened.good = false;

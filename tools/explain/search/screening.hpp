@@ -25,7 +25,7 @@ struct Screened {
   double left = 1.0;    ///< rms error on the rows a fit sees, over that of the current model
 };
 
-/// Ranks candidates around one model. A candidate's own parameters are simulated with exact gradients; what was free before
+/// Ranks candidates around one model. A candidate's own parameters are simulated with gradients; what was free before
 /// (declared parameters, effects already kept) moves along its derivatives at the current model and within its priors. That
 /// costs a tenth of a joint fit and leaves the ranking to the candidates' shapes, not to a wrong declared value.
 ///

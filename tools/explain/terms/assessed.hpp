@@ -25,7 +25,7 @@ struct Effort {
   int iterations = 0;
   int passes = 0;
   double tolerance = 0.0;
-  Slopes slopes = Slopes::exact;
+  Slopes slopes = Slopes::narrow;
 };
 inline constexpr Effort kGlance{5, 1, 1e-3};                      ///< which proposal is worth a fit
 inline constexpr Effort kCheck{12, 1, 1e-4};                      ///< is an effect still needed

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/numerics/perturbed.hpp"
+
+#include <CppUTest/TestHarness.h>
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace hotfire::model {
+namespace {
+
+using Number = Perturbed<4>;
+
+/// A number with another one under each change.
+Number number_of(double value, const std::array<double, Number::kChanges>& changed) {
+  Number number(value);
+  for (int change = 0; change < Number::kChanges; ++change) {
+    number.set_changed(change, changed[static_cast<std::size_t>(change)]);
+  }
+  return number;
+}
+
+template <class S>
+S expression(const S& x, const S& y) {
+  using std::cos;
+  using std::expm1;
+  using std::log;
+  using std::pow;
+  using std::sin;
+  const S z = (x + y) * x - y / x;
+  return sin(z) + cos(y) * exp(x) + log(x) * sqrt(y) + expm1(x) - pow(y, x) + fading_exponential(S(x * y));
+}
+
+}  // namespace
+
+TEST_GROUP(Perturbed){};
+
+TEST(Perturbed, EveryLaneHasTheBitsThatItHasAlone) {
+  const std::array<double, 3> x{0.71, 0.7000001, 0.69};
+  const std::array<double, 3> y{2.3, 2.31, 2.2999};
+  const Number both = expression(number_of(0.7, x), number_of(2.3, y));
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  CHECK_TRUE(bits(both.value()) == bits(expression(0.7, 2.3)));
+  for (int change = 0; change < Number::kChanges; ++change) {
+    const auto i = static_cast<std::size_t>(change);
+    CHECK_TRUE(bits(both.changed(change)) == bits(expression(x[i], y[i])));
+  }
+}
+
+TEST(Perturbed, EveryChoiceIsThatOfTheNumber) {
+  // The second change is beyond the limit, and has another sign and another whole part.
+  const Number x = number_of(0.9, {0.8, 1.2, -0.1});
+  CHECK_TRUE(x < Number(1.0));
+  CHECK_FALSE(x > Number(1.0));
+  const Number limited = clamp_symmetric<Number>(x, Number(1.0));
+  DOUBLES_EQUAL(1.2, limited.changed(1), 0.0);
+  DOUBLES_EQUAL(-0.1, abs(x).changed(2), 0.0);
+  DOUBLES_EQUAL(0.0, floor(x).changed(1), 0.0);
+  DOUBLES_EQUAL(0.9, value_of(x), 0.0);
+  DOUBLES_EQUAL(1.0, sign_of(x), 0.0);
+}
+
+}  // namespace hotfire::model
