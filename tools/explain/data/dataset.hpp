@@ -22,7 +22,7 @@ struct Experiment {
   std::string name;
   double start = 0.0;
   double period = 0.0;
-  int log_rows = 1;  ///< rows of the log for each row here: more than one of a thinned record
+  int log_rows = 1;  ///< rows of the log for each row here: more than one in a thinned record
   std::vector<double> input;
   std::vector<double> torque;                 ///< measured, on the engine of a hydraulic axis [N m]; empty: none
   std::vector<std::vector<double>> measured;  ///< by model channel; empty where the record does not have the channel

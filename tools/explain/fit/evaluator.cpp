@@ -68,40 +68,45 @@ struct Chunk {
 class Writer {
  public:
   Writer(const Dataset& data, const std::vector<Stretch>& stretches, std::size_t experiment, Eigen::MatrixXd& jacobian)
-      : data_(data), jacobian_(jacobian), next_(data.channels.size(), 0), by_channel_(data.channels.size()) {
+      : jacobian_(jacobian), next_(data.channels.size(), 0), by_channel_(data.channels.size()) {
     for (const Stretch& s : stretches) {
       if (s.experiment == experiment) {
-        by_channel_[s.channel].push_back(&s);
+        by_channel_[s.channel].push_back({&s, 1.0 / (kChange * data.experiments[experiment].noise[s.channel])});
       }
     }
   }
 
   /// False if a derivative is not finite.
   bool write(std::size_t row, std::size_t channel, const Number& reading, const Chunk& chunk) {
-    const auto& stretches = by_channel_[channel];
+    const auto& parts = by_channel_[channel];
     std::size_t& next = next_[channel];
-    while (next < stretches.size() && row >= stretches[next]->last) {
+    while (next < parts.size() && row >= parts[next].stretch->last) {
       ++next;
     }
-    if (next >= stretches.size() || row < stretches[next]->first) {
+    if (next >= parts.size() || row < parts[next].stretch->first) {
       return true;
     }
-    const auto i = static_cast<Eigen::Index>(stretches[next]->offset + row - stretches[next]->first);
-    const double weight = 1.0 / data_.experiments[stretches[next]->experiment].noise[channel];
-    bool finite = true;
+    const auto [stretch, scale] = parts[next];
+    const auto i = static_cast<Eigen::Index>(stretch->offset + row - stretch->first);
+    double sum = 0.0;
     for (int change = 0; change < static_cast<int>(chunk.wanted.size()); ++change) {
-      const double slope = (reading.changed(change) - reading.value()) / kChange;
-      finite = finite && std::isfinite(slope);
-      jacobian_(i, chunk.first_column + change) = slope * weight;
+      const double slope = (reading.changed(change) - reading.value()) * scale;
+      jacobian_(i, chunk.first_column + change) = slope;
+      sum += slope;
     }
-    return finite;
+    return std::isfinite(sum);
   }
 
  private:
-  const Dataset& data_;
+  /// A stretch of this experiment, and the factor from a difference to a slope over noise.
+  struct Part {
+    const Stretch* stretch;
+    double scale;
+  };
+
   Eigen::MatrixXd& jacobian_;
   std::vector<std::size_t> next_;
-  std::vector<std::vector<const Stretch*>> by_channel_;
+  std::vector<std::vector<Part>> by_channel_;
 };
 
 /// The experiments of a dataset, as a plant is stepped through them.

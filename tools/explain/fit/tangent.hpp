@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tools/explain/fit/slopes.hpp"
@@ -21,6 +22,11 @@ class Tangent {
           std::vector<std::size_t> wanted, Slopes asked, unsigned threads)
       : evaluator_(evaluator), base_(base), free_(free), wanted_(std::move(wanted)), asked_(asked), threads_(threads) {}
 
+  /// Tells what is left at `u`, so that it is not simulated again.
+  void begin_at(std::vector<double> u, Eigen::VectorXd residual) {
+    at_ = std::move(u);
+    residual_ = std::move(residual);
+  }
   /// Simulates at `u`. False if a state did not stay finite.
   bool move_to(std::span<const double> u);
   /// As `move_to`, with derivatives.

@@ -16,8 +16,8 @@ constexpr std::size_t kBins = 32;
 /// One of so many rows is looked at, and values that the bins are laid by.
 constexpr Eigen::Index kEvery = 4;
 constexpr std::size_t kSampled = 500;
-/// The row within each group of `kEvery` changes from group to group: otherwise all rows could be sampling
-/// instants of a held signal, where it equals its argument.
+/// The row within each group of `kEvery` changes from group to group: otherwise all rows could be sampling instants of a
+/// held signal, where it equals its argument.
 constexpr std::array<Eigen::Index, 7> kRowInGroup{0, 2, 1, 3, 2, 0, 1};
 
 /// The rows of a column that are looked at.

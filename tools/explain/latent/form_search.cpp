@@ -179,12 +179,17 @@ std::vector<Form> screened_by_signal(const SignalCorrelation& correlation, std::
 /// signal is sampled.
 std::vector<Form> screened_by_response(const FormRegression& regression, const std::vector<ScoredForm>& moving,
                                        unsigned threads) {
+  const auto is_sampled = [](const ScoredForm& scored) {
+    return scored.form.memory.kind == model::Memory::hold && !scored.form.factor;
+  };
   std::vector<Form> forms;
   for (ScoredForm& scored : best_of_each(moving, moving.size())) {
-    forms.push_back(std::move(scored.form));
+    if (!is_sampled(scored)) {
+      forms.push_back(std::move(scored.form));
+    }
   }
   for (const ScoredForm& scored : moving) {
-    if (scored.form.memory.kind == model::Memory::hold && !scored.form.factor) {
+    if (is_sampled(scored)) {
       forms.push_back(scored.form);
     }
   }

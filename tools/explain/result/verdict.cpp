@@ -145,8 +145,9 @@ std::string what_it_is_not(const SearchResult& found) {
   const Trial* listed = closest_of(found.trials, [&](const Trial& t) {
     return t.round == 1 && t.decision != "taken out" && !is_unlisted(found, t.candidate);
   });
+  // Another term is judged against the same model in the same round.
   const Trial* other = closest_of(found.trials, [&](const Trial& t) {
-    return is_unlisted(found, t.candidate) && label(t.candidate) != label(kept.candidate);
+    return t.round == kept.round && is_unlisted(found, t.candidate) && label(t.candidate) != label(kept.candidate);
   });
   std::string text = listed == nullptr
                          ? words::no_listed_finalist()

@@ -42,6 +42,10 @@ constexpr std::size_t kRestarts = 4;
 /// Relative change of the cost at which a candidate is ranked well enough.
 constexpr double kRankingTolerance = 1e-4;
 
+FitOptions fit_options(int iterations, const Frozen& frozen) {
+  return {iterations, 1, kRankingTolerance, Slopes::narrow, &frozen};
+}
+
 void sort_best_first(std::vector<Screened>& screened) {
   std::erase_if(screened, [](const Screened& s) { return !s.good; });
   std::sort(screened.begin(), screened.end(),
@@ -88,16 +92,19 @@ Screening::Screening(const Evaluator& evaluator, const Fitted& current, const Sc
   }
   normal_.compute(matrix);
   Eigen::VectorXd move;
-  cost_ = eliminated_cost(evaluator.residuals(prediction_), move);
+  const Eigen::VectorXd left = evaluator.residuals(prediction_);
+  cost_ = eliminated_cost(left, move);
 
   Screened unaided{{}, current_, 0.0, 0.0, true};
   for (std::size_t k = 0; k < frozen_.u.size(); ++k) {
     unaided.fitted.u[k] += move(static_cast<Eigen::Index>(k));
   }
   std::array<double, kStages> reached{};
+  Tangent tangent = tangent_of(evaluator_, unaided.fitted, fit_options(0, frozen_));
+  tangent.begin_at(frozen_.u, left);
   for (const Stage stage : {Stage::scan, Stage::short_fit, Stage::full_fit}) {
     for (int pass = 0; pass < (stage == Stage::full_fit ? kFullFits : 1); ++pass) {
-      improve(unaided, stage);
+      improve(unaided, stage, tangent);
     }
     reached[static_cast<std::size_t>(stage)] = unaided.criterion;
   }
@@ -156,8 +163,8 @@ std::vector<Screened> Screening::run(const std::vector<Candidate>& candidates, c
   done = 0;
   parallel_for(semifinalists.size(), threads_, [&](std::size_t i) {
     Screened& semifinalist = screened[semifinalists[i]];
-    for (int pass = 0; pass < kFullFits && semifinalist.scanned && !watch.interrupted(); ++pass) {
-      improve(semifinalist, Stage::full_fit);
+    if (semifinalist.scanned) {
+      improve(semifinalist, Stage::full_fit, kFullFits, watch);
     }
     report("best candidates fitted", Work::fitting, semifinalists.size(), SharesOfWork::kFittedAlone);
   });
@@ -166,14 +173,9 @@ std::vector<Screened> Screening::run(const std::vector<Candidate>& candidates, c
   return screened;
 }
 
-Eigen::VectorXd Screening::residuals_at_frozen(const Fitted& fitted) const {
-  std::vector<double> u = fitted.u;
+std::vector<double> Screening::at_frozen(std::vector<double> u) const {
   std::copy(frozen_.u.begin(), frozen_.u.end(), u.begin());
-  Prediction prediction;
-  if (!evaluator_.predict(fitted.base, fitted.free, u, 1, prediction)) {
-    return {};
-  }
-  return evaluator_.residuals(prediction);
+  return u;
 }
 
 double Screening::eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const {
@@ -201,19 +203,23 @@ Fitted Screening::with_candidate(const Candidate& candidate) const {
 
 std::vector<Screening::Start> Screening::scan(Fitted fitted, const std::vector<std::vector<double>>& points) const {
   std::vector<Start> starts;
+  Prediction prediction;
   Eigen::VectorXd move;
   for (const auto& point : points) {
     fitted.u = frozen_.u;
     fitted.u.insert(fitted.u.end(), point.begin(), point.end());
-    const Eigen::VectorXd residual = residuals_at_frozen(fitted);
-    if (residual.size() == 0 || !residual.allFinite()) {
+    if (!evaluator_.predict(fitted.base, fitted.free, fitted.u, 1, prediction)) {
+      continue;
+    }
+    Eigen::VectorXd residual = evaluator_.residuals(prediction);
+    if (!residual.allFinite()) {
       continue;
     }
     const double cost = eliminated_cost(residual, move);
     for (std::size_t k = 0; k < frozen_.u.size(); ++k) {
       fitted.u[k] += move(static_cast<Eigen::Index>(k));
     }
-    starts.push_back({fitted.u, cost});
+    starts.push_back({fitted.u, cost, std::move(residual)});
   }
   std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.cost < b.cost; });
   return starts;
@@ -240,7 +246,7 @@ Screened Screening::start(const Candidate& candidate, const std::vector<std::vec
   const bool one_valley =
       own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
   const std::size_t valleys = one_valley ? 1 : kStarts;
-  const std::vector<Start> starts =
+  std::vector<Start> starts =
       scan(fitted, is_periodic(candidate)
                        ? periodic_starts(evaluator_, fitted, current_.free.size(), sharpened[channel_of_sinusoid(candidate)])
                        : start_points(own, frequencies_));
@@ -252,7 +258,9 @@ Screened Screening::start(const Candidate& candidate, const std::vector<std::vec
   for (std::size_t i = 0; i < starts.size() && i < (hopeless ? 1 : valleys); ++i) {
     Screened screened{candidate, fitted, 0.0, 0.0, true};
     screened.fitted.u = starts[i].u;
-    improve(screened, hopeless ? Stage::scan : Stage::short_fit);
+    Tangent tangent = tangent_of(evaluator_, screened.fitted, fit_options(0, frozen_));
+    tangent.begin_at(at_frozen(starts[i].u), std::move(starts[i].residual));
+    improve(screened, hopeless ? Stage::scan : Stage::short_fit, tangent);
     if (screened.good && (!best.good || screened.criterion < best.criterion)) {
       best = std::move(screened);
     }
@@ -279,23 +287,15 @@ Screened Screening::restart(const Candidate& candidate, const std::vector<double
     restarts.push_back({candidate, fitted, 0.0, 0.0, true});
     restarts.back().fitted.u = starts[i].u;
   }
-  parallel_for(restarts.size(), threads_, [&](std::size_t i) {
-    if (!watch.interrupted()) {
-      improve(restarts[i], Stage::short_fit);
-    }
-  });
+  parallel_for(restarts.size(), threads_, [&](std::size_t i) { improve(restarts[i], Stage::short_fit, 1, watch); });
   sort_best_first(restarts);
   restarts.resize(std::min<std::size_t>(restarts.size(), 2));
-  parallel_for(restarts.size(), threads_, [&](std::size_t i) {
-    for (int pass = 0; pass < kFullFits && !watch.interrupted(); ++pass) {
-      improve(restarts[i], Stage::full_fit);
-    }
-  });
+  parallel_for(restarts.size(), threads_, [&](std::size_t i) { improve(restarts[i], Stage::full_fit, kFullFits, watch); });
   sort_best_first(restarts);
   Screened unmoved{candidate, fitted, 0.0, 0.0, true};
   unmoved.fitted.u = frozen_.u;
   unmoved.fitted.u.insert(unmoved.fitted.u.end(), own.begin(), own.end());
-  improve(unmoved, Stage::scan);
+  improve(unmoved, Stage::scan, 1, watch);
   const bool elsewhere =
       !restarts.empty() && (!unmoved.good || restarts.front().criterion < unmoved.criterion - policy().strong_evidence);
   return elsewhere ? restarts.front() : Screened{candidate, fitted, 0.0, 0.0, false};
@@ -325,7 +325,8 @@ void Screening::start_from_siblings(std::vector<Screened>& screened, const std::
       }
     }
     std::copy(best->fitted.u.begin(), best->fitted.u.begin() + static_cast<std::ptrdiff_t>(first), again.fitted.u.begin());
-    improve(again, Stage::full_fit);
+    Tangent tangent = tangent_of(evaluator_, again.fitted, fit_options(0, frozen_));
+    improve(again, Stage::full_fit, tangent);
     if (again.good && (!screened[i].scanned || again.criterion < screened[i].criterion)) {
       screened[i] = std::move(again);
     } else {
@@ -335,19 +336,26 @@ void Screening::start_from_siblings(std::vector<Screened>& screened, const std::
   sort_best_first(screened);
 }
 
-void Screening::improve(Screened& screened, Stage stage) const {
+void Screening::improve(Screened& screened, Stage stage, int passes, const Watch& watch) const {
+  Tangent tangent = tangent_of(evaluator_, screened.fitted, fit_options(0, frozen_));
+  for (int pass = 0; pass < passes && !watch.interrupted(); ++pass) {
+    improve(screened, stage, tangent);
+  }
+}
+
+void Screening::improve(Screened& screened, Stage stage, Tangent& tangent) const {
   if (!screened.good) {
     return;
   }
   const Stopwatch stopwatch;
   const int iterations = stage == Stage::scan ? 0 : stage == Stage::short_fit ? kShortFit : kFullFit;
   Fitted& fitted = screened.fitted;
-  screened.good = iterations == 0 || fit(evaluator_, fitted, {iterations, 1, kRankingTolerance, Slopes::narrow, &frozen_});
-  Eigen::VectorXd residual = screened.good ? residuals_at_frozen(fitted) : Eigen::VectorXd{};
-  if (residual.size() == 0) {
-    screened.good = false;
+  screened.good = (iterations == 0 || fit(evaluator_, fitted, fit_options(iterations, frozen_), tangent)) &&
+                  tangent.move_to(at_frozen(fitted.u));
+  if (!screened.good) {
     return;
   }
+  Eigen::VectorXd residual = tangent.residual();
   const auto count = static_cast<Eigen::Index>(frozen_.u.size());
   residual += frozen_.jacobian * (Eigen::Map<const Eigen::VectorXd>(fitted.u.data(), count) -
                                   Eigen::Map<const Eigen::VectorXd>(frozen_.u.data(), count));

@@ -50,6 +50,7 @@ class Screening {
   struct Start {
     std::vector<double> u;  ///< all coordinates, the frozen ones moved linearly
     double cost = 0.0;
+    Eigen::VectorXd residual;  ///< with the frozen ones where they are
   };
 
   /// The channel whose spectrum says where a frequency starts.
@@ -65,9 +66,12 @@ class Screening {
   /// `sharpened`: where a sinusoid starts, by channel.
   Screened start(const Candidate& candidate, const std::vector<std::vector<double>>& sharpened) const;
   void start_from_siblings(std::vector<Screened>& screened, const std::vector<std::string>& names, const Watch& watch) const;
-  /// Continues the fit of a candidate, as a stage does.
-  void improve(Screened& screened, Stage stage) const;
-  Eigen::VectorXd residuals_at_frozen(const Fitted& fitted) const;
+  /// Continues the fit of a candidate, as a stage does. `tangent`: of its `fitted`.
+  void improve(Screened& screened, Stage stage, Tangent& tangent) const;
+  /// The same, so often, or until it is interrupted.
+  void improve(Screened& screened, Stage stage, int passes, const Watch& watch) const;
+  /// Coordinates with the frozen ones where they are.
+  std::vector<double> at_frozen(std::vector<double> u) const;
   double eliminated_cost(const Eigen::VectorXd& residual, Eigen::VectorXd& move) const;
   std::vector<ChannelFit> mean_squares(const Eigen::VectorXd& residual) const;
 

@@ -263,16 +263,15 @@ void UnlistedStage::refuse(std::size_t first, std::string_view why) {
 
 /// A listed effect beside what was found, where it leaves clearly less. Where most of the rest acts at the site of a term,
 /// any listed effect may imitate the rest of that term: it has to leave only noise, or to explain clearly more together with
-/// another law of the term. Returns whether there is one.
-bool UnlistedStage::add_listed_beside(const Located& left) {
+/// another law of the term: `term` is its index among the kept effects. Returns whether there is one.
+bool UnlistedStage::add_listed_beside(const Located& left, std::optional<std::size_t> term) {
   std::vector<Candidate> candidates = candidates_beside(result_.explained.model.base, data_);
-  std::erase_if(candidates, [&](const Candidate& c) { return left.refutes(c.site, sites_of_terms()); });
+  std::erase_if(candidates, [&, sites = sites_of_terms()](const Candidate& c) { return left.refutes(c.site, sites); });
   const std::size_t first = result_.trials.size();
   RoundResult found = round_of(candidates, result_.explained, "beside a term");
   if (!found.kept) {
     return false;
   }
-  const std::optional<std::size_t> term = term_of_rest(left);
   const bool is_enough = term ? excess_over_noise(data_, found.model.prediction) < policy().immaterial
                               : leaves_clearly_less(found.model, policy().clearly_less);
   const std::string harm = harm_of(data_, found.model.prediction, result_.calibrated.prediction);
@@ -312,6 +311,9 @@ std::optional<UnlistedSearch> UnlistedStage::better_term(const Assessed& beside,
 /// The term whose rest is left is searched for once more beside the listed effect of a round: without that effect it had to
 /// represent both. `term` is its index among the kept effects. Returns whether the two leave clearly less.
 bool UnlistedStage::revise_term(std::size_t term, const RoundResult& listed, const Located& left) {
+  if (options_.watch.interrupted()) {
+    return false;
+  }
   const Assessed rest = refiner_.without(listed.model.model, result_.kept[term].trial.candidate);
   const auto terms = std::ranges::count_if(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
   const std::size_t first = result_.trials.size();
@@ -340,10 +342,11 @@ void UnlistedStage::add_beside(Names names) {
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
          excess_over_noise(data_, result_.explained.prediction) > policy().immaterial && !options_.watch.interrupted()) {
     const Located& left = locate_explained();
-    if ((has_unlisted() && add_listed_beside(left)) || (names == Names::open && replace_misfit(left))) {
+    const std::optional<std::size_t> term = term_of_rest(left);
+    if ((has_unlisted() && add_listed_beside(left, term)) || (names == Names::open && replace_misfit(left))) {
       continue;
     }
-    if (term_of_rest(left)) {
+    if (term) {
       return;
     }
     const std::size_t first = result_.trials.size();

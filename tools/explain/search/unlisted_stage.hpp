@@ -73,7 +73,7 @@ class UnlistedStage {
   void refuse(std::size_t first, std::string_view why);
   void take_out(Trial trial, std::string why);
   std::vector<std::string> sites_of_terms() const;
-  bool add_listed_beside(const Located& left);
+  bool add_listed_beside(const Located& left, std::optional<std::size_t> term);
   std::optional<UnlistedSearch> better_term(const Assessed& beside, const Located& where, bool tables);
   bool revise_term(std::size_t term, const RoundResult& listed, const Located& left);
   bool replace_misfit(const Located& left);
