@@ -22,7 +22,7 @@ class Tangent {
           std::vector<std::size_t> wanted, Slopes asked, unsigned threads)
       : evaluator_(evaluator), base_(base), free_(free), wanted_(std::move(wanted)), asked_(asked), threads_(threads) {}
 
-  /// Tells what is left at `u`, so that it is not simulated again.
+  /// Starts with a known residual at `u`, which is then not simulated again.
   void begin_at(std::vector<double> u, Eigen::VectorXd residual) {
     at_ = std::move(u);
     residual_ = std::move(residual);
