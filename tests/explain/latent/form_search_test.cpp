@@ -6,6 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include <CppUTest/TestHarness.h>
@@ -150,6 +151,18 @@ TEST(FormSearch, AHeldSignalIsFoundInThinnedRowsThatMissItsSamples) {
 }
 
 // Half as wide again: the refinement goes on until the response explains most.
+// Only the steps exceed the limit: it takes something off in one row of 200.
+TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
+  static constexpr double kLimit = 0.4;  // rad/s
+  const Best best(with_reading([limited = 0.0](double command) mutable {
+    limited += std::clamp(command - limited, -kLimit * 2e-3, kLimit * 2e-3);
+    return 0.5 * (limited - command);
+  }));
+  CHECK(best.form.form.memory.kind == Memory::slew);
+  CHECK(best.form.form.argument == Argument::command);
+  DOUBLES_EQUAL(kLimit, best.form.form.memory.width, 0.05 * kLimit);
+}
+
 TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
   static constexpr double kWidth = 2e-3;
   const AtSensor sensor(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }));
@@ -245,4 +258,21 @@ TEST(CorrelationRatio, AFunctionOfAnyShapeExplainsAllAndAnIndependentSignalNothi
   // Within a bin a parabola varies by a thousandth of its variance; 31 degrees of freedom of 20,000 are by chance.
   CHECK(explain::correlation_ratio(x, even) > 0.99);
   CHECK(explain::correlation_ratio(x, noise) < 0.005);
+}
+
+TEST(CorrelationRatio, AValueWithAFewLargePeaksExplainsASignalThatFollowsIt) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const double elsewhere : {0.0, 1e-3}) {
+    std::vector<double> x;
+    for (int i = 0; i < 20000; ++i) {
+      x.push_back(i % 1000 == 0 ? uniform(random) : elsewhere * uniform(random));
+    }
+    const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+    std::vector<double> signal;
+    for (const double value : x) {
+      signal.push_back(value - mean);
+    }
+    CHECK(explain::correlation_ratio(x, signal) > 0.99);
+  }
 }

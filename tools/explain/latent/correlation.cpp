@@ -16,6 +16,8 @@ constexpr std::size_t kBins = 32;
 /// One of so many rows is looked at, and values that the bins are laid by.
 constexpr Eigen::Index kEvery = 4;
 constexpr std::size_t kSampled = 500;
+/// A scatter below this share of the mean square is what rounding leaves of none.
+constexpr double kRounding = 1e-12;
 /// The row within each group of `kEvery` changes from group to group: otherwise all rows could be sampling instants of a
 /// held signal, where it equals its argument.
 constexpr std::array<Eigen::Index, 7> kRowInGroup{0, 2, 1, 3, 2, 0, 1};
@@ -62,8 +64,14 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
   for (std::size_t i = 0; i < x.size(); i += 1 + x.size() / kSampled) {
     sample.push_back(x[i]);
   }
-  const double low = quantile_of_unsorted(sample, 0.01);
-  const double high = quantile_of_unsorted(sample, 0.99);
+  double low = quantile_of_unsorted(sample, 0.01);
+  double high = quantile_of_unsorted(sample, 0.99);
+  if (!(high > low)) {
+    // A value that is the same but for moments, as what a limit takes off a signal.
+    const auto [least, most] = std::ranges::minmax(x);
+    low = least;
+    high = most;
+  }
   if (!(high > low)) {
     return 0.0;
   }
@@ -71,18 +79,27 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
   std::array<double, kBins> sum{};
   std::array<double, kBins> count{};
   double whole = 0.0;
+  double total = 0.0;
+  double square = 0.0;
+  double product = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double place = std::clamp((x[i] - low) * bins_per_unit, 0.0, static_cast<double>(kBins));
     const auto bin = std::min(kBins - 1, static_cast<std::size_t>(place));
     sum[bin] += signal[i];
     count[bin] += 1.0;
     whole += signal[i] * signal[i];
+    total += x[i];
+    square += x[i] * x[i];
+    product += x[i] * signal[i];
   }
   double between = 0.0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     between += count[bin] > 0.0 ? sum[bin] * sum[bin] / count[bin] : 0.0;
   }
-  return whole > 0.0 ? between / whole : 0.0;
+  // The bins at the ends hold all that is beyond them: of a value with a few large peaks only a straight line follows these.
+  const double scatter = square - total * total / static_cast<double>(x.size());
+  const double along_line = scatter > kRounding * square ? product * product / scatter : 0.0;
+  return whole > 0.0 ? std::max(between, along_line) / whole : 0.0;
 }
 
 SignalCorrelation::SignalCorrelation(const FormRegression& regression) : regression_(regression) {

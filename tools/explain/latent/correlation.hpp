@@ -10,7 +10,8 @@
 namespace hotfire::explain {
 
 /// Share of a signal's variance that a function of x explains: the correlation ratio over bins of equal width between the
-/// ends of x (Pearson 1905, On the general theory of skew correlation). It asks for no shape of the function.
+/// ends of x (Pearson 1905, On the general theory of skew correlation), or that of a straight line if it is more. It asks
+/// for no shape of the function. `signal` has a mean of zero.
 double correlation_ratio(const std::vector<double>& x, const std::vector<double>& signal);
 
 /// The smoothed signal of a place against outputs of forms, over every few rows of all records.

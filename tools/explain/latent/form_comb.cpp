@@ -48,9 +48,11 @@ constexpr int kHolds = 50;
 /// Phases of the samples: at an eighth of a period from the right one most of a held signal shows.
 constexpr int kPhasesHeld = 4;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-/// Limits of a slew, over the 99th percentile of the argument's rate.
+/// The slowest limit of a slew, over the 99th percentile of the argument's rate, and the fastest, over its largest: a limit
+/// above that takes hardly anything off. Two neighbours differ by the factor.
 constexpr double kSlowestSlew = 0.03;
-constexpr int kSlews = 7;
+constexpr double kFastestSlew = 0.8;
+constexpr double kSlewFactor = 1.8;
 
 /// Sorted values of what a form is a law of.
 std::vector<double> sorted_values(const FormRegression& regression, const Form& form) {
@@ -78,8 +80,13 @@ double size_of(const FormRegression& regression, const Form& form) {
   return quantile_of_unsorted(sizes, 0.99);
 }
 
-/// The 99th percentile of how fast that changes [1/s].
-double rate_of(const FormRegression& regression, const Form& form) {
+/// How fast that changes [1/s].
+struct Rate {
+  double usual = 0.0;  ///< the 99th percentile
+  double largest = 0.0;
+};
+
+Rate rate_of(const FormRegression& regression, const Form& form) {
   std::vector<double> rates;
   for (std::size_t e = 0; e < regression.quantities().size(); ++e) {
     const Eigen::VectorXd own = entering_of(form, regression.quantities()[e]);
@@ -88,7 +95,7 @@ double rate_of(const FormRegression& regression, const Form& form) {
       rates.push_back(std::abs(own(row) - own(row - 1)) / period);
     }
   }
-  return rates.empty() ? 0.0 : quantile_of_unsorted(rates, 0.99);
+  return rates.empty() ? Rate{} : Rate{quantile_of_unsorted(rates, 0.99), *std::ranges::max_element(rates)};
 }
 
 std::vector<double> comb(double low, double high, int count) {
@@ -202,7 +209,7 @@ Form at_place(const LatentPlace& place, Argument argument, std::optional<Argumen
 namespace {
 
 /// Plays, stops and slews of what enters the memory of `plain`, of that size and rate.
-void add_plays_and_slews(const Form& plain, double size, double rate, std::vector<Form>& forms) {
+void add_plays_and_slews(const Form& plain, double size, const Rate& rate, std::vector<Form>& forms) {
   const auto add = [&](Memory kind, double width) {
     Form form = plain;
     form.memory.kind = kind;
@@ -213,8 +220,9 @@ void add_plays_and_slews(const Form& plain, double size, double rate, std::vecto
     add(Memory::play, width * size);
     add(Memory::stop, width * size);
   }
-  for (const double limit : comb(kSlowestSlew, 1.0, kSlews)) {
-    add(Memory::slew, limit * rate);
+  const double fastest = std::max(rate.usual, kFastestSlew * rate.largest);
+  for (double limit = kSlowestSlew * rate.usual; limit < kSlewFactor * fastest; limit *= kSlewFactor) {
+    add(Memory::slew, std::min(limit, fastest));
   }
 }
 
@@ -246,12 +254,12 @@ std::vector<Form> with_holds(const FormRegression& regression, const Form& plain
 std::vector<Form> with_memories(const FormRegression& regression, const Form& plain) {
   std::vector<Form> forms;
   const double size = size_of(regression, plain);
-  const double rate = rate_of(regression, plain);
+  const Rate rate = rate_of(regression, plain);
   double period = HUGE_VAL;
   for (const Experiment& experiment : regression.problem().data.experiments) {
     period = std::min(period, experiment.period);
   }
-  if (!(size > 0.0) || !(rate > 0.0) || plain.argument == Argument::time) {
+  if (!(size > 0.0) || !(rate.usual > 0.0) || plain.argument == Argument::time) {
     return forms;
   }
   const auto add = [&](Memory kind, auto&& set) {
@@ -333,8 +341,8 @@ std::vector<Form> behind_curve(const FormRegression& regression, const Form& cur
   }
   front.curve_first = true;
   const double size = size_of(regression, front);
-  const double rate = rate_of(regression, front);
-  if (size > 0.0 && rate > 0.0) {
+  const Rate rate = rate_of(regression, front);
+  if (size > 0.0 && rate.usual > 0.0) {
     add_plays_and_slews(front, size, rate, forms);
   }
   return forms;
