@@ -150,7 +150,6 @@ TEST(FormSearch, AHeldSignalIsFoundInThinnedRowsThatMissItsSamples) {
   DOUBLES_EQUAL(kRows * 2e-3, best.form.form.memory.time, 1e-9);
 }
 
-// Half as wide again: the refinement goes on until the response explains most.
 // Only the steps exceed the limit: it takes something off in one row of 200.
 TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
   static constexpr double kLimit = 0.4;  // rad/s
@@ -163,6 +162,20 @@ TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
   DOUBLES_EQUAL(kLimit, best.form.form.memory.width, 0.05 * kLimit);
 }
 
+// A quantum that is off by a hundredth is off by half a quantum at the ends of the range.
+TEST(FormSearch, AFineQuantumOfASignalIsFound) {
+  static constexpr double kQuantum = 1.5e-4;  // m, a fiftieth of the range
+  Record record = record_of(declared());
+  for (double& value : record.channels[1].values) {
+    value = kQuantum * std::round(value / kQuantum);
+  }
+  const Best best(record);
+  CHECK(best.form.form.memory.kind == Memory::quantise || best.form.form.memory.kind == Memory::periodic);
+  CHECK(best.form.form.argument == Argument::position);
+  DOUBLES_EQUAL(kQuantum, best.form.form.memory.width, 2e-3 * kQuantum);
+}
+
+// Half as wide again: the refinement goes on until the response explains most.
 TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
   static constexpr double kWidth = 2e-3;
   const AtSensor sensor(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }));

@@ -64,6 +64,9 @@ Eigen::Matrix<double, kSideBySide, Eigen::Dynamic> remembered_side_by_side(std::
 /// The form's regressors by row, a column a coefficient: what is added at its site for a coefficient of one.
 Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, double period);
 
+/// The form with the parameter of its memory a factor up and down.
+std::vector<Form> neighbours(const Form& form, double factor);
+
 /// The hat functions of a curve at a value: a curve is linear between its points and constant beyond them.
 template <class Row>
 void add_hats(const std::vector<double>& points, double value, Row&& row) {

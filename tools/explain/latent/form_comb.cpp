@@ -47,7 +47,10 @@ constexpr double kLongestHold = 1.7;
 constexpr int kHolds = 50;
 /// Phases of the samples: at an eighth of a period from the right one most of a held signal shows.
 constexpr int kPhasesHeld = 4;
-constexpr double kTurn = 2.0 * std::numbers::pi;
+/// The finest ripple over a quantity, and the finest quantum of a signal that is rounded: four times the number of periods
+/// in the range of the quantity.
+constexpr int kFinestRipple = 40;
+constexpr int kFinestQuantum = 800;
 /// The slowest limit of a slew, over the 99th percentile of the argument's rate, and the fastest, over its largest: a limit
 /// above that takes hardly anything off. Two neighbours differ by the factor.
 constexpr double kSlowestSlew = 0.03;
@@ -221,9 +224,19 @@ void add_plays_and_slews(const Form& plain, double size, const Rate& rate, std::
     add(Memory::stop, width * size);
   }
   const double fastest = std::max(rate.usual, kFastestSlew * rate.largest);
-  for (double limit = kSlowestSlew * rate.usual; limit < kSlewFactor * fastest; limit *= kSlewFactor) {
+  const double usual = rate.usual > 0.0 ? rate.usual : rate.largest;
+  for (double limit = kSlowestSlew * usual; limit < kSlewFactor * fastest; limit *= kSlewFactor) {
     add(Memory::slew, std::min(limit, fastest));
   }
+}
+
+/// True for the signal that the form's site transmits: a law there may replace it.
+bool is_replaced(const Form& form) {
+  const auto is_at = [&](Site site, Argument argument) { return form.site == site && form.argument == argument; };
+  const bool is_read =
+      form.site == Site::sensor && form.argument == (form.channel == 0 ? Argument::position : Argument::angle);
+  return !form.factor &&
+         (is_read || is_at(Site::command, Argument::command) || is_at(Site::valve_command, Argument::valve_command));
 }
 
 /// Holds of the form's argument over the comb of their period and of the instants of their samples.
@@ -242,7 +255,7 @@ std::vector<Form> with_holds(const FormRegression& regression, const Form& plain
       Form form = plain;
       form.memory.kind = Memory::hold;
       form.memory.time = steps * step;
-      form.memory.phase = kTurn * phase / kPhasesHeld;
+      form.memory.phase = 2.0 * std::numbers::pi * phase / kPhasesHeld;
       forms.push_back(std::move(form));
     }
   }
@@ -259,7 +272,7 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   for (const Experiment& experiment : regression.problem().data.experiments) {
     period = std::min(period, experiment.period);
   }
-  if (!(size > 0.0) || !(rate.usual > 0.0) || plain.argument == Argument::time) {
+  if (!(size > 0.0) || !(rate.largest > 0.0) || plain.argument == Argument::time) {
     return forms;
   }
   const auto add = [&](Memory kind, auto&& set) {
@@ -293,7 +306,8 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   }
   add_plays_and_slews(plain, size, rate, forms);
   // Two periods are separated by a quarter of it at the ends of the argument's range.
-  for (int quarters = 3; quarters <= 40; ++quarters) {
+  const int finest = is_replaced(plain) ? kFinestQuantum : kFinestRipple;
+  for (int quarters = 3; quarters <= finest; ++quarters) {
     add(Memory::periodic, [&](auto& memory) { memory.width = 8.0 * size / quarters; });
   }
   std::ranges::move(with_holds(regression, plain), std::back_inserter(forms));
@@ -342,54 +356,8 @@ std::vector<Form> behind_curve(const FormRegression& regression, const Form& cur
   front.curve_first = true;
   const double size = size_of(regression, front);
   const Rate rate = rate_of(regression, front);
-  if (size > 0.0 && rate.usual > 0.0) {
+  if (size > 0.0 && rate.largest > 0.0) {
     add_plays_and_slews(front, size, rate, forms);
-  }
-  return forms;
-}
-
-std::vector<Form> neighbours(const Form& form, double factor) {
-  std::vector<Form> forms;
-  const auto add = [&](auto&& change) {
-    for (const double by : {factor, 1.0 / factor}) {
-      Form moved = form;
-      change(moved, by);
-      forms.push_back(std::move(moved));
-    }
-  };
-  switch (form.memory.kind) {
-    case Memory::none:
-    case Memory::oscillator:
-      break;
-    case Memory::delay:
-    case Memory::lag:
-    case Memory::washout:
-      add([](Form& f, double by) { f.memory.time *= by; });
-      break;
-    case Memory::hold:
-      add([](Form& f, double by) { f.memory.time *= by; });
-      // As far in turns as the time in its logarithm.
-      add([](Form& f, double by) { f.memory.phase = std::remainder(f.memory.phase + kTurn * std::log(by), kTurn); });
-      break;
-    case Memory::resonance:
-    case Memory::band_pass:
-      add([](Form& f, double by) { f.memory.frequency *= by; });
-      add([](Form& f, double by) { f.memory.damping *= by * by; });
-      break;
-    case Memory::stops:
-      add([](Form& f, double by) {
-        std::ranges::transform(f.points, f.points.begin(), [&](double width) { return width * by; });
-      });
-      break;
-    case Memory::periodic:
-    case Memory::play:
-    case Memory::stop:
-    case Memory::slew:
-    case Memory::quantise:
-    case Memory::dead_zone:
-    case Memory::saturation:
-      add([](Form& f, double by) { f.memory.width *= by; });
-      break;
   }
   return forms;
 }

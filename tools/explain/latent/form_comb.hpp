@@ -44,7 +44,4 @@ std::optional<Form> with_curve(const FormRegression& regression, Form form, bool
 /// curves is not the sum of responses. `curve` is without memory, `values` are those at its points.
 std::vector<Form> behind_curve(const FormRegression& regression, const Form& curve, const Eigen::VectorXd& values);
 
-/// The form with the parameter of its memory a factor up and down.
-std::vector<Form> neighbours(const Form& form, double factor);
-
 }  // namespace hotfire::explain
