@@ -82,6 +82,7 @@ std::vector<Record> run_many(const Runs& runs, const RunOptions& options, unsign
         return;
       }
       std::vector<OpenLoopRun> together;
+      together.reserve(members.size());
       for (const std::size_t member : members) {
         together.push_back({&std::get<ModelFile>(runs[member].first->file), runs[member].second});
       }
