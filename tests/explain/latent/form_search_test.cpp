@@ -163,6 +163,35 @@ TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
   DOUBLES_EQUAL(kLimit, best.form.form.memory.width, 0.05 * kLimit);
 }
 
+// Of so many quanta in the range, the last is a whole one off where the quantum is off by a hundredth.
+TEST(FormSearch, AFineQuantumOfASignalIsFound) {
+  static constexpr double kQuantum = 1.5e-4;  // m, a fiftieth of the range
+  Record record = record_of(declared());
+  for (double& value : record.channels[1].values) {
+    value = kQuantum * std::round(value / kQuantum);
+  }
+  const Best best(record);
+  CHECK(best.form.form.memory.kind == Memory::quantise || best.form.form.memory.kind == Memory::periodic);
+  CHECK(best.form.form.argument == Argument::position);
+  DOUBLES_EQUAL(kQuantum, best.form.form.memory.width, 2e-3 * kQuantum);
+}
+
+// A curve through points would end with the records.
+TEST(FormSearch, APowerIsFoundWithItsExponent) {
+  static constexpr double kUnit = 5e-3;  // rad
+  for (const double exponent : {1.6, 2.4}) {
+    for (const bool even : {true, false}) {
+      const Best best(with_reading([&](double command) {
+        const double size = 12.0 * kPistonNoise * std::pow(std::abs(command) / kUnit, exponent);
+        return even || command > 0.0 ? size : -size;
+      }));
+      CHECK(best.form.form.memory.kind == (even ? Memory::even_power : Memory::odd_power));
+      CHECK(best.form.form.argument == Argument::command && !best.form.form.factor);
+      DOUBLES_EQUAL(exponent, best.form.form.memory.exponent, 0.1);
+    }
+  }
+}
+
 TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
   static constexpr double kWidth = 2e-3;
   const AtSensor sensor(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }));

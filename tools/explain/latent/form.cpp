@@ -55,6 +55,8 @@ void run_kind(model::Memory kind, const Memories& memories, const Eigen::VectorX
    ...);
 }
 
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
 using AllKinds = std::make_index_sequence<model::kMemoryNames.size()>;
 
 }  // namespace
@@ -176,6 +178,56 @@ Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, 
     columns.col(0) = remembered(form, argument, period);
   }
   return columns;
+}
+
+std::vector<Form> neighbours(const Form& form, double factor) {
+  std::vector<Form> forms;
+  const auto add = [&](auto&& change) {
+    for (const double by : {factor, 1.0 / factor}) {
+      Form moved = form;
+      change(moved, by);
+      forms.push_back(std::move(moved));
+    }
+  };
+  switch (form.memory.kind) {
+    case model::Memory::none:
+    case model::Memory::oscillator:
+      break;
+    case model::Memory::delay:
+    case model::Memory::lag:
+    case model::Memory::washout:
+      add([](Form& f, double by) { f.memory.time *= by; });
+      break;
+    case model::Memory::hold:
+      add([](Form& f, double by) { f.memory.time *= by; });
+      // As far in turns as the time in its logarithm.
+      add([](Form& f, double by) { f.memory.phase = std::remainder(f.memory.phase + kTurn * std::log(by), kTurn); });
+      break;
+    case model::Memory::resonance:
+    case model::Memory::band_pass:
+      add([](Form& f, double by) { f.memory.frequency *= by; });
+      add([](Form& f, double by) { f.memory.damping *= by * by; });
+      break;
+    case model::Memory::stops:
+      add([](Form& f, double by) {
+        std::ranges::transform(f.points, f.points.begin(), [&](double width) { return width * by; });
+      });
+      break;
+    case model::Memory::periodic:
+    case model::Memory::play:
+    case model::Memory::stop:
+    case model::Memory::slew:
+    case model::Memory::quantise:
+    case model::Memory::dead_zone:
+    case model::Memory::saturation:
+      add([](Form& f, double by) { f.memory.width *= by; });
+      break;
+    case model::Memory::odd_power:
+    case model::Memory::even_power:
+      add([](Form& f, double by) { f.memory.exponent = std::clamp(f.memory.exponent * by, kFlattest, kSteepest); });
+      break;
+  }
+  return forms;
 }
 
 }  // namespace hotfire::explain

@@ -47,7 +47,12 @@ constexpr double kLongestHold = 1.7;
 constexpr int kHolds = 50;
 /// Phases of the samples: at an eighth of a period from the right one most of a held signal shows.
 constexpr int kPhasesHeld = 4;
-constexpr double kTurn = 2.0 * std::numbers::pi;
+/// The finest ripple over a quantity, and the finest quantum of a signal that is rounded, in quarters of it over the range
+/// of the quantity.
+constexpr int kFinestRipple = 40;
+constexpr int kFinestQuantum = 800;
+/// Powers of a comb of exponents.
+constexpr int kPowers = 5;
 /// The slowest limit of a slew, over the 99th percentile of the argument's rate, and the fastest, over its largest: a limit
 /// above that takes hardly anything off. Two neighbours differ by the factor.
 constexpr double kSlowestSlew = 0.03;
@@ -115,6 +120,8 @@ bool bears_curve(Memory kind, bool curve_first) {
     case Memory::dead_zone:
     case Memory::saturation:
     case Memory::oscillator:
+    case Memory::odd_power:
+    case Memory::even_power:
       return false;
     case Memory::none:
     case Memory::periodic:
@@ -226,6 +233,15 @@ void add_plays_and_slews(const Form& plain, double size, const Rate& rate, std::
   }
 }
 
+/// True for the signal that the form's site transmits: a law there may replace it.
+bool is_replaced(const Form& form) {
+  const auto is_at = [&](Site site, Argument argument) { return form.site == site && form.argument == argument; };
+  const bool is_read =
+      form.site == Site::sensor && form.argument == (form.channel == 0 ? Argument::position : Argument::angle);
+  return !form.factor &&
+         (is_read || is_at(Site::command, Argument::command) || is_at(Site::valve_command, Argument::valve_command));
+}
+
 /// Holds of the form's argument over the comb of their period and of the instants of their samples.
 std::vector<Form> with_holds(const FormRegression& regression, const Form& plain) {
   std::vector<Form> forms;
@@ -242,7 +258,7 @@ std::vector<Form> with_holds(const FormRegression& regression, const Form& plain
       Form form = plain;
       form.memory.kind = Memory::hold;
       form.memory.time = steps * step;
-      form.memory.phase = kTurn * phase / kPhasesHeld;
+      form.memory.phase = 2.0 * std::numbers::pi * phase / kPhasesHeld;
       forms.push_back(std::move(form));
     }
   }
@@ -293,7 +309,8 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   }
   add_plays_and_slews(plain, size, rate, forms);
   // Two periods are separated by a quarter of it at the ends of the argument's range.
-  for (int quarters = 3; quarters <= 40; ++quarters) {
+  const int finest = is_replaced(plain) ? kFinestQuantum : kFinestRipple;
+  for (int quarters = 3; quarters <= finest; ++quarters) {
     add(Memory::periodic, [&](auto& memory) { memory.width = 8.0 * size / quarters; });
   }
   std::ranges::move(with_holds(regression, plain), std::back_inserter(forms));
@@ -303,6 +320,24 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
     stops.points.push_back(width * size);
   }
   forms.push_back(std::move(stops));
+  return forms;
+}
+
+std::vector<Form> with_powers(const FormRegression& regression, const Form& plain) {
+  std::vector<Form> forms;
+  const double size = size_of(regression, plain);
+  // A square is a power itself.
+  if (size > 0.0 && plain.factor != plain.argument) {
+    for (const Memory kind : {Memory::odd_power, Memory::even_power}) {
+      for (const double exponent : comb(kFlattest, kSteepest, kPowers)) {
+        Form form = plain;
+        form.memory.kind = kind;
+        form.memory.width = size;
+        form.memory.exponent = exponent;
+        forms.push_back(std::move(form));
+      }
+    }
+  }
   return forms;
 }
 
@@ -344,52 +379,6 @@ std::vector<Form> behind_curve(const FormRegression& regression, const Form& cur
   const Rate rate = rate_of(regression, front);
   if (size > 0.0 && rate.usual > 0.0) {
     add_plays_and_slews(front, size, rate, forms);
-  }
-  return forms;
-}
-
-std::vector<Form> neighbours(const Form& form, double factor) {
-  std::vector<Form> forms;
-  const auto add = [&](auto&& change) {
-    for (const double by : {factor, 1.0 / factor}) {
-      Form moved = form;
-      change(moved, by);
-      forms.push_back(std::move(moved));
-    }
-  };
-  switch (form.memory.kind) {
-    case Memory::none:
-    case Memory::oscillator:
-      break;
-    case Memory::delay:
-    case Memory::lag:
-    case Memory::washout:
-      add([](Form& f, double by) { f.memory.time *= by; });
-      break;
-    case Memory::hold:
-      add([](Form& f, double by) { f.memory.time *= by; });
-      // As far in turns as the time in its logarithm.
-      add([](Form& f, double by) { f.memory.phase = std::remainder(f.memory.phase + kTurn * std::log(by), kTurn); });
-      break;
-    case Memory::resonance:
-    case Memory::band_pass:
-      add([](Form& f, double by) { f.memory.frequency *= by; });
-      add([](Form& f, double by) { f.memory.damping *= by * by; });
-      break;
-    case Memory::stops:
-      add([](Form& f, double by) {
-        std::ranges::transform(f.points, f.points.begin(), [&](double width) { return width * by; });
-      });
-      break;
-    case Memory::periodic:
-    case Memory::play:
-    case Memory::stop:
-    case Memory::slew:
-    case Memory::quantise:
-    case Memory::dead_zone:
-    case Memory::saturation:
-      add([](Form& f, double by) { f.memory.width *= by; });
-      break;
   }
   return forms;
 }

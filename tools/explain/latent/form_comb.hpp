@@ -32,6 +32,10 @@ Form at_place(const LatentPlace& place, model::Argument argument, std::optional<
 /// argument's size down. None of time, and of what does not move.
 std::vector<Form> with_memories(const FormRegression& regression, const Form& plain);
 
+/// Powers of the form's argument, odd and even, over a comb of exponents. A curve through points follows a power as well,
+/// but only as far as the records go.
+std::vector<Form> with_powers(const FormRegression& regression, const Form& plain);
+
 /// Straight lines with a kink on either side of zero, at a comb of widths: dead zones and saturations. A curve through
 /// points has to have one at each kink, and no point is at a narrow one by chance.
 std::vector<Form> with_kinks(const FormRegression& regression, const Form& plain);
@@ -43,8 +47,5 @@ std::optional<Form> with_curve(const FormRegression& regression, Form form, bool
 /// Memories of what a curve makes of its argument, over the comb of their parameter: those of which the response to a sum of
 /// curves is not the sum of responses. `curve` is without memory, `values` are those at its points.
 std::vector<Form> behind_curve(const FormRegression& regression, const Form& curve, const Eigen::VectorXd& values);
-
-/// The form with the parameter of its memory a factor up and down.
-std::vector<Form> neighbours(const Form& form, double factor);
 
 }  // namespace hotfire::explain
