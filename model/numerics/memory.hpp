@@ -168,10 +168,10 @@ class MemoryState {
     }
   }
 
-  /// width |s / width|^exponent. Its derivatives end where it is zero by any measure.
+  /// width |s / width|^exponent. Below 1e-9 of the width, the result and its derivatives are zero.
   static S power_of(const S& s, const MemoryParameters<S>& params) noexcept {
     using std::log;
-    constexpr double kLeast = 1e-9;  // of the width
+    constexpr double kLeast = 1e-9;
     const S size = s * sign_of<S>(s) / params.width;
     return value_of(size) > kLeast ? S(params.width * exp(params.exponent * log(size))) : S{0.0};
   }

@@ -83,7 +83,7 @@ TEST(FormSearch, MemoriesThatRunSideBySideAreThoseOfEachAlone) {
     double size = 1.0;
     for (Form& form : forms) {
       size *= 1.5;
-      form.memory = {static_cast<Memory>(kind), 0.01 * size, 2.0 * size, 0.2 * size, 0.1 * size, 0.3 * size};
+      form.memory = {static_cast<Memory>(kind), 0.01 * size, 2.0 * size, 0.2 * size, 0.1 * size, 0.3 * size, 1.2 * size};
     }
     const auto together = explain::remembered_side_by_side(forms, entering, kRow);
     for (std::size_t k = 0; k < forms.size(); ++k) {
@@ -150,7 +150,6 @@ TEST(FormSearch, AHeldSignalIsFoundInThinnedRowsThatMissItsSamples) {
   DOUBLES_EQUAL(kRows * 2e-3, best.form.form.memory.time, 1e-9);
 }
 
-// Half as wide again: the refinement goes on until the response explains most.
 // Only the steps exceed the limit: it takes something off in one row of 200.
 TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
   static constexpr double kLimit = 0.4;  // rad/s
@@ -163,7 +162,7 @@ TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
   DOUBLES_EQUAL(kLimit, best.form.form.memory.width, 0.05 * kLimit);
 }
 
-// Of so many quanta in the range, the last is a whole one off where the quantum is off by a hundredth.
+// A quantum that is off by a hundredth is off by half a quantum at the ends of the range.
 TEST(FormSearch, AFineQuantumOfASignalIsFound) {
   static constexpr double kQuantum = 1.5e-4;  // m, a fiftieth of the range
   Record record = record_of(declared());
@@ -192,6 +191,7 @@ TEST(FormSearch, APowerIsFoundWithItsExponent) {
   }
 }
 
+// Half as wide again: the refinement goes on until the response explains most.
 TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
   static constexpr double kWidth = 2e-3;
   const AtSensor sensor(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/explain/terms/unlisted_words.hpp"
 
+#include <set>
+#include <string>
+
 #include <CppUTest/TestHarness.h>
 
 #include "model/effects/unlisted/term.hpp"
@@ -38,6 +41,14 @@ TEST(UnlistedWords, ACurveOfATermIsOverTheQuantityOfTheTermInItsUnit) {
   STRCMP_EQUAL("m^3/s", table.y_unit.c_str());
   STRCMP_CONTAINS("addition to the flow (through a resonance) from -0.0001 to 0.0003 m^3/s over error from -0.01 to 0.01 m.",
                   explain::in_words(table).c_str());
+}
+
+TEST(UnlistedWords, EveryMemoryHasItsOwnWords) {
+  std::set<std::string> words;
+  for (std::size_t kind = 0; kind < model::kMemoryNames.size(); ++kind) {
+    words.insert(explain::dependence_in_words(term_of(static_cast<Memory>(kind), Argument::error, 0, Order::curve_last)));
+  }
+  LONGS_EQUAL(model::kMemoryNames.size(), words.size());
 }
 
 TEST(UnlistedWords, ACurveBehindAMemoryIsOverTheOutputOfTheMemory) {

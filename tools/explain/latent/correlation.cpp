@@ -98,7 +98,7 @@ double correlation_ratio(const std::vector<double>& x, const std::vector<double>
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     between += count[bin] > 0.0 ? sum[bin] * sum[bin] / count[bin] : 0.0;
   }
-  // The bins at the ends hold all that is beyond them: of a value with a few large peaks only a straight line follows these.
+  // The bins at the ends hold all that is beyond them: only a straight line follows a few large peaks.
   const double scatter = square - total * total / static_cast<double>(x.size());
   const double along_line = scatter > kRounding * square ? product * product / scatter : 0.0;
   return whole > 0.0 ? std::max(between, along_line) / whole : 0.0;

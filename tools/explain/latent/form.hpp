@@ -65,7 +65,7 @@ Eigen::Matrix<double, kSideBySide, Eigen::Dynamic> remembered_side_by_side(std::
 /// The form's regressors by row, a column a coefficient: what is added at its site for a coefficient of one.
 Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, double period);
 
-/// Exponents of powers: from nearly a straight line to nearly a corner.
+/// Exponents of powers that a search tries.
 inline constexpr double kFlattest = 1.3;
 inline constexpr double kSteepest = 4.0;
 

@@ -47,11 +47,11 @@ constexpr double kLongestHold = 1.7;
 constexpr int kHolds = 50;
 /// Phases of the samples: at an eighth of a period from the right one most of a held signal shows.
 constexpr int kPhasesHeld = 4;
-/// The finest ripple over a quantity, and the finest quantum of a signal that is rounded, in quarters of it over the range
-/// of the quantity.
+/// The finest ripple over a quantity, and the finest quantum of a signal that is rounded: four times the number of periods
+/// in the range of the quantity.
 constexpr int kFinestRipple = 40;
 constexpr int kFinestQuantum = 800;
-/// Powers of a comb of exponents.
+/// Exponents in the comb of powers.
 constexpr int kPowers = 5;
 /// The slowest limit of a slew, over the 99th percentile of the argument's rate, and the fastest, over its largest: a limit
 /// above that takes hardly anything off. Two neighbours differ by the factor.
@@ -228,7 +228,8 @@ void add_plays_and_slews(const Form& plain, double size, const Rate& rate, std::
     add(Memory::stop, width * size);
   }
   const double fastest = std::max(rate.usual, kFastestSlew * rate.largest);
-  for (double limit = kSlowestSlew * rate.usual; limit < kSlewFactor * fastest; limit *= kSlewFactor) {
+  const double usual = rate.usual > 0.0 ? rate.usual : rate.largest;
+  for (double limit = kSlowestSlew * usual; limit < kSlewFactor * fastest; limit *= kSlewFactor) {
     add(Memory::slew, std::min(limit, fastest));
   }
 }
@@ -275,7 +276,7 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   for (const Experiment& experiment : regression.problem().data.experiments) {
     period = std::min(period, experiment.period);
   }
-  if (!(size > 0.0) || !(rate.usual > 0.0) || plain.argument == Argument::time) {
+  if (!(size > 0.0) || !(rate.largest > 0.0) || plain.argument == Argument::time) {
     return forms;
   }
   const auto add = [&](Memory kind, auto&& set) {
@@ -326,8 +327,8 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
 std::vector<Form> with_powers(const FormRegression& regression, const Form& plain) {
   std::vector<Form> forms;
   const double size = size_of(regression, plain);
-  // A square is a power itself.
-  if (size > 0.0 && plain.factor != plain.argument) {
+  // A square is a power itself, and a power of time does not end with the records.
+  if (size > 0.0 && plain.factor != plain.argument && plain.argument != Argument::time) {
     for (const Memory kind : {Memory::odd_power, Memory::even_power}) {
       for (const double exponent : comb(kFlattest, kSteepest, kPowers)) {
         Form form = plain;
@@ -377,7 +378,7 @@ std::vector<Form> behind_curve(const FormRegression& regression, const Form& cur
   front.curve_first = true;
   const double size = size_of(regression, front);
   const Rate rate = rate_of(regression, front);
-  if (size > 0.0 && rate.usual > 0.0) {
+  if (size > 0.0 && rate.largest > 0.0) {
     add_plays_and_slews(front, size, rate, forms);
   }
   return forms;

@@ -103,7 +103,7 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
     // A sampling instant has no derivative.
     const bool is_sampling =
         form.memory.kind == model::Memory::hold && (p.address.field == "time" || p.address.field == "phase");
-    // Of a power its gain is what the unit of its argument would change.
+    // The width of a power only scales its gain, so it stays fixed.
     const bool is_unit = form.is_power() && p.address.field == "width";
     return is_unused_gain || is_of_curve || is_sampling || is_unit;
   });
