@@ -14,7 +14,7 @@
 namespace hotfire::model {
 
 /// Memory of a term of the grammar for its argument s: a linear filter, a hysteresis, a limit, a loss of information or an
-/// oscillation.
+/// oscillation. What has no memory but a curve of its own is among them: it has the parameters of one.
 enum class Memory {
   none,
   delay,       ///< s(t - time)
@@ -31,11 +31,13 @@ enum class Memory {
   dead_zone,   ///< s without what lies within `width` of zero
   saturation,  ///< s limited to `width`
   periodic,    ///< s less the nearest multiple of `width`
-  oscillator   ///< sine of a phase that starts at `phase` and advances at `frequency` + s, both in hertz
+  oscillator,  ///< sine of a phase that starts at `phase` and advances at `frequency` + s, both in hertz
+  odd_power,   ///< sgn(s) |s / width|^exponent, times `width`; constant where s is beyond two widths
+  even_power   ///< |s / width|^exponent, times `width`; constant there as well
 };
-inline constexpr std::array<std::string_view, 16> kMemoryNames{
-    "none", "delay", "lag",  "washout",  "resonance", "band_pass",  "stops",    "play",
-    "stop", "slew",  "hold", "quantise", "dead_zone", "saturation", "periodic", "oscillator"};
+inline constexpr std::array<std::string_view, 18> kMemoryNames{
+    "none", "delay", "lag",      "washout",   "resonance",  "band_pass", "stops",      "play",      "stop",
+    "slew", "hold",  "quantise", "dead_zone", "saturation", "periodic",  "oscillator", "odd_power", "even_power"};
 
 template <class S>
 struct MemoryParameters {
@@ -45,6 +47,7 @@ struct MemoryParameters {
   S damping{0.5};    ///< of critical [1]
   S width{1.0};      ///< in the argument's unit
   S phase{0.0};      ///< of an oscillator or of the samples of a hold at the start [rad]
+  S exponent{2.0};   ///< of a power [1]
 };
 
 inline constexpr std::size_t kMostStops = 4;
@@ -124,6 +127,10 @@ class MemoryState {
         turns_ += advance - std::floor(value_of(turns_ + advance));
         return S(sin(2.0 * std::numbers::pi * middle + params.phase));
       }
+      case Memory::odd_power:
+        return sign_of<S>(s) * power_of(s, params);
+      case Memory::even_power:
+        return power_of(s, params);
     }
     return s;
   }
@@ -159,6 +166,16 @@ class MemoryState {
       since_ = 0.0;
       age_ = 0;
     }
+  }
+
+  /// width |s / width|^exponent. Below 1e-9 of the width, the result and its derivatives are zero. A plant diverges under a
+  /// power without a bound of a quantity that the power itself moves.
+  static S power_of(const S& s, const MemoryParameters<S>& params) noexcept {
+    using std::log;
+    constexpr double kLeast = 1e-9;
+    constexpr double kMost = 2.0;
+    const S size = clamp_symmetric<S>(s * sign_of<S>(s) / params.width, S{kMost});
+    return value_of(size) > kLeast ? S(params.width * exp(params.exponent * log(size))) : S{0.0};
   }
 
   /// The newest sample of the argument. A sample is due at a time between two steps: its value is interpolated.

@@ -18,8 +18,8 @@ inline namespace registers_of_two {
 #endif
 
 /// A number side by side with what it becomes under `N - 1` small changes of the parameters: a scalar in which one run of
-/// the model gives `N - 1` difference quotients. It costs a third of what dual numbers do, since an operation is one of a
-/// register.
+/// the model gives `N - 1` difference quotients. An operation is one of a register, so that a
+/// difference quotient costs two thirds of a derivative by dual numbers.
 ///
 /// The number itself, lane 0, has the bits of a run in double, and every choice is made by it: a branch, a whole part, a
 /// piece of a table. A difference is then one along the branches of the number, as a derivative is, however close a choice
@@ -62,7 +62,11 @@ class Perturbed {
   friend Perturbed floor(const Perturbed& x) noexcept { return Perturbed(std::floor(x.value())); }
   friend Perturbed sqrt(const Perturbed& x) noexcept { return Perturbed(sqrt(x.lanes_)); }
   friend Perturbed exp(const Perturbed& x) noexcept { return Perturbed(exp(x.lanes_)); }
-  friend Perturbed log(const Perturbed& x) noexcept { return Perturbed(log(x.lanes_)); }
+  /// A change that leaves the domain goes along the tangent at the number.
+  friend Perturbed log(const Perturbed& x) noexcept {
+    const double at = x.value();
+    return x.by_lane([at](double lane) { return lane > 0.0 ? std::log(lane) : std::log(at) + lane / at - 1.0; });
+  }
   friend Perturbed sin(const Perturbed& x) noexcept {
     return x.by_lane([](double lane) { return std::sin(lane); });
   }

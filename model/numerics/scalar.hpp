@@ -11,8 +11,9 @@
 
 namespace hotfire::model {
 
-/// The model runs in double (rig and offline), float (small targets) and dual numbers (gradients of a fit). Functions of
-/// <cmath> are called unqualified after `using`, so that a dual number brings its own by argument-dependent lookup.
+/// The model runs in double (rig and offline), float (small targets), dual numbers (linear models) and numbers side by side
+/// (gradients of a fit). Functions of <cmath> are called unqualified after `using`, so that such a number brings its own by
+/// argument-dependent lookup.
 using std::abs;
 using std::exp;
 using std::sqrt;

@@ -93,6 +93,7 @@ struct Term {
     S damping{0.5};
     S width{1.0};
     S phase{0.0};
+    S exponent{2.0};
     UnlistedTable<S> table{};
     static constexpr auto choices() {
       return std::array{Choice<Params>{"argument", kArgumentNames, &Params::argument},
@@ -113,11 +114,14 @@ struct Term {
                         only(resonance, band_pass, oscillator)},
           Field<Params>{"damping", "1", 1e-3, 10.0, 0.5, "damping ratio", &Params::damping, only(resonance, band_pass)},
           Field<Params>{"width", "", 1e-15, 1e15, 1.0,
-                        "limit, quantum, half width or pitch in the argument's unit; of slew, of its rate", &Params::width,
-                        only(play, stop, slew, quantise, dead_zone, saturation, periodic)},
+                        "limit, quantum, half width, pitch or unit of a power, in the argument's unit; of slew, of its rate",
+                        &Params::width,
+                        only(play, stop, slew, quantise, dead_zone, saturation, periodic, odd_power, even_power)},
           Field<Params>{"phase", "rad", -10.0, 10.0, 1.0,
                         "phase at the start of a record, of the oscillator or of the sampling", &Params::phase,
-                        only(oscillator, hold)}};
+                        only(oscillator, hold)},
+          Field<Params>{"exponent", "1", 1.0, 6.0, 2.0, "exponent of a power", &Params::exponent,
+                        only(odd_power, even_power)}};
     }
     static constexpr auto tables() {
       return std::array{TableField<Params, UnlistedTable<S>>{
@@ -208,7 +212,8 @@ struct Term {
       }
       return sum;
     }
-    const MemoryParameters<S> memory{kind, params.time, params.frequency, params.damping, params.width, params.phase};
+    const MemoryParameters<S> memory{kind,         params.time,  params.frequency, params.damping,
+                                     params.width, params.phase, params.exponent};
     if (kind == Memory::oscillator) {
       const S shift = has_curve ? unlisted::value_at<S>(params.table, s) : S{0.0};
       return params.gain * state.memory.step(memory, shift, input.h);

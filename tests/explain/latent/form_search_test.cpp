@@ -83,7 +83,7 @@ TEST(FormSearch, MemoriesThatRunSideBySideAreThoseOfEachAlone) {
     double size = 1.0;
     for (Form& form : forms) {
       size *= 1.5;
-      form.memory = {static_cast<Memory>(kind), 0.01 * size, 2.0 * size, 0.2 * size, 0.1 * size, 0.3 * size};
+      form.memory = {static_cast<Memory>(kind), 0.01 * size, 2.0 * size, 0.2 * size, 0.1 * size, 0.3 * size, 1.2 * size};
     }
     const auto together = explain::remembered_side_by_side(forms, entering, kRow);
     for (std::size_t k = 0; k < forms.size(); ++k) {
@@ -173,6 +173,22 @@ TEST(FormSearch, AFineQuantumOfASignalIsFound) {
   CHECK(best.form.form.memory.kind == Memory::quantise || best.form.form.memory.kind == Memory::periodic);
   CHECK(best.form.form.argument == Argument::position);
   DOUBLES_EQUAL(kQuantum, best.form.form.memory.width, 2e-3 * kQuantum);
+}
+
+// A curve through points would end with the records.
+TEST(FormSearch, APowerIsFoundWithItsExponent) {
+  static constexpr double kUnit = 5e-3;  // rad
+  for (const double exponent : {1.6, 2.4}) {
+    for (const bool even : {true, false}) {
+      const Best best(with_reading([&](double command) {
+        const double size = 12.0 * kPistonNoise * std::pow(std::abs(command) / kUnit, exponent);
+        return even || command > 0.0 ? size : -size;
+      }));
+      CHECK(best.form.form.memory.kind == (even ? Memory::even_power : Memory::odd_power));
+      CHECK(best.form.form.argument == Argument::command && !best.form.form.factor);
+      DOUBLES_EQUAL(exponent, best.form.form.memory.exponent, 0.1);
+    }
+  }
 }
 
 // Half as wide again: the refinement goes on until the response explains most.

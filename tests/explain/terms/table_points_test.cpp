@@ -138,6 +138,31 @@ TEST(table_points, a_force_that_pushes_with_the_motion_feeds_energy_and_a_consta
   CHECK(mass_feeds_energy(0.2, 0.0, 2.0));
 }
 
+TEST(table_points, a_power_of_the_rate_is_held_to_the_same_also_beyond_the_records) {
+  const auto feeds_energy = [](model::Memory kind, double gain, double direct) {
+    SimplexParameters parameters;
+    using Torque = model::Term<model::Site::engine_torque>;
+    const std::size_t place = test::add_effect<Torque>(parameters, [&](auto& effect) {
+      effect.option = static_cast<int>(kind);
+      effect.argument = static_cast<int>(model::Argument::angle_rate);
+      effect.gain = gain;
+      effect.direct = direct;
+      effect.width = 0.1;
+    });
+    return explain::feeds_energy(parameters, {place,
+                                              static_cast<int>(kind),
+                                              std::string(Torque::name),
+                                              "",
+                                              std::string(model::site_name(Torque::site)),
+                                              {static_cast<int>(model::Argument::angle_rate), 0, 0}});
+  };
+  CHECK_FALSE(feeds_energy(model::Memory::odd_power, 1e4, 0.0));
+  CHECK_TRUE(feeds_energy(model::Memory::odd_power, -1e4, 0.0));
+  CHECK_TRUE(feeds_energy(model::Memory::even_power, 1e4, 0.0));
+  // It brakes up to the width and drives beyond.
+  CHECK_TRUE(feeds_energy(model::Memory::odd_power, -1e4, 1e4));
+}
+
 TEST(table_points, a_term_over_the_rate_at_its_site_is_held_to_the_same_and_one_over_the_angle_is_a_spring) {
   CHECK_FALSE(term_feeds_energy(model::Argument::angle_rate, 1e4));
   CHECK(term_feeds_energy(model::Argument::angle_rate, -1e4));

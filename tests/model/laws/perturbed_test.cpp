@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/numerics/perturbed.hpp"
 
+#include "model/numerics/memory.hpp"
+
 #include <CppUTest/TestHarness.h>
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 namespace hotfire::model {
@@ -45,6 +48,19 @@ TEST(Perturbed, EveryLaneHasTheBitsThatItHasAlone) {
   for (int change = 0; change < Number::kChanges; ++change) {
     const auto i = static_cast<std::size_t>(change);
     CHECK_TRUE(bits(both.changed(change)) == bits(expression(x[i], y[i])));
+  }
+}
+
+// A quantity that the changes move across zero is one of either sign there.
+TEST(Perturbed, APowerHasFiniteChangesWhereTheyChangeItsSign) {
+  MemoryParameters<Number> parameters;
+  parameters.kind = Memory::odd_power;
+  MemoryState<Number> state;
+  for (const double value : {1e-8, 1e-6, -1e-7}) {
+    const Number power = state.step(parameters, number_of(value, {-1e-5, 1e-5, 0.0}), 1e-3);
+    for (int change = 0; change < Number::kChanges; ++change) {
+      CHECK_TRUE(std::abs(power.changed(change)) < 1e-9);  // as small as it is at a sign
+    }
   }
 }
 

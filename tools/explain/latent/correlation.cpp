@@ -42,6 +42,8 @@ bool keeps_nothing(model::Memory kind) {
     case model::Memory::quantise:
     case model::Memory::dead_zone:
     case model::Memory::saturation:
+    case model::Memory::odd_power:
+    case model::Memory::even_power:
     case model::Memory::periodic:
       return true;
     default:

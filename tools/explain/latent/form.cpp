@@ -222,6 +222,10 @@ std::vector<Form> neighbours(const Form& form, double factor) {
     case model::Memory::saturation:
       add([](Form& f, double by) { f.memory.width *= by; });
       break;
+    case model::Memory::odd_power:
+    case model::Memory::even_power:
+      add([](Form& f, double by) { f.memory.exponent = std::clamp(f.memory.exponent * by, kFlattest, kSteepest); });
+      break;
   }
   return forms;
 }

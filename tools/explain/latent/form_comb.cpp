@@ -51,6 +51,8 @@ constexpr int kPhasesHeld = 4;
 /// in the range of the quantity.
 constexpr int kFinestRipple = 40;
 constexpr int kFinestQuantum = 800;
+/// Exponents in the comb of powers.
+constexpr int kPowers = 5;
 /// The slowest limit of a slew, over the 99th percentile of the argument's rate, and the fastest, over its largest: a limit
 /// above that takes hardly anything off. Two neighbours differ by the factor.
 constexpr double kSlowestSlew = 0.03;
@@ -118,6 +120,8 @@ bool bears_curve(Memory kind, bool curve_first) {
     case Memory::dead_zone:
     case Memory::saturation:
     case Memory::oscillator:
+    case Memory::odd_power:
+    case Memory::even_power:
       return false;
     case Memory::none:
     case Memory::periodic:
@@ -317,6 +321,24 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
     stops.points.push_back(width * size);
   }
   forms.push_back(std::move(stops));
+  return forms;
+}
+
+std::vector<Form> with_powers(const FormRegression& regression, const Form& plain) {
+  std::vector<Form> forms;
+  const double size = size_of(regression, plain);
+  // A square is a power itself, and a power of time does not end with the records.
+  if (size > 0.0 && plain.factor != plain.argument && plain.argument != Argument::time) {
+    for (const Memory kind : {Memory::odd_power, Memory::even_power}) {
+      for (const double exponent : comb(kFlattest, kSteepest, kPowers)) {
+        Form form = plain;
+        form.memory.kind = kind;
+        form.memory.width = size;
+        form.memory.exponent = exponent;
+        forms.push_back(std::move(form));
+      }
+    }
+  }
   return forms;
 }
 

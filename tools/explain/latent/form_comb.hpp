@@ -32,6 +32,10 @@ Form at_place(const LatentPlace& place, model::Argument argument, std::optional<
 /// argument's size down. None of time, and of what does not move.
 std::vector<Form> with_memories(const FormRegression& regression, const Form& plain);
 
+/// Powers of the form's argument, odd and even, over a comb of exponents. A curve through points follows a power as well,
+/// but only as far as the records go.
+std::vector<Form> with_powers(const FormRegression& regression, const Form& plain);
+
 /// Straight lines with a kink on either side of zero, at a comb of widths: dead zones and saturations. A curve through
 /// points has to have one at each kink, and no point is at a narrow one by chance.
 std::vector<Form> with_kinks(const FormRegression& regression, const Form& plain);

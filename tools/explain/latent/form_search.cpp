@@ -34,7 +34,7 @@ constexpr double kClearlyLess = 0.9;
 constexpr std::size_t kCurved = 6;
 /// Curves without a memory whose output is given one that is not linear.
 constexpr std::size_t kFollowed = 3;
-/// Arguments without a memory whose kinks are tried.
+/// Arguments without a memory whose kinks and powers are tried.
 constexpr std::size_t kKinked = 3;
 /// Steps in which a memory's parameter is refined.
 constexpr int kFormRefinements = 6;
@@ -279,6 +279,7 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
     }
     if (is_still && count <= kKinked) {
       std::ranges::move(with_kinks(regression, form), std::back_inserter(shaped));
+      std::ranges::move(with_powers(regression, form), std::back_inserter(shaped));
     }
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));

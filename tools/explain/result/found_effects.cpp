@@ -64,7 +64,7 @@ void describe_unlisted(const ModelParameters& parameters, const SearchResult& fo
   effect.is_not = what_it_is_not(found);
   const auto found_table = table_of(parameters, candidate);
   if (!found_table) {
-    effect.looks_like = law_in_words(candidate);
+    effect.looks_like = law_in_words(candidate) + width_in_words(parameters, candidate);
     return;
   }
   const FittedTable table = with_own_axes(*found_table, candidate);

@@ -66,6 +66,7 @@ void set_values(ModelParameters& parameters, const Candidate& candidate, const S
     values.damping = form.memory.damping;
     values.width = form.memory.width;
     values.phase = form.memory.phase;
+    values.exponent = form.memory.exponent;
     values.gain = form.points.empty() ? coefficients(0) : 0.0;
     values.direct = form.has_direct() ? coefficients(coefficients.size() - 1) : 0.0;
     if (form.is_oscillator()) {
@@ -102,7 +103,9 @@ std::vector<FreeParameter> free_parameters(const ModelParameters& parameters, co
     // A sampling instant has no derivative.
     const bool is_sampling =
         form.memory.kind == model::Memory::hold && (p.address.field == "time" || p.address.field == "phase");
-    return is_unused_gain || is_of_curve || is_sampling;
+    // The width of a power only scales its gain, so it stays fixed.
+    const bool is_unit = form.is_power() && p.address.field == "width";
+    return is_unused_gain || is_of_curve || is_sampling || is_unit;
   });
   const std::vector<double> values = values_of(parameters);
   double largest = 0.0;

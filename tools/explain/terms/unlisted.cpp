@@ -8,6 +8,7 @@
 
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/terms/table_points.hpp"
+#include "tools/explain/terms/visit_term.hpp"
 
 namespace hotfire::explain {
 
@@ -18,9 +19,9 @@ constexpr bool is_unlisted_effect() {
   return requires { E::is_unlisted; };
 }
 
-/// True for a term of the grammar that is a curve over the rate of the motion it is against, without memory.
-bool is_curve_over_own_rate(const Candidate& candidate) {
-  if (candidate.choices.empty() || candidate.option != static_cast<int>(model::Memory::none)) {
+/// True for a term of the grammar over the rate of the motion that it is against.
+bool is_over_own_rate(const Candidate& candidate) {
+  if (candidate.choices.empty()) {
     return false;
   }
   const bool is_of_piston = candidate.site == model::site_name(model::Site::piston);
@@ -29,7 +30,50 @@ bool is_curve_over_own_rate(const Candidate& candidate) {
   return (is_of_piston || is_of_engine) && candidate.choices[0] == static_cast<int>(rate) && candidate.choices[1] == 0;
 }
 
+bool is_curve_over_own_rate(const Candidate& candidate) {
+  return is_over_own_rate(candidate) && candidate.option == static_cast<int>(model::Memory::none);
+}
+
+/// What a force against a motion takes out of it, and what it feeds in.
+struct Work {
+  double in = 0.0;
+  double out = 0.0;
+  void add(double power) { (power < 0.0 ? in : out) += std::abs(power); }
+  /// True beyond the scatter of an estimate.
+  bool feeds() const { return in > policy().scatter * out; }
+};
+
+/// True for a power of its own rate that pushes with the motion, at the rates of the records or up to twice these: it goes on
+/// there.
+bool power_feeds_energy(const ModelParameters& parameters, const Candidate& candidate) {
+  bool feeds = false;
+  visit_term(parameters, candidate, [&](const auto& values) {
+    const model::MemoryParameters<double> memory{static_cast<model::Memory>(candidate.option),
+                                                 values.time,
+                                                 values.frequency,
+                                                 values.damping,
+                                                 values.width,
+                                                 values.phase,
+                                                 values.exponent};
+    for (const double most : {1.0, 2.0}) {
+      Work work;
+      for (double share = -1.0; share <= 1.0; share += 0.1) {
+        const double rate = share * most * values.width;
+        model::MemoryState<double> state;
+        work.add((values.gain * state.step(memory, rate, 1.0) + values.direct * rate) * rate);
+      }
+      feeds = feeds || work.feeds();
+    }
+  });
+  return feeds;
+}
+
 }  // namespace
+
+bool is_power(const Candidate& candidate) {
+  return !candidate.choices.empty() && (candidate.option == static_cast<int>(model::Memory::odd_power) ||
+                                        candidate.option == static_cast<int>(model::Memory::even_power));
+}
 
 bool is_oscillator(const Candidate& candidate) {
   return !candidate.choices.empty() && candidate.option == static_cast<int>(model::Memory::oscillator);
@@ -88,6 +132,9 @@ std::optional<FittedTable> table_of(const ModelParameters& parameters, const Can
 }
 
 bool feeds_energy(const ModelParameters& parameters, const Candidate& candidate) {
+  if (is_power(candidate) && is_over_own_rate(candidate)) {
+    return power_feeds_energy(parameters, candidate);
+  }
   const auto table = table_of(parameters, candidate);
   if (!table || table->x.empty()) {
     return false;
@@ -98,13 +145,11 @@ bool feeds_energy(const ModelParameters& parameters, const Candidate& candidate)
   }
   const auto closest = std::ranges::min_element(table->x, {}, [](double x) { return std::abs(x); });
   const double at_rest = over_rate ? table->y[static_cast<std::size_t>(closest - table->x.begin())] : 0.0;
-  double in = 0.0;
-  double out = 0.0;
+  Work work;
   for (std::size_t i = 0; i < table->x.size(); ++i) {
-    const double power = (table->y[i] - at_rest) * (over_rate ? table->x[i] : 1.0);
-    (power < 0.0 ? in : out) += std::abs(power);
+    work.add((table->y[i] - at_rest) * (over_rate ? table->x[i] : 1.0));
   }
-  return in > policy().scatter * out;
+  return work.feeds();
 }
 
 }  // namespace hotfire::explain

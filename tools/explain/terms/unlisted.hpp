@@ -19,6 +19,9 @@ void activate_unlisted(ModelParameters& parameters, const Candidate& candidate, 
 /// True if the candidate is an oscillator of the grammar: its curve is of a frequency.
 bool is_oscillator(const Candidate& candidate);
 
+/// True for a term that is a power of its argument.
+bool is_power(const Candidate& candidate);
+
 /// True if the candidate's effect, of the list of `plant`, is a term of unknown law.
 bool is_unlisted(const ModelParameters& plant, const Candidate& candidate);
 

@@ -12,6 +12,7 @@
 
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/unlisted.hpp"
+#include "tools/explain/terms/visit_term.hpp"
 #include "tools/explain/words/conclusions.hpp"
 
 namespace hotfire::explain {
@@ -48,7 +49,10 @@ std::string memory_of_term(const Candidate& candidate) {
                                                                                "through a dead zone",
                                                                                "through saturation",
                                                                                "through a periodic function",
-                                                                               "through the frequency of an oscillator"};
+                                                                               "through the frequency of an oscillator",
+                                                                               "through an odd power",
+                                                                               "through an even power"};
+  static_assert(!kMemories.back().empty());
   return std::string(kMemories[static_cast<std::size_t>(candidate.option)]);
 }
 
@@ -186,6 +190,16 @@ std::string law_in_words(const Candidate& candidate) {
     return "a reading that changes only after the motion exceeds a play, as with a sticking wiper or a slack linkage";
   }
   return "";
+}
+
+std::string width_in_words(const ModelParameters& parameters, const Candidate& candidate) {
+  std::string text;
+  if (is_power(candidate)) {
+    visit_term(parameters, candidate, [&](const auto& values) {
+      text = fmt::format(" with a width of {}", with_unit(values.width, unit_of_term(candidate)));
+    });
+  }
+  return text;
 }
 
 std::string dependence_in_words(const Candidate& candidate) {

@@ -29,6 +29,9 @@ std::string in_words(const FittedTable& table);
 /// The same of a term of unknown law without a table. Empty for one that has a table.
 std::string law_in_words(const Candidate& candidate);
 
+/// The width of a power, which no fit moves, as the end of that clause: " with a width of 0.02 m/s". Empty for other terms.
+std::string width_in_words(const ModelParameters& parameters, const Candidate& candidate);
+
 /// What a term of unknown law depends on, as a clause: "that depends on load pressure", "that is a sinusoid over time".
 std::string dependence_in_words(const Candidate& candidate);
 
