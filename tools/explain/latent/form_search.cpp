@@ -18,7 +18,7 @@ namespace {
 using model::Argument;
 
 constexpr std::size_t kArguments = model::kArgumentNames.size();
-/// Gains, and as many curves, whose parameters are refined.
+/// Gains, and as many curves or powers, whose parameters are refined.
 constexpr std::size_t kRefined = 3;
 /// Forms that the screening leaves for the regression.
 constexpr std::size_t kScreenedStill = 6;
@@ -284,10 +284,10 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
   std::ranges::move(behind_best_curves(regression, laid, threads), std::back_inserter(laid));
-  // Curves do not replace gains: the regression is linear, where a large effect is not, and follows with a curve what is
-  // none.
-  const auto curves =
-      std::stable_partition(laid.begin(), laid.end(), [](const ScoredForm& s) { return !s.form.has_curve(); });
+  // Curves and powers do not replace gains: the regression is linear, where a large effect is not, and follows with a curve
+  // what is none.
+  const auto curves = std::stable_partition(laid.begin(), laid.end(),
+                                            [](const ScoredForm& s) { return !s.form.has_curve() && !s.form.is_power(); });
   std::vector<ScoredForm> best = best_of_each({laid.begin(), curves}, kRefined);
   std::ranges::move(best_of_each({curves, laid.end()}, kRefined), std::back_inserter(best));
   refine(regression, best, threads);

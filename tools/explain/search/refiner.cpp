@@ -45,7 +45,10 @@ bool are_alike(const Evaluator& evaluator, const Eigen::VectorXd& left, const Ei
 
 /// How many rows the period of a hold may be off from where the regression has it.
 constexpr int kPeriodOff = 4;
-/// How many rows the samples may be off then.
+/// The periods near that one that are fitted, of those that leave least as proposed.
+constexpr std::size_t kPeriodsFitted = 3;
+/// How many rows the samples may be off: at a period that is not fitted, and at one that is.
+constexpr int kInstantsOff = 1;
 constexpr int kSamplesOff = 2;
 /// Where beside a row they are tried: a logger that is in step with them reads before or after the sample.
 constexpr double kBesideRow = 0.02;
@@ -263,33 +266,36 @@ Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held,
     moved.criterion = left_by(evaluator, moved.fitted, threads_);
     return moved;
   };
-  const Samples proposed = samples_of(held, row);
-  Screened best = held;
-  best.criterion = left_by(evaluator, held.fitted, threads_);
-  for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
-    const double rows = proposed.rows + longer;
-    if (rows < 2.0) {
-      continue;
-    }
-    const double passed = proposed.passed * rows / proposed.rows;
-    Screened of_period = shortly(evaluator, moved_to(held, {rows, passed}), frozen);
-    const Screened fitted = of_period;
-    for (int early = -kSamplesOff; early <= kSamplesOff; ++early) {
+  /// The same with its samples at the best of the instants up to `off` rows from where they are.
+  const auto at_best_instant = [&](const Screened& about, int off) {
+    const Samples own = samples_of(about, row);
+    Screened best = about;
+    for (int early = -off; early <= off && !watch_.interrupted(); ++early) {
       for (const double part : {-kBesideRow, kBesideRow, 0.5}) {
-        keep_better(moved_to(fitted, {rows, std::round(passed) + early + part}), of_period);
+        keep_better(moved_to(about, {own.rows, std::round(own.passed) + early + part}), best);
       }
     }
-    keep_better(std::move(of_period), best);
-  }
-  const Screened of_best_period = best;
-  const Samples about = samples_of(best, row);
-  for (int early = -kSamplesOff; early <= kSamplesOff && !watch_.interrupted(); ++early) {
-    for (const double part : {-kBesideRow, kBesideRow}) {
-      keep_better(
-          shortly(evaluator, moved_to(of_best_period, {about.rows, std::round(about.passed) + early + part}), frozen), best);
+    return best;
+  };
+  const Samples proposed = samples_of(held, row);
+  std::vector<Screened> periods;
+  for (int longer = -kPeriodOff; longer <= kPeriodOff; ++longer) {
+    const double rows = proposed.rows + longer;
+    if (rows >= 2.0) {
+      periods.push_back(at_best_instant(moved_to(held, {rows, proposed.passed * rows / proposed.rows}), kInstantsOff));
     }
   }
-  return best;
+  // The coefficients that are proposed are too small rather than wrong: the right period leaves less with them as well.
+  std::ranges::stable_sort(periods, {}, &Screened::criterion);
+  periods.resize(std::min(periods.size(), kPeriodsFitted));
+  Screened best = held;
+  best.criterion = left_by(evaluator, held.fitted, threads_);
+  for (Screened& period : periods) {
+    if (!watch_.interrupted()) {
+      keep_better(at_best_instant(shortly(evaluator, std::move(period), frozen), kSamplesOff), best);
+    }
+  }
+  return shortly(evaluator, std::move(best), frozen);
 }
 
 Screened Refiner::with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,

@@ -41,7 +41,8 @@ class Refiner {
   Screened shortly(const Evaluator& evaluator, Screened proposal, std::span<const double> frozen) const;
   /// A held term by the period and the phase of its samples that leave least. No fit moves them, since they have no
   /// derivative. The periods are whole rows, because the logger of a sampled signal is in step with it. A hold of too small
-  /// a share asks for samples that are later: periods and phases are compared after a short fit of each.
+  /// a share asks for samples that are later: the best few periods are compared, with their phases, after a short fit of
+  /// each.
   Screened with_samples(const Evaluator& evaluator, const Screened& held, std::span<const double> frozen) const;
   /// A held term by its own samples or those of another, whichever leaves less after a short fit.
   Screened with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,

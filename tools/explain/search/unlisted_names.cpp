@@ -95,7 +95,7 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
                                [&](const Kept& kept) { return label(kept.trial.candidate) == label(name.trial.candidate); });
   };
   if (std::ranges::all_of(names.kept, is_kept) || !is_hydraulic_axis(names.explained.model.base) ||
-      excess_over_noise(data_, result_.explained.prediction) <= policy().immaterial || options_.watch.interrupted()) {
+      excess_over_noise(data_, result_.explained.prediction) <= policy().visible || options_.watch.interrupted()) {
     return;
   }
   Found without{result_.kept, result_.explained, result_.rival};
