@@ -32,7 +32,7 @@ enum class Memory {
   saturation,  ///< s limited to `width`
   periodic,    ///< s less the nearest multiple of `width`
   oscillator,  ///< sine of a phase that starts at `phase` and advances at `frequency` + s, both in hertz
-  odd_power,   ///< sgn(s) |s / width|^exponent, times `width`; constant where s is beyond two widths
+  odd_power,   ///< sgn(s) |s / width|^exponent, times `width`; constant where s is beyond four widths
   even_power   ///< |s / width|^exponent, times `width`; constant there as well
 };
 inline constexpr std::array<std::string_view, 18> kMemoryNames{
@@ -173,7 +173,7 @@ class MemoryState {
   static S power_of(const S& s, const MemoryParameters<S>& params) noexcept {
     using std::log;
     constexpr double kLeast = 1e-9;
-    constexpr double kMost = 2.0;
+    constexpr double kMost = 4.0;
     const S size = clamp_symmetric<S>(s * sign_of<S>(s) / params.width, S{kMost});
     return value_of(size) > kLeast ? S(params.width * exp(params.exponent * log(size))) : S{0.0};
   }

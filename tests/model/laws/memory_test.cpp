@@ -184,7 +184,7 @@ TEST(TermMemory, MemorylessDistortionsAreWhatTheyAreCalled) {
   DOUBLES_EQUAL(0.13, state.step(parameters, 0.93, kMemoryStep), 1e-12);
 }
 
-TEST(TermMemory, APowerIsItsArgumentAtItsWidthAndGoesOnToTwiceThat) {
+TEST(TermMemory, APowerIsItsArgumentAtItsWidthAndGoesOnToFourTimesThat) {
   model::MemoryState<double> state;
   for (const Memory kind : {Memory::odd_power, Memory::even_power}) {
     Parameters parameters = of(kind);
@@ -193,7 +193,7 @@ TEST(TermMemory, APowerIsItsArgumentAtItsWidthAndGoesOnToTwiceThat) {
     const double sign = kind == Memory::odd_power ? -1.0 : 1.0;
     DOUBLES_EQUAL(0.4, state.step(parameters, 0.4, kMemoryStep), 1e-12);
     DOUBLES_EQUAL(sign * 0.4 * std::pow(1.75, 1.7), state.step(parameters, -0.7, kMemoryStep), 1e-12);
-    DOUBLES_EQUAL(sign * 0.4 * std::pow(2.0, 1.7), state.step(parameters, -1.0, kMemoryStep), 1e-12);
+    DOUBLES_EQUAL(sign * 0.4 * std::pow(4.0, 1.7), state.step(parameters, -1.7, kMemoryStep), 1e-12);
     DOUBLES_EQUAL(0.0, state.step(parameters, 0.0, kMemoryStep), 0.0);
   }
 }

@@ -153,9 +153,9 @@ void set_term(ParamsOf<E, S>& params) {
   // The gain of an oscillator is its amplitude: what a usual argument gives otherwise.
   params.gain = S(kind == model::Memory::oscillator ? usual.gain * usual.width : usual.gain);
   params.direct = S(kind == model::Memory::none ? 0.0 : 0.3 * usual.gain);
-  // The width of a power is the size of a large motion.
-  const bool is_power = kind == model::Memory::odd_power || kind == model::Memory::even_power;
-  params.width = S((kind == model::Memory::slew ? 20.0 : is_power ? 10.0 : 1.0) * usual.width);
+  // The width of a power is the size of the largest motion, that of a slew is a rate.
+  const bool is_wide = kind == model::Memory::slew || kind == model::Memory::odd_power || kind == model::Memory::even_power;
+  params.width = S(is_wide ? 20.0 * usual.width : usual.width);
   params.table.points = 0;
   if (kind == model::Memory::stops) {
     params.table.points = 2;

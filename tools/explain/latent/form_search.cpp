@@ -18,7 +18,7 @@ namespace {
 using model::Argument;
 
 constexpr std::size_t kArguments = model::kArgumentNames.size();
-/// Gains, and as many curves or powers, whose parameters are refined.
+/// Gains, and as many curves and powers, whose parameters are refined.
 constexpr std::size_t kRefined = 3;
 /// Forms that the screening leaves for the regression.
 constexpr std::size_t kScreenedStill = 6;
@@ -284,12 +284,16 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
   std::ranges::move(behind_best_curves(regression, laid, threads), std::back_inserter(laid));
-  // Curves and powers do not replace gains: the regression is linear, where a large effect is not, and follows with a curve
-  // what is none.
-  const auto curves = std::stable_partition(laid.begin(), laid.end(),
-                                            [](const ScoredForm& s) { return !s.form.has_curve() && !s.form.is_power(); });
-  std::vector<ScoredForm> best = best_of_each({laid.begin(), curves}, kRefined);
-  std::ranges::move(best_of_each({curves, laid.end()}, kRefined), std::back_inserter(best));
+  // Neither curves nor powers replace gains: the regression is linear, where a large effect is not, and follows with a curve
+  // what is none. A power has a place of its own beside a curve over the same, which follows it as far as its points go.
+  const auto of = [&](auto&& is_in, std::size_t count) {
+    std::vector<ScoredForm> some;
+    std::ranges::copy_if(laid, std::back_inserter(some), [&](const ScoredForm& scored) { return is_in(scored.form); });
+    return best_of_each(std::move(some), count);
+  };
+  std::vector<ScoredForm> best = of([](const Form& form) { return !form.has_curve() && !form.is_power(); }, kRefined);
+  std::ranges::move(of([](const Form& form) { return form.has_curve(); }, kRefined), std::back_inserter(best));
+  std::ranges::move(of([](const Form& form) { return form.is_power(); }, kRefined), std::back_inserter(best));
   refine(regression, best, threads);
   keep_best(best, most);
   return best;

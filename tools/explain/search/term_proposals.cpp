@@ -23,7 +23,7 @@ namespace {
 /// Rows over all records that forms are regressed on: of two minutes at 200 Hz.
 constexpr double kMostRows = 25e3;
 /// Forms of one place that are proposed.
-constexpr std::size_t kFormsOfPlace = 6;
+constexpr std::size_t kFormsOfPlace = 9;
 /// How far a parameter of a memory may go from where the regression puts it, as a factor.
 constexpr double kReach = 100.0;
 /// Shares of a proposed term that are simulated, until less of it leaves more.

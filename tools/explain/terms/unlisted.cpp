@@ -43,8 +43,7 @@ struct Work {
   bool feeds() const { return in > policy().scatter * out; }
 };
 
-/// True for a power of its own rate that pushes with the motion, at the rates of the records or up to twice these: it goes on
-/// there.
+/// True for a power of its own rate that pushes with the motion, at the rates of the records or beyond: it goes on there.
 bool power_feeds_energy(const ModelParameters& parameters, const Candidate& candidate) {
   bool feeds = false;
   visit_term(parameters, candidate, [&](const auto& values) {
@@ -55,7 +54,7 @@ bool power_feeds_energy(const ModelParameters& parameters, const Candidate& cand
                                                  values.width,
                                                  values.phase,
                                                  values.exponent};
-    for (const double most : {1.0, 2.0}) {
+    for (const double most : {1.0, 4.0}) {
       Work work;
       for (double share = -1.0; share <= 1.0; share += 0.1) {
         const double rate = share * most * values.width;
