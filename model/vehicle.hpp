@@ -5,13 +5,18 @@
 #include <array>
 #include <string_view>
 #include <utility>
+#include <variant>
 
-#include "model/actuator/axis.hpp"
 #include "model/effects.hpp"
-#include "model/engine/bearing_block.hpp"
 #include "model/structure/structure.hpp"
+#include "model/vehicle_engine.hpp"
+#include "model/vehicle_lanes.hpp"
 
 namespace hotfire::model {
+
+/// How the engines of a vehicle step: side by side in lanes where they may and are alike, or one after the other. The bits
+/// are the same.
+enum class Stepping { side_by_side, one_by_one };
 
 /// Engines on one structure, each with two hydraulic axes: engines x axes x modes, physics.md section 2. One engine is the
 /// TAOS of [GF], four are the MASV of [SD].
@@ -23,8 +28,7 @@ namespace hotfire::model {
 ///   bearing   translation u under thrust and forces, n_i . u added to w_i; torsion in series with the friction
 ///             (`CompliantBearing`, with a block between its halves or without)
 ///   friction  one torque over both angles' slip, beta' - rotation of the vehicle's side - torsion', its level from the
-///   force
-///             through the bearing (`BearingFriction`)
+///             force through the bearing (`BearingFriction`)
 ///   thrust    may change from step to step: level, vibration, seat of the bearing and torque of a misaligned thrust follow
 ///   ducts     and viscous damping of an axis work against the vehicle's side, as far as it turns.
 /// With modes, an axis's `structure.stiffness` is what is local to its attach point, in series with them.
@@ -37,7 +41,7 @@ namespace hotfire::model {
 /// slip.
 ///
 /// A step costs the same whatever the state, and is linear in the modes. No allocation, lock or exception after
-/// construction.
+/// construction. Four engines with the same effects and laws step side by side in lanes, which costs about half as much.
 template <class S, int Engines, int Capacity, class List>
 class Vehicle {
  public:
@@ -63,16 +67,10 @@ class Vehicle {
     Modes modes{};
   };
 
-  struct GimbalState {
-    typename CompliantBearing<S>::State bearing{};
-    Pair<S> bristle{};
-    Pair<S> torque{};  ///< of the friction, mean of the last step
-  };
-
   struct State {
     std::array<typename AxisModel::State, kAxes> axes{};
     typename Structure::State structure{};
-    std::array<GimbalState, Engines> gimbals{};
+    std::array<GimbalState<S>, Engines> gimbals{};
     std::array<S, kAxes> softening{};  ///< deflection that a nonlinear spring takes beyond force / K_T [m]
     long long tick = 0;
     std::array<S, kAxes * kChannels> measured{};  ///< piston, engine and load pressure, axis after axis
@@ -89,13 +87,16 @@ class Vehicle {
 
   /// Constants of a run at step `h` [s]. But for constant arms, an axis's moment arm is that of its attach points at zero
   /// angles: the declared one is not read.
-  Vehicle(const Parameters& parameters, double h);
+  Vehicle(const Parameters& parameters, double h, Stepping stepping = Stepping::side_by_side);
 
   double step_size() const noexcept { return h_; }
-  const AxisModel& axis(int i) const noexcept { return axes_[at(i)]; }
+  bool steps_side_by_side() const noexcept { return !std::holds_alternative<Alone>(engines_); }
   const Structure& structure() const noexcept { return structure_; }
-  const EngineGeometry<S>& geometry(int engine) const noexcept { return gimbals_[at(engine)].geometry; }
-  bool has_block(int engine) const noexcept { return gimbals_[at(engine)].spring.has_block(); }
+  bool has_block(int engine) const noexcept { return has_block_[at(engine)]; }
+
+  /// One axis as it is alone, and strokes and arms of one engine's actuators. Copies: set-up only.
+  AxisModel axis(int i) const;
+  EngineGeometry<S> geometry(int engine) const;
 
   /// The steady state under constant commands [rad]: set-up only. Every axis settles under the motion and torque that the
   /// others' forces give it, until these no longer change; friction starts unloaded. `thrust` is beyond the declared one
@@ -109,22 +110,24 @@ class Vehicle {
 
   /// Strokes and arms of one engine's actuators.
   static EngineGeometry<S> geometry_of(const Parameters& parameters, std::size_t engine) {
-    const std::size_t pitch = 2 * engine;
-    return parameters.constant_arms[engine] ? EngineGeometry<S>(parameters.axes[pitch].actuator.moment_arm,
-                                                                parameters.axes[pitch + 1].actuator.moment_arm)
-                                            : EngineGeometry<S>(parameters.attach[pitch], parameters.attach[pitch + 1]);
+    return parameters_of(parameters, engine).geometry();
   }
 
  private:
-  struct Gimbal {
-    EngineGeometry<S> geometry;
-    CompliantBearing<S> spring;
-    BearingFriction<S> friction;
-    BearingVibration<S> vibration;
-    GimbalBearing<S> bearing;
-    Pose<S> upright;  ///< at zero angles
-    bool vibrates;
-  };
+  using EngineModel = VehicleEngine<S, List>;
+  using EngineParameters = std::array<typename EngineModel::Parameters, Engines>;
+  using Alone = std::array<EngineModel, Engines>;
+  static constexpr bool kMayRunSideBySide = may_run_side_by_side<S, Engines, List>();
+  using SideBySide = EnginesSideBySide<kMayRunSideBySide ? Engines : 4, List>;
+  using Form = std::conditional_t<kMayRunSideBySide, std::variant<Alone, SideBySide>, std::variant<Alone>>;
+
+  // A step is written once, for engines in the scalar S, one after the other, and for one that is all of them in lanes.
+  template <class T>
+  static constexpr std::size_t kSteps = are_lanes<T> ? 1 : Engines;
+  template <class T>
+  using EnginesIn = std::array<VehicleEngine<T, List>, kSteps<T>>;
+  template <class T>
+  using Both = std::array<T, 2>;
 
   /// How the attach points give way: their mean motion per mean force over a step, and the factor of it in series with the
   /// springs.
@@ -134,18 +137,10 @@ class Vehicle {
   };
 
   /// One step under way.
+  template <class T>
   struct Step {
-    std::array<typename AxisModel::Advance, kAxes> axes;
+    std::array<typename VehicleEngine<T, List>::Step, kSteps<T>> engines;
     typename Structure::Advance structure;
-    std::array<Coupling<S>, kAxes> around{};
-    std::array<Spring<S>, kAxes> springs{};
-    std::array<typename CompliantBearing<S>::Advance, Engines> bearings;
-    std::array<Pose<S>, Engines> poses;
-    std::array<Pair<S>, Engines> vibration{};
-    std::array<S, Engines> vibrating{};  ///< size of the vibration over the declared one
-    std::array<S, Engines> thrust{};
-    std::array<S, kAxes> torque{};
-    std::array<Vector3<S>, Engines> force;
     Give give;  ///< under this step's thrust; read only where stiffness follows it
   };
 
@@ -165,164 +160,143 @@ class Vehicle {
     return points;
   }
 
-  template <std::size_t... I>
-  static std::array<AxisModel, kAxes> axes_of(const Parameters& parameters, double h, std::index_sequence<I...>) {
-    const auto axis = [&](std::size_t i) {
-      auto own = parameters.axes[i];
-      own.actuator.moment_arm = geometry_of(parameters, i / 2).at(S(0.0), S(0.0)).arm[i % 2][i % 2];
-      return AxisModel(own, h);
-    };
-    return {axis(I)...};
+  static typename EngineModel::Parameters parameters_of(const Parameters& parameters, std::size_t engine) {
+    const std::size_t pitch = 2 * engine;
+    return {{parameters.axes[pitch], parameters.axes[pitch + 1]},
+            {parameters.attach[pitch], parameters.attach[pitch + 1]},
+            parameters.constant_arms[engine],
+            parameters.gimbals[engine]};
   }
 
-  template <std::size_t... I>
-  static std::array<Gimbal, Engines> gimbals_of(const Parameters& parameters, double h, std::index_sequence<I...>) {
-    const auto gimbal = [&](std::size_t e) {
-      const GimbalParameters<S>& own = parameters.gimbals[e];
-      return Gimbal{geometry_of(parameters, e),
-                    CompliantBearing<S>(own, h),
-                    own.friction,
-                    own.vibration,
-                    own.bearing,
-                    geometry_of(parameters, e).at(S(0.0), S(0.0)),
-                    value_of(own.vibration.pitch_velocity) > 0.0 || value_of(own.vibration.yaw_velocity) > 0.0};
-    };
-    return {gimbal(I)...};
-  }
-
-  /// Force on the bearing of an engine: its thrust and dead load, the push of its actuators and a disturbance.
-  Vector3<S> bearing_force(const State& state, const Step& step, int e) const noexcept {
-    return pushed(state, step.poses[at(e)], step.thrust[at(e)], e) + step.force[at(e)];
-  }
-  Vector3<S> pushed(const State& state, const Pose<S>& pose, const S& thrust, int e) const noexcept {
-    return pose.thrust * (thrust + gimbals_[at(e)].bearing.dead_load) + pose.direction[0] * state.structure.forces(2 * e) +
-           pose.direction[1] * state.structure.forces(2 * e + 1);
-  }
-
-  /// Fills the inputs of every axis for the step that the inputs found so far lead to.
-  void evaluate(State& state, Step& step, Keep keep) const noexcept {
-    const auto moved = structure_.attach_motion(state.structure, step.structure);
-    Eigen::Matrix<S, kAxes, 1> motion;   // of attach points, and stroke beyond R beta
-    Eigen::Matrix<S, kAxes, 1> surplus;  // of deflection over what the forces found so far need
-    for (int e = 0; e < Engines; ++e) {
-      move_engine(state, step, moved, e, motion, surplus);
+  /// What `of(e)` is for engine e, or for all of them in lanes.
+  template <class T, class F>
+  [[gnu::always_inline]] static T over_engines(std::size_t e, const F& of) noexcept {
+    if constexpr (are_lanes<T>) {
+      return T::by_lane([&](int lane) __attribute__((always_inline)) { return of(at(lane)); });
+    } else {
+      return of(e);
     }
-    const Give& give = stiffens_ ? step.give : give_;
-    motion += times(give.flexibility, solve_factorised<S, kAxes>(give.factor, surplus));
-    for (int i = 0; i < kAxes; ++i) {
-      auto& axis = state.axes[at(i)];
-      step.around[at(i)].motion = motion(i);
-      step.springs[at(i)] = axes_[at(i)].evaluate_actuator(axis, step.axes[at(i)], step.around[at(i)], keep);
-      state.softening[at(i)] = deflection(step, i, motion(i)) - axis.spring_force / axes_[at(i)].stiffness();
-      state.structure.forces(i) = axis.spring_force;
-    }
-    turn_engines(state, step, keep);
   }
+
+  /// The two of `values` that belong to the axes of an engine, pitch and yaw of engine 1 being `first` and the next.
+  template <class T, class Values>
+  [[gnu::always_inline]] static Both<T> both_of(const Values& values, std::size_t e, std::size_t first = 0) noexcept {
+    return {over_engines<T>(e, [&](std::size_t own) { return values[first + 2 * own]; }),
+            over_engines<T>(e, [&](std::size_t own) { return values[first + 2 * own + 1]; })};
+  }
+
+  /// Puts the two where `both_of` finds them.
+  template <class T, class Values>
+  [[gnu::always_inline]] static void put(const Both<T>& both, std::size_t e, Values& values,
+                                         std::size_t first = 0) noexcept {
+    for (std::size_t k = 0; k < 2; ++k) {
+      if constexpr (are_lanes<T>) {
+        for (int lane = 0; lane < T::kLanes; ++lane) {
+          values[first + 2 * at(lane) + k] = both[k][lane];
+        }
+      } else {
+        values[first + 2 * e + k] = both[k];
+      }
+    }
+  }
+
+  template <class T>
+  static typename VehicleEngine<T, List>::Inputs inputs_of(const Inputs& inputs, std::size_t e) noexcept {
+    typename VehicleEngine<T, List>::Inputs own{both_of<T>(inputs.commands, e),
+                                                both_of<T>(inputs.vibration, e),
+                                                over_engines<T>(e, [&](std::size_t i) { return inputs.thrust[i]; }),
+                                                both_of<T>(inputs.torque, e),
+                                                {}};
+    for (int k = 0; k < 3; ++k) {
+      own.force(k) = over_engines<T>(e, [&](std::size_t i) { return inputs.force[i](k); });
+    }
+    return own;
+  }
+
+  template <std::size_t... I>
+  static EngineParameters engine_parameters(const Parameters& parameters, std::index_sequence<I...>) {
+    return {parameters_of(parameters, I)...};
+  }
+  static EngineParameters engine_parameters(const Parameters& parameters) {
+    return engine_parameters(parameters, std::make_index_sequence<Engines>{});
+  }
+
+  static Form form_of(const Parameters& parameters, double h, Stepping stepping);
+
+  /// Calls `f<T>` with the engines as they step.
+  template <class F>
+  void with_engines(const F& f);
+
+  /// Calls `f` with engines that are not in lanes: set-up only.
+  template <class F>
+  auto with_engines_alone(const F& f) const;
+
+  /// The engines at rest, all in `state`, and what that does to the rest of the vehicle and back to the axes.
+  void couple_at_rest(const Alone& engines, State& state, std::array<Coupling<S>, kAxes>& around,
+                      const std::array<S, Engines>& thrust) const;
 
   /// How the attach points give way under a thrust, bearings at zero angles. What the springs take up of their surplus moves
   /// them by flexibility (1 / K_T + flexibility)^-1 of it.
-  Give give_under(const std::array<S, Engines>& thrust) const noexcept;
+  template <class T>
+  Give give_under(const EnginesIn<T>& engines, const std::array<T, kSteps<T>>& thrust) const noexcept;
 
-  /// What an attach point gives way by beyond its declared stiffness under a thrust [m/N].
-  S further_flexibility(int i, const S& thrust) const noexcept {
-    return gimbals_[at(i / 2)].bearing.further_structure(thrust) / axes_[at(i)].parameters().structure.stiffness;
+  static typename EngineModel::State state_of(State& state, std::size_t e) noexcept {
+    return {std::span<typename AxisModel::State, 2>(&state.axes[2 * e], 2), state.gimbals[e]};
   }
 
-  /// Mean deflection of a load spring before its effects.
-  S deflection(const Step& step, int i, const S& motion) const noexcept {
-    return step.axes[at(i)].mean(AxisModel::kPiston) -
-           axes_[at(i)].parameters().actuator.moment_arm * step.axes[at(i)].mean(AxisModel::kAngle) - motion;
-  }
-
-  /// Where one engine goes, and what that leaves of the deflection of its two springs.
-  [[gnu::always_inline]] void move_engine(State& state, Step& step, const typename Structure::HalfVector& moved, int e,
-                                          Eigen::Matrix<S, kAxes, 1>& motion,
-                                          Eigen::Matrix<S, kAxes, 1>& surplus) const noexcept {
-    for (int i = 2 * e; i < 2 * e + 2; ++i) {
-      axes_[at(i)].predict(state.axes[at(i)], step.axes[at(i)]);
+  /// Fills the inputs of every axis for the step that the inputs found so far lead to. `engine(e)` is the state of engine e.
+  template <class T, class EngineState>
+  void evaluate(const EnginesIn<T>& engines, const EngineState& engine, State& state, Step<T>& step,
+                Keep keep) const noexcept {
+    const auto moved = structure_.attach_motion(state.structure, step.structure);
+    Eigen::Matrix<S, kAxes, 1> motion;   // of attach points, and stroke beyond R beta
+    Eigen::Matrix<S, kAxes, 1> surplus;  // of deflection over what the forces found so far need
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      Both<T> own_motion;
+      Both<T> own_surplus;
+      engines[e].move(engine(e), both_of<T>(moved, e), step.engines[e], own_motion, own_surplus);
+      put<T>(own_motion, e, motion);
+      put<T>(own_surplus, e, surplus);
     }
-    const S pitch = step.axes[at(2 * e)].mean(AxisModel::kAngle);
-    const S yaw = step.axes[at(2 * e + 1)].mean(AxisModel::kAngle);
-    const Gimbal& gimbal = gimbals_[at(e)];
-    Pose<S>& pose = step.poses[at(e)];
-    pose = gimbal.geometry.at(pitch, yaw);
-    const GimbalState& own = state.gimbals[at(e)];
-    const Vector3<S> moved_bearing =
-        gimbal.spring.mean_translation(own.bearing, step.bearings[at(e)], bearing_force(state, step, e), own.torque);
-    for (int k = 0; k < 2; ++k) {
-      const int i = 2 * e + k;
-      const auto& axis = axes_[at(i)];
-      motion(i) = pose.stroke[at(k)] - axis.parameters().actuator.moment_arm * (k == 0 ? pitch : yaw) + moved(i) +
-                  dot<S>(pose.direction[at(k)], moved_bearing) +
-                  further_flexibility(i, step.thrust[at(e)]) * state.structure.forces(i);
-      surplus(i) = deflection(step, i, motion(i)) - state.softening[at(i)] - state.structure.forces(i) / axis.stiffness();
-      step.around[at(i)].arm = pose.arm[at(k)][at(k)];
+    const Give& give = stiffens_ ? step.give : give_;
+    motion += times(give.flexibility, solve_factorised<S, kAxes>(give.factor, surplus));
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      engines[e].push(engine(e), both_of<T>(motion, e), step.engines[e], keep);
+      put<T>(step.engines[e].push, e, state.structure.forces);
     }
-  }
-
-  /// Friction of the bearings, torque of each actuator about the other angle, and what the vehicle's own rotation adds.
-  void turn_engines(State& state, Step& step, Keep keep) const noexcept {
     const auto turned = structure_.rotation(state.structure, step.structure);
     const auto rate = structure_.rotation_rate(state.structure, step.structure);
-    for (int e = 0; e < Engines; ++e) {
-      const int pitch = 2 * e;
-      const int yaw = pitch + 1;
-      // The first pass goes by the last step's friction: the second solves for speed and torque together, from a velocity
-      // without friction that does not depend on it.
-      if (keep == Keep::yes) {
-        slide(state, step, rate, e);
-      }
-      const Pair<S>& friction = state.gimbals[at(e)].torque;
-      const Pose<S>& pose = step.poses[at(e)];
-      const GimbalBearing<S>& bearing = gimbals_[at(e)].bearing;
-      const S across_pitch = bearing.pitch_misalignment * step.thrust[at(e)] - step.torque[at(pitch)] -
-                             pose.arm[1][0] * state.axes[at(yaw)].spring_force;
-      const S across_yaw = bearing.yaw_misalignment * step.thrust[at(e)] - step.torque[at(yaw)] -
-                           pose.arm[0][1] * state.axes[at(pitch)].spring_force;
-      turn_axis(state, step, turned, rate, pitch, friction.pitch, across_pitch, keep);
-      turn_axis(state, step, turned, rate, yaw, friction.yaw, across_yaw, keep);
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      const Both<T> torques = engines[e].turn(engine(e), both_of<T>(turned, e), both_of<T>(rate, e), step.engines[e], keep);
+      put<T>(torques, e, state.structure.forces, kAxes);
     }
   }
 
-  void turn_axis(State& state, Step& step, const typename Structure::HalfVector& turned,
-                 const typename Structure::HalfVector& rate, int i, const S& friction, const S& across,
-                 Keep keep) const noexcept {
-    const Engine<S>& engine = axes_[at(i)].parameters().engine;
-    const S of_vehicle = engine.duct_stiffness * turned(i) + engine.viscous_damping * rate(i);
-    const S of_engine = engine.duct_stiffness * step.axes[at(i)].mean(AxisModel::kAngle) +
-                        engine.viscous_damping * step.axes[at(i)].rate(AxisModel::kAngle, h_);
-    state.structure.forces(kAxes + i) = friction + of_engine - of_vehicle;
-    step.around[at(i)].torque = friction + across - of_vehicle;
-    const auto& other = step.axes[at(i ^ 1)];
-    step.around[at(i)].other_angle = other.mean(AxisModel::kAngle);
-    step.around[at(i)].other_rate = other.rate(AxisModel::kAngle, h_);
-    axes_[at(i)].evaluate_engine(state.axes[at(i)], step.axes[at(i)], step.springs[at(i)], step.around[at(i)], keep);
+  template <class T, class EngineState>
+  [[gnu::always_inline]] void step_engines(const EnginesIn<T>& engines, const EngineState& engine, State& state,
+                                           const Inputs& inputs) const noexcept {
+    Step<T> step;
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      engines[e].begin(engine(e), inputs_of<T>(inputs, e), both_of<T>(state.structure.forces, e),
+                       both_of<T>(state.softening, e), state.tick, step.engines[e]);
+    }
+    structure_.begin(state.structure, step.structure);
+    if (stiffens_) {
+      std::array<T, kSteps<T>> thrust;
+      for (std::size_t e = 0; e < engines.size(); ++e) {
+        thrust[e] = step.engines[e].thrust;
+      }
+      step.give = give_under<T>(engines, thrust);
+    }
+    for (int pass = 0; pass < kPasses; ++pass) {
+      evaluate<T>(engines, engine, state, step, pass + 1 == kPasses ? Keep::yes : Keep::no);
+    }
+    structure_.finish(state.structure, step.structure);
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      engines[e].finish(engine(e), step.engines[e]);
+      put<T>(step.engines[e].softening, e, state.softening);
+    }
   }
-
-  /// Friction of one bearing under the slip that the axes' predictions lead to: advances torque and bristle.
-  void slide(State& state, const Step& step, const typename Structure::HalfVector& rate, int e) const noexcept {
-    const int pitch = 2 * e;
-    const int yaw = pitch + 1;
-    const Gimbal& gimbal = gimbals_[at(e)];
-    GimbalState& own = state.gimbals[at(e)];
-    const Pair<S> engine{step.axes[at(pitch)].rate(AxisModel::kAngle, h_), step.axes[at(yaw)].rate(AxisModel::kAngle, h_)};
-    const Pair<S> vehicle{rate(pitch), rate(yaw)};
-    const Vector3<S> force = bearing_force(state, step, e);
-    const Pair<S> torsion = gimbal.spring.rotation_rate(own.bearing, step.bearings[at(e)], force, own.torque);
-    const auto& flexibility = structure_.rate_flexibility();
-    const SymmetricPair<S> bearing = gimbal.spring.rate_flexibility();
-    Slip<S> slip;
-    slip.h = h_;
-    slip.velocity = engine - vehicle - torsion + step.vibration[at(e)];
-    slip.compliance = {axes_[at(pitch)].engine_compliance() + flexibility(pitch, kAxes + pitch) + bearing.pitch,
-                       axes_[at(yaw)].engine_compliance() + flexibility(yaw, kAxes + yaw) + bearing.yaw,
-                       flexibility(pitch, kAxes + yaw) + bearing.cross};
-    slip.free_velocity = slip.velocity + slip.compliance.times(own.torque);
-    own.torque = gimbal.friction.torque(own.bristle, slip, {norm<S>(force), step.vibrating[at(e)]});
-  }
-
-  /// What the axes' states at rest do to the rest of the vehicle, and what that does to them.
-  void couple_at_rest(State& state, std::array<Coupling<S>, kAxes>& around, const std::array<S, Engines>& thrust) const;
 
   void gather(State& state) const noexcept {
     for (std::size_t i = 0; i < kAxes; ++i) {
@@ -333,46 +307,32 @@ class Vehicle {
   }
 
   double h_;
-  std::array<AxisModel, kAxes> axes_;
   Structure structure_;
-  std::array<Gimbal, Engines> gimbals_;
+  std::array<bool, Engines> has_block_{};
+  Form engines_;
   Give give_;              ///< under the declared thrust
   bool stiffens_ = false;  ///< structure or bearings are stiffer under thrust
 };
 
 template <class S, int Engines, int Capacity, class List>
 void Vehicle<S, Engines, Capacity, List>::step(State& state, const Inputs& inputs) const noexcept {
-  Step step;
-  for (int i = 0; i < kAxes; ++i) {
-    axes_[at(i)].begin(state.axes[at(i)], inputs.commands[at(i)], step.axes[at(i)]);
+  if (const Alone* alone = std::get_if<Alone>(&engines_)) {
+    step_engines<S>(
+        *alone, [&](std::size_t e) { return state_of(state, e); }, state, inputs);
   }
-  structure_.begin(state.structure, step.structure);
-  for (int e = 0; e < Engines; ++e) {
-    const Gimbal& gimbal = gimbals_[at(e)];
-    step.thrust[at(e)] = gimbal.bearing.thrust + inputs.thrust[at(e)];
-    gimbal.spring.begin(state.gimbals[at(e)].bearing, step.bearings[at(e)]);
-    step.vibrating[at(e)] = gimbal.bearing.vibration_under(step.thrust[at(e)]);
-    step.vibration[at(e)] = {inputs.vibration[at(2 * e)], inputs.vibration[at(2 * e + 1)]};
-    if (gimbal.vibrates) {
-      step.vibration[at(e)] =
-          step.vibration[at(e)] + step.vibrating[at(e)] * vibration_over(gimbal.vibration, state.tick, h_);
+  if constexpr (kMayRunSideBySide) {
+    if (const SideBySide* beside = std::get_if<SideBySide>(&engines_)) {
+      typename SideBySide::State own;
+      beside->take_in(state, own);
+      using All = typename SideBySide::Engine::State;
+      step_engines<typename SideBySide::Number>(
+          beside->engines(),
+          [&](std::size_t) {
+            return All{own.all.axes, own.all.gimbal};
+          },
+          state, inputs);
+      beside->give_back(own, state);
     }
-  }
-  step.force = inputs.force;
-  step.torque = inputs.torque;
-  if (stiffens_) {
-    step.give = give_under(step.thrust);
-  }
-  for (int pass = 0; pass < kPasses; ++pass) {
-    evaluate(state, step, pass + 1 == kPasses ? Keep::yes : Keep::no);
-  }
-  for (int i = 0; i < kAxes; ++i) {
-    axes_[at(i)].finish(state.axes[at(i)], step.axes[at(i)]);
-  }
-  structure_.finish(state.structure, step.structure);
-  for (int e = 0; e < Engines; ++e) {
-    GimbalState& own = state.gimbals[at(e)];
-    gimbals_[at(e)].spring.finish(own.bearing, step.bearings[at(e)], bearing_force(state, step, e), own.torque);
   }
   ++state.tick;
   gather(state);

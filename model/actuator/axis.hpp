@@ -143,11 +143,11 @@ class Axis : public AxisStates {
     flow_relief_ = select(relief < kMostRelief, relief, S{kMostRelief});
   }
 
-  const Parameters& parameters() const noexcept { return parameters_; }
+  const Parameters& parameters() const& noexcept { return parameters_; }
+  Parameters parameters() const&& { return parameters_; }  ///< outlives a copy of an axis
   double step_size() const noexcept { return h_; }
 
-  /// K_T of the declared load spring [N/m].
-  const S& stiffness() const noexcept { return stiffness_; }
+  S stiffness() const noexcept { return stiffness_; }  ///< K_T of the declared load spring [N/m]
 
   /// Change of the continuous states by a unit of every input, held over a step: a column for each of `Input`.
   const Eigen::Matrix<S, 8, 6>& input_response() const noexcept { return hold_.response; }

@@ -86,7 +86,11 @@ class CompliantBearing {
     }
   };
 
-  CompliantBearing(const GimbalParameters<S>& gimbal, double h) : spring_(gimbal, h), block_(block_modes(gimbal), h) {
+  CompliantBearing(const GimbalParameters<S>& gimbal, double h) : CompliantBearing(gimbal, block_modes(gimbal), h) {}
+
+  /// With the modes of its block, which depend on the parameters.
+  CompliantBearing(const GimbalParameters<S>& gimbal, const typename Block::Table& modes, double h)
+      : spring_(gimbal, h), block_(modes, h) {
     if (has_block()) {
       spring_.add_rate_flexibility(block_.rate_flexibility());
     }

@@ -23,7 +23,7 @@ S dot(const Vector3<S>& a, const Vector3<S>& b) noexcept {
 template <class S>
 S norm(const Vector3<S>& a) noexcept {
   const S squared = dot<S>(a, a);
-  return value_of(squared) > 0.0 ? S(sqrt(squared)) : S{0.0};
+  return select(value_of(squared) > 0.0, S(sqrt(squared)), S{0.0});
 }
 
 /// Where one actuator holds on to its engine and to the vehicle, with the engine at zero angles. Origin at the gimbal's

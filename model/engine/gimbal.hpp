@@ -90,7 +90,8 @@ struct BearingFriction {
       return model::coulomb_torque<S>(slip, sliding);
     }
     // A level of zero is no friction: the bristle is not divided by it.
-    if (!(value_of(sliding) > 0.0)) {
+    const auto rubbing = value_of(sliding) > 0.0;
+    if (!anywhere(rubbing)) {
       deflection = {};
       return {};
     }
@@ -110,9 +111,9 @@ struct BearingFriction {
     };
     const S first = speed_under(torque_at(guess));
     const S second = speed_under(torque_at(first));
-    Pair<S> torque = torque_at(extrapolated_speed<S>(guess, first, second));
-    deflection = power * end;
-    return torque;
+    const Pair<S> torque = torque_at(extrapolated_speed<S>(guess, first, second));
+    deflection = select(rubbing, power * end, Pair<S>{});
+    return select(rubbing, torque, Pair<S>{});
   }
 
  private:
@@ -129,18 +130,21 @@ struct BearingFriction {
   /// The bound of passivity holds for the least level that the law reaches.
   S damping_at(const S& speed, const S& sliding, const S& left) const noexcept {
     const S least = law() == Law::vibrated_lugre ? sliding * left : sliding;
-    return value_of(least) > 0.0 ? passive_damping<S>(damping, least, speed) : S{0.0};
+    return select(value_of(least) > 0.0, passive_damping<S>(damping, least, speed), S{0.0});
   }
 
   /// Dahl's |w|^(exponent - 1) at the start of the step.
   S yielding(const Pair<S>& deflection, const Pair<S>& velocity, const S& speed, const S& sliding) const noexcept {
     using std::pow;
-    if (!(value_of(exponent) > 1.0) || !(value_of(speed) > 0.0)) {
+    const auto has_power = value_of(exponent) > 1.0;
+    const auto slips = value_of(speed) > 0.0;
+    if (!anywhere(has_power) || !anywhere(slips)) {
       return S{1.0};
     }
     const S w = (S(1.0 / speed) * velocity - S(stiffness / sliding) * deflection).length();
     constexpr double kLeast = 1e-3;  // of the level: a bristle this close to it slides, and is not divided by zero
-    return pow(value_of(w) > kLeast ? w : S{kLeast}, exponent - 1.0);
+    const S power = pow(select(value_of(w) > kLeast, w, S{kLeast}), S(exponent - 1.0));
+    return select(has_power, select(slips, power, S{1.0}), S{1.0});
   }
 };
 
@@ -161,6 +165,9 @@ struct BearingVibration {
                  &P::pitch_velocity},
         Field<P>{"yaw_velocity", "rad/s", 0.0, 10.0, 0.01, "amplitude of the slip velocity about yaw", &P::yaw_velocity},
         Field<P>{"frequency", "Hz", 1.0, 2e4, 100.0, "frequency of the vibration", &P::frequency}};
+  }
+  bool vibrates() const noexcept {
+    return anywhere(value_of(pitch_velocity) > 0.0) || anywhere(value_of(yaw_velocity) > 0.0);
   }
 };
 
@@ -216,14 +223,14 @@ struct GimbalBearing {
 
   /// Size of the vibration under a thrust, over the declared one.
   S vibration_under(const S& own_thrust) const noexcept {
-    return value_of(rated_thrust) > 0.0 ? S(own_thrust / rated_thrust) : S{1.0};
+    return select(value_of(rated_thrust) > 0.0, S(own_thrust / rated_thrust), S{1.0});
   }
 
   /// What a thrust below the rated one adds to the flexibility of an attach point, over what the declared stiffness gives:
   /// from nothing at rated thrust, linearly to that of `unloaded_structure` without. Thrust comes with full and pressurised
   /// tanks, which stiffen what the actuators push against [SD 2.4]: one switch for both.
   S further_structure(const S& own_thrust) const noexcept {
-    const S missing = value_of(rated_thrust) > value_of(own_thrust) ? S(1.0 - own_thrust / rated_thrust) : S{0.0};
+    const S missing = select(value_of(rated_thrust) > value_of(own_thrust), S(1.0 - own_thrust / rated_thrust), S{0.0});
     return (1.0 / unloaded_structure - 1.0) * missing;
   }
 };
@@ -240,7 +247,7 @@ struct GimbalParameters {
   Eigen::Matrix<S, 6, 6> stiffness = Eigen::Matrix<S, 6, 6>::Identity();
 
   /// True if a block with inertia moves between the halves of the bearing.
-  bool has_block() const noexcept { return compliant && value_of(bearing.block_mass) > 0.0; }
+  bool has_block() const noexcept { return compliant && anywhere(value_of(bearing.block_mass) > 0.0); }
 
   template <class Self, class F>
   static void for_each_part(Self& self, F&& f) {
@@ -275,8 +282,7 @@ std::string_view broken_relation(const GimbalParameters<S>& gimbal) {
       (value_of(gimbal.bearing.block_mass) < kLeastBlock || value_of(gimbal.bearing.block_inertia) < kLeastBlock)) {
     return "block_mass and block_inertia must be above 1e-6; leave both out for a bearing without a block";
   }
-  const bool vibrates = value_of(gimbal.vibration.pitch_velocity) > 0.0 || value_of(gimbal.vibration.yaw_velocity) > 0.0;
-  if (vibrates && gimbal.friction.law() == BearingFriction<S>::Law::vibrated_lugre) {
+  if (gimbal.vibration.vibrates() && gimbal.friction.law() == BearingFriction<S>::Law::vibrated_lugre) {
     return "the law \"vibrated_lugre\" and a simulated vibration are two ways to the same physics; give one of them";
   }
   return {};

@@ -32,7 +32,7 @@ class GimbalSpring {
       compliance_ *= share;
       further_ /= share;
     }
-    seats_ = gimbal.compliant && value_of(further_) > 0.0;
+    seats_ = gimbal.compliant && anywhere(value_of(further_) > 0.0);
     turning_ << compliance_.template block<2, 3>(4, 0), compliance_.template block<2, 2>(4, 4);
   }
 

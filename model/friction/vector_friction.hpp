@@ -19,9 +19,16 @@ struct Pair {
   /// At zero it has no slope: that of the root would be infinite.
   S length() const noexcept {
     const S squared = pitch * pitch + yaw * yaw;
-    return value_of(squared) == 0.0 ? S{0.0} : S(sqrt(squared));
+    return select(value_of(squared) != 0.0, S(sqrt(squared)), S{0.0});
   }
 };
+
+/// In lanes: as `select` of a number.
+template <class Mask, class S>
+requires are_lanes<S> Pair<S> select(const Mask& condition, const Pair<S>& where_true, const Pair<S>& where_false)
+noexcept {
+  return {select(condition, where_true.pitch, where_false.pitch), select(condition, where_true.yaw, where_false.yaw)};
+}
 
 template <class S>
 struct SymmetricPair {
@@ -56,24 +63,27 @@ struct Slip {
 /// J. Sci. Stat. Comput. 4(3)], exact after the first for equal compliances. Reduces to `coulomb_force` along one direction.
 template <class S>
 Pair<S> coulomb_torque(const Slip<S>& slip, const S& level) noexcept {
-  if (!(value_of(level) > 0.0)) {
+  const auto rubs = value_of(level) > 0.0;
+  if (!anywhere(rubs)) {
     return {};
   }
-  // Without compliance there is only slip: the start is the root itself.
-  const bool imposed = value_of(slip.compliance.pitch) == 0.0 && value_of(slip.compliance.yaw) == 0.0;
-  S lambda = imposed ? slip.free_velocity.length() / level : S{0.0};
-  if (imposed && !(value_of(lambda) > 0.0)) {
-    return {};
-  }
+  const auto where_compliant = [&](const S& compliant, const S& imposed) {
+    return select(value_of(slip.compliance.pitch) != 0.0, compliant,
+                  select(value_of(slip.compliance.yaw) != 0.0, compliant, imposed));
+  };
+  // Without compliance there is only slip: the start is the root itself, and without slip there is no torque.
+  const S of_slip = slip.free_velocity.length() / level;
+  const auto acts = value_of(where_compliant(S{1.0}, of_slip)) > 0.0;
+  S lambda = where_compliant(S{0.0}, of_slip);
   for (int i = 0; i < 4; ++i) {
     const Pair<S> torque = slip.compliance.solve(S(1.0), lambda, slip.free_velocity);
     const Pair<S> slope = slip.compliance.solve(S(1.0), lambda, torque);
     const S size = torque.length();
     const S along = torque.pitch * slope.pitch + torque.yaw * slope.yaw;
-    const S change = value_of(along) > 0.0 ? (size / level - 1.0) * size * size / along : S{0.0};
-    lambda = value_of(lambda + change) > 0.0 ? lambda + change : S{0.0};
+    const S change = select(value_of(along) > 0.0, S((size / level - 1.0) * size * size / along), S{0.0});
+    lambda = select(value_of(lambda + change) > 0.0, S(lambda + change), S{0.0});
   }
-  return slip.compliance.solve(S(1.0), lambda, slip.free_velocity);
+  return select(rubs, select(acts, slip.compliance.solve(S(1.0), lambda, slip.free_velocity), Pair<S>{}), Pair<S>{});
 }
 
 /// One step of one bristle over both directions (Dahl, LuGre): z' = v - sigma0 |v| z / g(|v|), T = sigma0 z + sigma1 z' +

@@ -15,6 +15,13 @@
 
 namespace hotfire::model {
 
+/// True where a register holds several numbers in double.
+#if defined(__SSE2__) || defined(__aarch64__)
+inline constexpr bool kHasRegistersOfLanes = true;
+#else
+inline constexpr bool kHasRegistersOfLanes = false;
+#endif
+
 /// Numbers that one register holds. The bits of a lane do not depend on it. A unit that is compiled for AVX has names of its
 /// own: the same program may have others that are not.
 #if defined(__AVX__)
@@ -73,7 +80,9 @@ struct Lanes {
   static_assert(N % vectors::kWidth == 0);
   static constexpr int kLanes = N;
   static constexpr std::size_t kParts = static_cast<std::size_t>(N / vectors::kWidth);
-  std::array<vectors::Numbers, kParts> parts;
+  /// What holds lanes has the same layout whatever registers a unit is compiled for.
+  static constexpr std::size_t kAlignment = N % 4 == 0 ? 32 : 16;
+  alignas(kAlignment) std::array<vectors::Numbers, kParts> parts;
 
   Lanes() = default;
   // Written out, because a copy by the bytes goes in halves of a register, and a processor waits for them when it reads the
@@ -93,6 +102,20 @@ struct Lanes {
     }
   }
 
+  /// `N` numbers beside each other in memory.
+  static Lanes load(const double* from) noexcept {
+    return by_part<Lanes>([&](std::size_t i) {
+      vectors::Numbers part;
+      __builtin_memcpy(&part, from + i * vectors::kWidth, sizeof part);
+      return part;
+    });
+  }
+  void store(double* to) const noexcept {
+    for (std::size_t i = 0; i < kParts; ++i) {
+      __builtin_memcpy(to + i * vectors::kWidth, &parts[i], sizeof parts[i]);
+    }
+  }
+
   double operator[](int lane) const noexcept {
     return parts[static_cast<std::size_t>(lane / vectors::kWidth)][lane % vectors::kWidth];
   }
@@ -100,31 +123,32 @@ struct Lanes {
     parts[static_cast<std::size_t>(lane / vectors::kWidth)][lane % vectors::kWidth] = value;
   }
 
+  // Inlined whatever the compiler expects of it: a call takes more than the operation.
   Lanes& operator+=(const Lanes& y) noexcept { return *this = *this + y; }
   Lanes& operator-=(const Lanes& y) noexcept { return *this = *this - y; }
   Lanes& operator*=(const Lanes& y) noexcept { return *this = *this * y; }
   Lanes& operator/=(const Lanes& y) noexcept { return *this = *this / y; }
 
-  friend Lanes operator+(const Lanes& x, const Lanes& y) noexcept {
+  [[gnu::always_inline]] friend Lanes operator+(const Lanes& x, const Lanes& y) noexcept {
     return by_part<Lanes>([&](std::size_t i) { return x.parts[i] + y.parts[i]; });
   }
-  friend Lanes operator-(const Lanes& x, const Lanes& y) noexcept {
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& x, const Lanes& y) noexcept {
     return by_part<Lanes>([&](std::size_t i) { return x.parts[i] - y.parts[i]; });
   }
-  friend Lanes operator-(const Lanes& x) noexcept {
+  [[gnu::always_inline]] friend Lanes operator-(const Lanes& x) noexcept {
     return by_part<Lanes>([&](std::size_t i) { return -x.parts[i]; });
   }
-  friend Lanes operator*(const Lanes& x, const Lanes& y) noexcept {
+  [[gnu::always_inline]] friend Lanes operator*(const Lanes& x, const Lanes& y) noexcept {
     return by_part<Lanes>([&](std::size_t i) { return x.parts[i] * y.parts[i]; });
   }
-  friend Lanes operator/(const Lanes& x, const Lanes& y) noexcept {
+  [[gnu::always_inline]] friend Lanes operator/(const Lanes& x, const Lanes& y) noexcept {
     return by_part<Lanes>([&](std::size_t i) { return x.parts[i] / y.parts[i]; });
   }
-  friend LaneMask<N> operator<(const Lanes& x, const Lanes& y) noexcept {
+  [[gnu::always_inline]] friend LaneMask<N> operator<(const Lanes& x, const Lanes& y) noexcept {
     return by_part<LaneMask<N>>([&](std::size_t i) { return x.parts[i] < y.parts[i]; });
   }
-  friend LaneMask<N> operator>(const Lanes& x, const Lanes& y) noexcept { return y < x; }
-  friend LaneMask<N> operator!=(const Lanes& x, const Lanes& y) noexcept {
+  [[gnu::always_inline]] friend LaneMask<N> operator>(const Lanes& x, const Lanes& y) noexcept { return y < x; }
+  [[gnu::always_inline]] friend LaneMask<N> operator!=(const Lanes& x, const Lanes& y) noexcept {
     return by_part<LaneMask<N>>([&](std::size_t i) { return x.parts[i] != y.parts[i]; });
   }
 
@@ -138,14 +162,17 @@ struct Lanes {
     return result;
   }
 
-  /// A result of which each lane is `f(lane)`, for functions of the C library.
+  /// A result of which each lane is `f(lane)`: numbers from several places, and functions of the C library.
   template <class F>
-  static Lanes by_lane(F&& f) noexcept {
-    Lanes result(0.0);
-    for (int lane = 0; lane < N; ++lane) {
-      result.set(lane, f(lane));
-    }
-    return result;
+  [[gnu::always_inline]] static Lanes by_lane(F&& f) noexcept {
+    return by_part<Lanes>([&](std::size_t i) {
+      const int first = static_cast<int>(i) * vectors::kWidth;
+#if defined(__AVX__)
+      return vectors::Numbers{f(first), f(first + 1), f(first + 2), f(first + 3)};
+#else
+      return vectors::Numbers{f(first), f(first + 1)};
+#endif
+    });
   }
 
   friend Lanes sqrt(const Lanes& x) noexcept {
@@ -156,6 +183,15 @@ struct Lanes {
   }
   friend Lanes log(const Lanes& x) noexcept {
     return by_lane([&](int lane) { return std::log(x[lane]); });
+  }
+  friend Lanes sin(const Lanes& x) noexcept {
+    return by_lane([&](int lane) { return std::sin(x[lane]); });
+  }
+  friend Lanes cos(const Lanes& x) noexcept {
+    return by_lane([&](int lane) { return std::cos(x[lane]); });
+  }
+  friend Lanes pow(const Lanes& x, const Lanes& exponent) noexcept {
+    return by_lane([&](int lane) { return std::pow(x[lane], exponent[lane]); });
   }
 
  private:
@@ -172,7 +208,8 @@ const Lanes<N>& value_of(const Lanes<N>& x) noexcept {
 }
 
 template <int N>
-Lanes<N> select(const LaneMask<N>& condition, const Lanes<N>& where_true, const Lanes<N>& where_false) noexcept {
+[[gnu::always_inline]] inline Lanes<N> select(const LaneMask<N>& condition, const Lanes<N>& where_true,
+                                              const Lanes<N>& where_false) noexcept {
   return Lanes<N>::template by_part<Lanes<N>>(
       [&](std::size_t i) { return condition.parts[i] ? where_true.parts[i] : where_false.parts[i]; });
 }

@@ -31,7 +31,7 @@ constexpr std::size_t members_of() {
 template <class T>
 constexpr auto tied(T& value) {
   constexpr std::size_t kMembers = detail::members_of<std::remove_const_t<T>>();
-  static_assert(kMembers <= 9, "give `tied` a case for this many members");
+  static_assert(kMembers <= 12, "give `tied` a case for this many members");
   if constexpr (kMembers == 0) {
     return std::tuple<>();
   } else if constexpr (kMembers == 1) {
@@ -58,9 +58,18 @@ constexpr auto tied(T& value) {
   } else if constexpr (kMembers == 8) {
     auto& [a, b, c, d, e, f, g, h] = value;
     return std::tie(a, b, c, d, e, f, g, h);
-  } else {
+  } else if constexpr (kMembers == 9) {
     auto& [a, b, c, d, e, f, g, h, i] = value;
     return std::tie(a, b, c, d, e, f, g, h, i);
+  } else if constexpr (kMembers == 10) {
+    auto& [a, b, c, d, e, f, g, h, i, j] = value;
+    return std::tie(a, b, c, d, e, f, g, h, i, j);
+  } else if constexpr (kMembers == 11) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k] = value;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+  } else {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l] = value;
+    return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
   }
 }
 

@@ -74,7 +74,7 @@ inline constexpr double kWholeNumbers = 0x1.8p52;  // added to a number below 2^
 
 /// e^-r of that, for x = `limited` and k = `whole`.
 template <class S>
-S fading_series(const S& limited, const S& whole) noexcept {
+[[gnu::always_inline]] inline S fading_series(const S& limited, const S& whole) noexcept {
   constexpr double kLog2 = 0x1.62e42fee00000p-1;
   constexpr double kRestOfLog2 = 0x1.a39ef35793c76p-33;
   const S r = (whole * kLog2 - limited) + whole * kRestOfLog2;

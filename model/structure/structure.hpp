@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <type_traits>
 
+#include "model/numerics/lanes.hpp"
 #include "model/structure/mode.hpp"
 
 namespace hotfire::model {
@@ -71,14 +73,16 @@ class ModalStructure {
       const S w = table_.frequency[mode] * (2.0 * std::numbers::pi);
       const ModeMotion<S> from_displacement = advance_mode<S>({S(1.0), S(0.0)}, w, table_.damping_ratio[mode], h);
       const ModeMotion<S> from_velocity = advance_mode<S>({S(0.0), S(1.0)}, w, table_.damping_ratio[mode], h);
-      steps_[mode] = {from_displacement,
-                      from_velocity,
-                      {(1.0 - from_displacement.displacement) / (w * w), -from_displacement.velocity / (w * w)}};
-      held_ += table_.shape.col(k) * table_.shape.col(k).transpose() * steps_[mode].from_force.displacement;
+      const ModeMotion<S> from_force{(1.0 - from_displacement.displacement) / (w * w),
+                                     -from_displacement.velocity / (w * w)};
+      from_displacement_.set(mode, from_displacement);
+      from_velocity_.set(mode, from_velocity);
+      from_force_.set(mode, from_force);
+      held_ += table_.shape.col(k) * table_.shape.col(k).transpose() * from_force.displacement;
     }
     for (int i = 0; i < Ports; ++i) {
       for (int j = 0; j < Ports; ++j) {
-        has_residual_ = has_residual_ || value_of(table_.residual(i, j)) != 0.0;
+        has_residual_ = has_residual_ || anywhere(value_of(table_.residual(i, j)) != 0.0);
       }
     }
     mean_flexibility_ = S(0.5) * held_ + table_.residual;
@@ -126,12 +130,17 @@ class ModalStructure {
   }
   void begin(const State& state, Advance& advance) const noexcept {
     PortVector free = PortVector::Zero();
-    // Two modes at a time: the sum is loaded and stored half as often. Rows beyond the last are zero.
-    for (int k = 0; k < table_.modes; k += 2) {
-      const auto mode = static_cast<std::size_t>(k);
-      advance.modes(k) = free_end(state, mode);
-      advance.modes(k + 1) = free_end(state, mode + 1);
-      free += table_.shape.col(k) * advance.modes(k) + table_.shape.col(k + 1) * advance.modes(k + 1);
+    for (int first = 0; first < table_.modes; first += kRows) {
+      for (int k = first; k < first + kRows; k += kTogether) {
+        const ModeMotion<Modes> from = motion(state, k);
+        put(row(from_displacement_.displacement, k) * from.displacement +
+                row(from_velocity_.displacement, k) * from.velocity,
+            k, advance.modes);
+      }
+      // Two modes at a time: the sum is loaded and stored half as often.
+      for (int k = first; k < first + kRows; k += 2) {
+        free += table_.shape.col(k) * advance.modes(k) + table_.shape.col(k + 1) * advance.modes(k + 1);
+      }
     }
     const HalfVector turned = (free - state.displacement).template tail<kHalf>();
     advance.free = free;
@@ -160,11 +169,15 @@ class ModalStructure {
 
   /// Closes a step under the forces in `state`.
   void finish(State& state, const Advance& advance) const noexcept {
-    for (int k = 0; k < table_.modes; k += 2) {
+    for (int k = 0; k < table_.modes; k += kRows) {
       const Eigen::Matrix<S, 2, 1> force = modal_forces(state.forces, k);
-      const auto mode = static_cast<std::size_t>(k);
-      advance_under(state, mode, advance.modes(k), force(0));
-      advance_under(state, mode + 1, advance.modes(k + 1), force(1));
+      if constexpr (kInLanes) {
+        const Eigen::Matrix<S, 2, 1> next = modal_forces(state.forces, k + 2);
+        advance_under(state, advance, k, side_by_side([&](int i) { return i < 2 ? force(i) : next(i - 2); }));
+      } else {
+        advance_under(state, advance, k, force(0));
+        advance_under(state, advance, k + 1, force(1));
+      }
     }
     state.displacement = advance.free;
     add_product<Ports, 0>(state.displacement, held_, state.forces);
@@ -175,23 +188,75 @@ class ModalStructure {
   }
 
  private:
-  struct ModeStep {
-    ModeMotion<S> from_displacement;
-    ModeMotion<S> from_velocity;
-    ModeMotion<S> from_force;
+  /// Displacement and velocity of every mode at the end of a step per unit of something at its start.
+  struct ModeSteps {
+    std::array<S, Capacity> displacement{};
+    std::array<S, Capacity> velocity{};
+
+    void set(std::size_t mode, const ModeMotion<S>& end) noexcept {
+      displacement[mode] = end.displacement;
+      velocity[mode] = end.velocity;
+    }
   };
 
-  S free_end(const State& state, std::size_t mode) const noexcept {
-    return steps_[mode].from_displacement.displacement * state.modes[mode].displacement +
-           steps_[mode].from_velocity.displacement * state.modes[mode].velocity;
+  // Modes in plain numbers are advanced by several at once, side by side in lanes. A step computes `kRows` rows of the table
+  // together; those beyond the last mode are zero.
+  static constexpr bool kInLanes = kHasRegistersOfLanes && std::is_same_v<S, double> && Capacity % 4 == 0;
+  static constexpr int kTogether = kInLanes ? 4 : 1;
+  static constexpr int kRows = kInLanes ? 4 : 2;
+  static_assert(Capacity % kRows == 0);
+  using Modes = std::conditional_t<kInLanes, Lanes<4>, S>;
+
+  /// `of(0)`, or that of as many modes as are advanced at once.
+  template <class F>
+  static Modes side_by_side(const F& of) noexcept {
+    if constexpr (kInLanes) {
+      return Modes::by_lane(of);
+    } else {
+      return of(0);
+    }
   }
 
-  void advance_under(State& state, std::size_t mode, const S& free, const S& force) const noexcept {
-    const ModeStep& step = steps_[mode];
-    const ModeMotion<S> from = state.modes[mode];
-    state.modes[mode] = {free + step.from_force.displacement * force, step.from_displacement.velocity * from.displacement +
-                                                                          step.from_velocity.velocity * from.velocity +
-                                                                          step.from_force.velocity * force};
+  /// Row k of what has a number for every mode, or the rows from k on.
+  template <class Rows>
+  static Modes row(const Rows& values, int k) noexcept {
+    if constexpr (kInLanes) {
+      return Modes::load(values.data() + k);
+    } else {
+      return values.data()[k];
+    }
+  }
+  static void put(const Modes& numbers, int k, Eigen::Matrix<S, Capacity, 1>& values) noexcept {
+    if constexpr (kInLanes) {
+      numbers.store(values.data() + k);
+    } else {
+      values(k) = numbers;
+    }
+  }
+
+  static ModeMotion<Modes> motion(const State& state, int k) noexcept {
+    const ModeMotion<S>* modes = state.modes.data() + k;
+    return {side_by_side([&](int i) { return modes[i].displacement; }),
+            side_by_side([&](int i) { return modes[i].velocity; })};
+  }
+  static void set_motion(State& state, int k, const ModeMotion<Modes>& to) noexcept {
+    ModeMotion<S>* modes = state.modes.data() + k;
+    if constexpr (kInLanes) {
+      for (int lane = 0; lane < kTogether; ++lane) {
+        modes[lane] = {to.displacement[lane], to.velocity[lane]};
+      }
+    } else {
+      *modes = to;
+    }
+  }
+
+  /// Closes the step of the modes from row k on that are advanced at once.
+  void advance_under(State& state, const Advance& advance, int k, const Modes& force) const noexcept {
+    const ModeMotion<Modes> from = motion(state, k);
+    set_motion(state, k,
+               {row(advance.modes, k) + row(from_force_.displacement, k) * force,
+                row(from_displacement_.velocity, k) * from.displacement + row(from_velocity_.velocity, k) * from.velocity +
+                    row(from_force_.velocity, k) * force});
   }
 
   /// Generalised forces on modes k and k + 1. Sums run in pairs of ports, so that the order of additions is the same
@@ -214,16 +279,17 @@ class ModalStructure {
     return {first(0) + first(1), second(0) + second(1)};
   }
 
-  /// Adds rows First to First + Rows of matrix * vector.
+  /// Adds rows First to First + Rows of matrix * vector. Rows are summed side by side, as many as a register may hold.
   template <int Rows, int First, int MatrixRows>
   static void add_product(Eigen::Matrix<S, Rows, 1>& total, const Eigen::Matrix<S, MatrixRows, Ports>& matrix,
                           const PortVector& vector) noexcept {
-    for (int row = 0; row + 1 < Rows; row += 2) {
-      Eigen::Matrix<S, 2, 1> sum = total.template segment<2>(row);
+    constexpr int kTogether = Rows % 4 == 0 ? 4 : 2;
+    for (int row = 0; row + kTogether <= Rows; row += kTogether) {
+      Eigen::Matrix<S, kTogether, 1> sum = total.template segment<kTogether>(row);
       for (int column = 0; column < Ports; ++column) {
-        sum += matrix.template block<2, 1>(First + row, column) * vector(column);
+        sum += matrix.template block<kTogether, 1>(First + row, column) * vector(column);
       }
-      total.template segment<2>(row) = sum;
+      total.template segment<kTogether>(row) = sum;
     }
     if constexpr (Rows % 2 == 1) {
       for (int column = 0; column < Ports; ++column) {
@@ -235,7 +301,9 @@ class ModalStructure {
   Table table_;
   double h_;
   bool has_residual_ = false;
-  std::array<ModeStep, Capacity> steps_{};
+  ModeSteps from_displacement_;
+  ModeSteps from_velocity_;
+  ModeSteps from_force_;                  ///< held over the step
   PortMatrix held_ = PortMatrix::Zero();  ///< H
   PortMatrix mean_flexibility_;
   RateMatrix rate_flexibility_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps from random states under random commands, for callgrind to count: vehicle_cost.cmake runs it.
-//   vehicle_cost axis|taos|masv[-block|-thrust|-disturbed] MODES
+//   vehicle_cost axis|taos|masv[-alone|-block|-thrust|-disturbed] MODES
 
 #include <cstdio>
 #include <cstdlib>
@@ -58,9 +58,9 @@ void follow_thrust(Parameters& parameters) {
   }
 }
 
-/// What a step follows beside the commands: nothing, a block in each bearing, the thrust, or the thrust and all measured
-/// disturbances.
-enum class Follows { commands, block, thrust, disturbances };
+/// What a step follows beside the commands: nothing, nothing with engines one after the other, a block in each bearing, the
+/// thrust, or the thrust and all measured disturbances.
+enum class Follows { commands, commands_alone, block, thrust, disturbances };
 
 /// Gives every bearing a block that rings at a few hundred hertz.
 template <class Parameters>
@@ -87,11 +87,12 @@ void step_vehicle(int modes, Follows follows, Measured&& measured) {
   typename Vehicle::Parameters parameters = hot_fire<Vehicle>();
   if (follows == Follows::block) {
     add_blocks(parameters);
-  } else if (follows != Follows::commands) {
+  } else if (follows == Follows::thrust || follows == Follows::disturbances) {
     follow_thrust(parameters);
   }
   parameters.modes = random_modes<typename Vehicle::Modes>(modes, 1.0 / 1.05e8, 5);
-  const Vehicle plant(parameters, kStep);
+  const Vehicle plant(parameters, kStep,
+                      follows == Follows::commands_alone ? model::Stepping::one_by_one : model::Stepping::side_by_side);
   Random random(11);
   const typename Vehicle::State rest = plant.steady({});
   for (int i = 0; i < kSteps; ++i) {
@@ -134,6 +135,7 @@ int main(int argc, char** argv) {
   const Follows follows = what.ends_with("-disturbed") ? Follows::disturbances
                           : what.ends_with("-thrust")  ? Follows::thrust
                           : what.ends_with("-block")   ? Follows::block
+                          : what.ends_with("-alone")   ? Follows::commands_alone
                                                        : Follows::commands;
   if (what == "axis") {
     step_axis();
@@ -142,7 +144,7 @@ int main(int argc, char** argv) {
   } else if (what.starts_with("masv")) {
     step_vehicle<Masv>(modes, follows, hotfire_measured_masv);
   } else {
-    std::fputs("vehicle_cost axis|taos|masv[-block|-thrust|-disturbed] MODES\n", stderr);
+    std::fputs("vehicle_cost axis|taos|masv[-alone|-block|-thrust|-disturbed] MODES\n", stderr);
     return 2;
   }
   return 0;

@@ -68,6 +68,7 @@ class AroundAxes {
     for (std::size_t i = 0; i < Plant::kAxes; ++i) {
       RestOfVehicle& rest = vehicle[i][record];
       rest.flexibility = flexibility_of(plant, parameters, i);
+      stiffness_[i] = plant.axis(static_cast<int>(i)).stiffness();
       rests_[i] = &rest;
       series_[i] = {&rest.motion, &rest.force, &rest.torque};
       if (parameters.gimbals[i / 2].friction.rubs()) {
@@ -145,7 +146,7 @@ class AroundAxes {
   double motion_of(std::size_t axis, const typename Plant::State& after) const {
     const auto& own = after.axes[axis];
     const double piston = 0.5 * (piston_[axis] + own.y(Plant::AxisModel::kPiston));
-    const double deflection = after.softening[axis] + own.spring_force / plant_.axis(static_cast<int>(axis)).stiffness();
+    const double deflection = after.softening[axis] + own.spring_force / stiffness_[axis];
     return piston - pose_of(axis / 2).stroke[axis % 2] - deflection;
   }
 
@@ -200,6 +201,7 @@ class AroundAxes {
   int step_ = 0;
   // Where the step starts: a copy of the whole state would be hundreds of kilobytes a step.
   bool has_begun_ = false;
+  std::array<double, Plant::kAxes> stiffness_{};  ///< of the load springs [N/m]
   std::array<double, Plant::kAxes> angle_{};
   std::array<double, Plant::kAxes> piston_{};
   typename Plant::Inputs inputs_;

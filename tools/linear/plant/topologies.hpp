@@ -94,7 +94,7 @@ struct VehicleTopology {
   static const typename V::Parameters& of_model(const Parameters& parameters) { return parameters.vehicle; }
   static auto& axis(Parameters& parameters, std::size_t i) { return parameters.vehicle.axes[i]; }
   static const auto& axis(const Parameters& parameters, std::size_t i) { return parameters.vehicle.axes[i]; }
-  static const Axis& axis(const Model& model, int i) { return model.axis(i); }
+  static Axis axis(const Model& model, int i) { return model.axis(i); }
   static auto& axis(State& state, std::size_t i) { return state.plant.axes[i]; }
   static std::string suffix(std::size_t i) {
     return std::string(i % 2 == 0 ? ".pitch" : ".yaw") + (V::kEngines == 1 ? std::string{} : std::to_string(i / 2 + 1));
