@@ -14,8 +14,8 @@
 
 namespace hotfire::model {
 
-/// How the engines of a vehicle step: side by side in lanes where they may and are alike, or one after the other. The bits
-/// are the same.
+/// How the engines of a vehicle step. `side_by_side` in lanes falls back to `one_by_one` if the engines differ in more than
+/// numbers. Both give the same bits.
 enum class Stepping { side_by_side, one_by_one };
 
 /// Engines on one structure, each with two hydraulic axes: engines x axes x modes, physics.md section 2. One engine is the
@@ -37,8 +37,7 @@ enum class Stepping { side_by_side, one_by_one };
 /// per mean force, so spring forces and motion are found together: F = (1/K_T + C)^-1 (deflection without force, less what
 /// the springs' nonlinearity took in the last evaluation). That is exact for linear springs and contracts for softer ones,
 /// so a structure softer than the actuators is as stable as a stiff one. Where stiffness follows the thrust, C is that of
-/// the step's own. Second order where smooth, first order at stick and
-/// slip.
+/// the step's own. Second order where smooth, first order at stick and slip.
 ///
 /// A step costs the same whatever the state, and is linear in the modes. No allocation, lock or exception after
 /// construction. Four engines with the same effects and laws step side by side in lanes, which costs about half as much.
@@ -68,7 +67,7 @@ class Vehicle {
   };
 
   struct State {
-    std::array<typename AxisModel::State, kAxes> axes{};
+    std::array<typename AxisModel::State, kAxes> axes{};  ///< their clocks all count the same steps
     typename Structure::State structure{};
     std::array<GimbalState<S>, Engines> gimbals{};
     std::array<S, kAxes> softening{};  ///< deflection that a nonlinear spring takes beyond force / K_T [m]
@@ -121,7 +120,7 @@ class Vehicle {
   using SideBySide = EnginesSideBySide<kMayRunSideBySide ? Engines : 4, List>;
   using Form = std::conditional_t<kMayRunSideBySide, std::variant<Alone, SideBySide>, std::variant<Alone>>;
 
-  // A step is written once, for engines in the scalar S, one after the other, and for one that is all of them in lanes.
+  // The step is one template: T is S, with one engine after the other, or `Lanes`, with all engines at once.
   template <class T>
   static constexpr std::size_t kSteps = are_lanes<T> ? 1 : Engines;
   template <class T>
@@ -178,14 +177,14 @@ class Vehicle {
     }
   }
 
-  /// The two of `values` that belong to the axes of an engine, pitch and yaw of engine 1 being `first` and the next.
+  /// The entries of an engine's pitch and yaw axes. `first` is the entry of the pitch axis of engine 1.
   template <class T, class Values>
   [[gnu::always_inline]] static Both<T> both_of(const Values& values, std::size_t e, std::size_t first = 0) noexcept {
     return {over_engines<T>(e, [&](std::size_t own) { return values[first + 2 * own]; }),
             over_engines<T>(e, [&](std::size_t own) { return values[first + 2 * own + 1]; })};
   }
 
-  /// Puts the two where `both_of` finds them.
+  /// Writes both entries: the inverse of `both_of`.
   template <class T, class Values>
   [[gnu::always_inline]] static void put(const Both<T>& both, std::size_t e, Values& values,
                                          std::size_t first = 0) noexcept {

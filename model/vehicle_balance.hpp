@@ -95,8 +95,8 @@ Vehicle<S, Engines, Capacity, List>::Vehicle(const Parameters& parameters, doubl
   with_engines([&]<class T>(EnginesIn<T>& engines) {
     std::array<T, kSteps<T>> thrust{};
     for (std::size_t e = 0; e < engines.size(); ++e) {
-      engines[e].rest_on({over_engines<T>(e, of_gimbals(0, 0)), over_engines<T>(e, of_gimbals(1, 1)),
-                          over_engines<T>(e, of_gimbals(0, 1))});
+      engines[e].set_rate_flexibility({over_engines<T>(e, of_gimbals(0, 0)), over_engines<T>(e, of_gimbals(1, 1)),
+                                       over_engines<T>(e, of_gimbals(0, 1))});
       thrust[e] = engines[e].declared_thrust();
       stiffens_ = stiffens_ || engines[e].stiffens();
     }

@@ -20,7 +20,7 @@ struct GimbalState {
 };
 
 /// One engine of a `Vehicle` on its bearing, with its two axes: what a step does between the modes of the structure. In
-/// `Lanes` it is several engines side by side. Whatever comes in pairs here is of pitch, then of yaw.
+/// `Lanes` it is several engines side by side. Every pair is (pitch, yaw).
 template <class S, class List>
 class VehicleEngine {
  public:
@@ -40,7 +40,7 @@ class VehicleEngine {
     }
   };
 
-  /// Where the state of the engine is.
+  /// References to the state of an engine, which the caller owns.
   struct State {
     std::span<typename AxisModel::State, 2> axes;
     GimbalState<S>& gimbal;
@@ -105,8 +105,9 @@ class VehicleEngine {
     return anywhere(value_of(bearing_.unloaded_structure) < 1.0) || anywhere(value_of(bearing_.unloaded_stiffness) < 1.0);
   }
 
-  /// Takes in what the modes of the structure give way by: mean rate of the gimbals' rotations per mean torque on them.
-  void rest_on(const SymmetricPair<S>& rate_flexibility) noexcept {
+  /// Sets the rate flexibility of the structure at the gimbal: mean rate of its rotations per mean torque on it
+  /// [rad/s/(N m)].
+  void set_rate_flexibility(const SymmetricPair<S>& rate_flexibility) noexcept {
     const SymmetricPair<S> bearing = spring_.rate_flexibility();
     slip_compliance_ = {axes_[0].engine_compliance() + rate_flexibility.pitch + bearing.pitch,
                         axes_[1].engine_compliance() + rate_flexibility.yaw + bearing.yaw,

@@ -12,8 +12,8 @@
 
 namespace hotfire::model {
 
-/// True for vehicles whose engines may step side by side in lanes. The engines of a vehicle must be a whole number of
-/// registers, and every effect must have a law of its own and a small memory.
+/// True if the engines of a vehicle may step in lanes: the scalar is double, the number of engines is a multiple of four,
+/// and every effect of the list has code for lanes.
 template <class S, int Engines, class List>
 constexpr bool may_run_side_by_side() noexcept {
   return kHasRegistersOfLanes && std::is_same_v<S, double> && Engines % 4 == 0 && std::is_same_v<List, MasvEffects>;
@@ -29,8 +29,8 @@ class EnginesSideBySide {
   using PlainEngine = VehicleEngine<double, List>;
   using Parameters = std::array<typename PlainEngine::Parameters, Engines>;
 
-  /// The state of all engines during a step. It begins without values: `take_in` sets those that a step reads, and to set
-  /// all would take as many instructions again.
+  /// The state of all engines during a step. Its members are not initialised: `take_in` sets all that a step reads, and to
+  /// initialise them would double its instructions.
   union State {
     struct Members {
       std::array<typename Engine::AxisModel::State, 2> axes;
@@ -49,7 +49,7 @@ class EnginesSideBySide {
         has_block_(parameters[0].gimbal.has_block()) {}
 
   /// True if the engines have the same in all that lanes share: the effects of the pitch axes, and of the yaw axes, with
-  /// their laws and the points of their tables, the law of friction, and what kind of bearing there is.
+  /// their laws and the number of points of their tables, the law of friction, and what kind of bearing there is.
   static bool are_alike(const Parameters& parameters) noexcept {
     bool alike = true;
     typename Engine::Parameters shared{};

@@ -22,6 +22,8 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kStackBlock = 64 * kPage;
+/// What a program may still allocate before its first cycle, with a margin.
+constexpr std::size_t kStillAllocated = 1024 * kPage;
 
 /// Touches one page after the other, a block a call. It uses its block after the call, so that the compiler cannot turn the
 /// recursion into a loop over one block.
@@ -34,19 +36,28 @@ __attribute__((noinline)) char touch_stack(std::size_t bytes) noexcept {
   return static_cast<char>(deeper + block[0]);
 }
 
+/// True if that much more memory can be mapped, where all that is mapped is locked.
+bool may_map(std::size_t bytes) noexcept {
+  void* const mapped = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return mapped != MAP_FAILED && munmap(mapped, bytes) == 0;
+}
+
 }  // namespace
 
 std::optional<Failure> lock_memory(std::size_t stack_bytes) noexcept {
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    return failed_call("memory is not locked: mlockall", errno,
+  rlimit limit{};
+  getrlimit(RLIMIT_STACK, &limit);
+  // The stack grows before it is locked: the kernel ends a process whose locked stack grows beyond the limit of the user.
+  static_cast<void>(touch_stack(std::min<std::size_t>(stack_bytes, limit.rlim_cur / 2)));
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0 || !may_map(kStillAllocated)) {
+    const int error = errno;
+    munlockall();
+    return failed_call("memory is not locked: mlockall", error,
                        "allow it: 'ulimit -l unlimited', or '@realtime - memlock unlimited' in /etc/security/limits.d, or "
                        "'setcap cap_ipc_lock,cap_sys_nice+ep hotfire-rt', or LimitMEMLOCK=infinity in a systemd unit");
   }
-  rlimit limit{};
-  getrlimit(RLIMIT_STACK, &limit);
-  static_cast<void>(touch_stack(std::min<std::size_t>(stack_bytes, limit.rlim_cur / 2)));
   return std::nullopt;
 }
 

@@ -144,16 +144,16 @@ class Axis : public AxisStates {
   }
 
   const Parameters& parameters() const& noexcept { return parameters_; }
-  Parameters parameters() const&& { return parameters_; }  ///< outlives a copy of an axis
+  Parameters parameters() const&& { return parameters_; }  ///< by value: the axis is a temporary
   double step_size() const noexcept { return h_; }
 
   S stiffness() const noexcept { return stiffness_; }  ///< K_T of the declared load spring [N/m]
 
   /// Change of the continuous states by a unit of every input, held over a step: a column for each of `Input`.
-  const Eigen::Matrix<S, 8, 6>& input_response() const noexcept { return hold_.response; }
+  Eigen::Matrix<S, 8, 6> input_response() const noexcept { return hold_.response; }
 
   /// Change of the engine's rate over a step by a unit of mean torque against it [rad/s/(N m)].
-  const S& engine_compliance() const noexcept { return engine_compliance_; }
+  S engine_compliance() const noexcept { return engine_compliance_; }
 
   /// The steady state under a constant command [rad]: set-up only. The valve's flow equals the leakage, the engine's torques
   /// balance, friction is unloaded. If a dead band leaves the piston free, it is at the command. Without position feedback

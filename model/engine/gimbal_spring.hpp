@@ -49,7 +49,8 @@ class GimbalSpring {
     for (int i = 0; i < 3; ++i) {
       moved(i) = compliance_(i, 0) * force(0) + compliance_(i, 1) * force(1) + compliance_(i, 2) * force(2);
     }
-    return 1.0 + further_ * fading_exponential<S>(dot<S>(force, moved) / (compliance_(0, 0) * load_scale_ * load_scale_));
+    const S load = dot<S>(force, moved) / (compliance_(0, 0) * load_scale_ * load_scale_);
+    return select(value_of(further_) > 0.0, S(1.0 + further_ * fading_exponential<S>(load)), S{1.0});
   }
 
   /// Displacement at the end of a step under a force and a torque about pitch (y) and yaw (z).

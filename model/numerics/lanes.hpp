@@ -15,7 +15,7 @@
 
 namespace hotfire::model {
 
-/// True where a register holds several numbers in double.
+/// True if a vector register of the target holds several numbers in double.
 #if defined(__SSE2__) || defined(__aarch64__)
 inline constexpr bool kHasRegistersOfLanes = true;
 #else
@@ -74,7 +74,7 @@ struct LaneMask {
 /// `N` numbers side by side, a scalar in which the model runs `N` plants at once. Each lane has the bits of a plant that
 /// runs alone in double: the operations are the same, and a choice (`select`) computes both of its values.
 ///
-/// The lanes share what is not a number: the active effects, their laws and the points of their tables.
+/// The lanes share what is not a number: the active effects, their laws and the number of points of their tables.
 template <int N>
 struct Lanes {
   static_assert(N % vectors::kWidth == 0);
@@ -123,12 +123,12 @@ struct Lanes {
     parts[static_cast<std::size_t>(lane / vectors::kWidth)][lane % vectors::kWidth] = value;
   }
 
-  // Inlined whatever the compiler expects of it: a call takes more than the operation.
   Lanes& operator+=(const Lanes& y) noexcept { return *this = *this + y; }
   Lanes& operator-=(const Lanes& y) noexcept { return *this = *this - y; }
   Lanes& operator*=(const Lanes& y) noexcept { return *this = *this * y; }
   Lanes& operator/=(const Lanes& y) noexcept { return *this = *this / y; }
 
+  // Always inlined: a call costs more than the operation.
   [[gnu::always_inline]] friend Lanes operator+(const Lanes& x, const Lanes& y) noexcept {
     return by_part<Lanes>([&](std::size_t i) { return x.parts[i] + y.parts[i]; });
   }

@@ -29,7 +29,7 @@ bool is_symmetric(const Eigen::Matrix<S, N, N>& matrix) {
 template <class S, int N>
 bool factorise(const Eigen::Matrix<S, N, N>& matrix, Eigen::Matrix<S, N, N>& factor) noexcept {
   factor.setZero();
-  // A step factorises and solves: unrolled, both take half of the instructions. The order of operations stays.
+  // Unrolled, factorisation and solution take half of the instructions. The order of operations does not change.
 #pragma GCC unroll 16
   for (int j = 0; j < N; ++j) {
     S pivot = matrix(j, j);

@@ -14,7 +14,7 @@
 namespace hotfire::model {
 
 /// Memory of a term of the grammar for its argument s: a linear filter, a hysteresis, a limit, a loss of information or an
-/// oscillation. What has no memory but a curve of its own is among them: it has the parameters of one.
+/// oscillation. Curves without memory that have a parameter are included.
 enum class Memory {
   none,
   delay,       ///< s(t - time)
@@ -38,6 +38,11 @@ enum class Memory {
 inline constexpr std::array<std::string_view, 18> kMemoryNames{
     "none", "delay", "lag",      "washout",   "resonance",  "band_pass", "stops",      "play",      "stop",
     "slew", "hold",  "quantise", "dead_zone", "saturation", "periodic",  "oscillator", "odd_power", "even_power"};
+
+/// Widths up to which a power continues. It is constant beyond.
+inline constexpr double kPowerLimit = 4.0;
+
+constexpr bool is_power(Memory kind) noexcept { return kind == Memory::odd_power || kind == Memory::even_power; }
 
 template <class S>
 struct MemoryParameters {
@@ -168,13 +173,12 @@ class MemoryState {
     }
   }
 
-  /// width |s / width|^exponent. Below 1e-9 of the width, the result and its derivatives are zero. A plant diverges under a
-  /// power without a bound of a quantity that the power itself moves.
+  /// width |s / width|^exponent, for |s| up to four widths and constant beyond. The bound keeps a plant finite if the power
+  /// moves its own argument. Below 1e-9 of the width, the result and its derivatives are zero.
   static S power_of(const S& s, const MemoryParameters<S>& params) noexcept {
     using std::log;
     constexpr double kLeast = 1e-9;
-    constexpr double kMost = 4.0;
-    const S size = clamp_symmetric<S>(s * sign_of<S>(s) / params.width, S{kMost});
+    const S size = clamp_symmetric<S>(s * sign_of<S>(s) / params.width, S{kPowerLimit});
     return value_of(size) > kLeast ? S(params.width * exp(params.exponent * log(size))) : S{0.0};
   }
 

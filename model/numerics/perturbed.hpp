@@ -18,8 +18,8 @@ inline namespace registers_of_two {
 #endif
 
 /// A number side by side with what it becomes under `N - 1` small changes of the parameters: a scalar in which one run of
-/// the model gives `N - 1` difference quotients. An operation is one of a register, so that a
-/// difference quotient costs two thirds of a derivative by dual numbers.
+/// the model gives `N - 1` difference quotients. An operation is one of a register, so that a difference quotient costs two
+/// thirds of a derivative by dual numbers.
 ///
 /// The number itself, lane 0, has the bits of a run in double, and every choice is made by it: a branch, a whole part, a
 /// piece of a table. A difference is then one along the branches of the number, as a derivative is, however close a choice

@@ -95,6 +95,9 @@ struct Term {
     S phase{0.0};
     S exponent{2.0};
     UnlistedTable<S> table{};
+    MemoryParameters<S> memory() const noexcept {
+      return {static_cast<Memory>(option), time, frequency, damping, width, phase, exponent};
+    }
     static constexpr auto choices() {
       return std::array{Choice<Params>{"argument", kArgumentNames, &Params::argument},
                         Choice<Params>{"factor", term::kFactorNames, &Params::factor},
@@ -212,8 +215,7 @@ struct Term {
       }
       return sum;
     }
-    const MemoryParameters<S> memory{kind,         params.time,  params.frequency, params.damping,
-                                     params.width, params.phase, params.exponent};
+    const MemoryParameters<S> memory = params.memory();
     if (kind == Memory::oscillator) {
       const S shift = has_curve ? unlisted::value_at<S>(params.table, s) : S{0.0};
       return params.gain * state.memory.step(memory, shift, input.h);

@@ -231,7 +231,7 @@ struct HeldValveCommand {
 TEST(TermProposals, AHeldSignalInsideTheLoopIsFittedWithItsPeriodAndTheInstantOfItsSamples) {
   const HeldValveCommand search;
   const Screened held = search.refiner.with_samples(search.evaluator, search.proposed, search.around.u);
-  HeldValveCommand::check_is_true_one(held, 0.1);
+  HeldValveCommand::check_is_true_one(held, 0.02);
 
   // Another proposal takes these samples, and this one keeps them.
   const auto of = [&](const Screened& other, const Screened& own) {

@@ -289,7 +289,7 @@ class EverySentence {
     found.kept.push_back({tried(listed), {}});
     check_.add(sentence_of(Verdict::unlisted_effect, found, true));
     if (const std::string law = law_in_words(term); !law.empty()) {
-      check_.add(law);
+      check_.add(law + width_in_words(plant, term));
     }
     check_.add(in_words(with_own_axes({"at", "", "added", "m", "torque", {-1.0, 0.0, 1.0}, {-1.0, 0.2, 1.0}}, term)));
   }

@@ -113,6 +113,27 @@ void check_bits(const Parameters& parameters) {
   }
 }
 
+/// Typical values of a law, different on each axis, and for the third engine those that add nothing.
+template <class E>
+ParamsOf<E, double> values_of_axis(int law, int axis) {
+  ParamsOf<E, double> params = typical<E, double>(law);
+  const ParamsOf<E, double> nothing = neutral<E, double>(law);
+  const double factor = 1.0 - 0.02 * axis;
+  for (const auto& field : ParamsOf<E, double>::fields()) {
+    if (used_by(field, law)) {
+      double& value = params.*field.member;
+      value = axis / 2 == 2 ? nothing.*field.member : std::clamp(factor * value, field.lower, field.upper);
+    }
+  }
+  if constexpr (requires { params.table; }) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(params.table.points); ++i) {
+      params.table.x[i] *= factor;
+      params.table.y[i] *= factor;
+    }
+  }
+  return params;
+}
+
 bool runs_side_by_side(const Parameters& parameters) {
   return std::make_unique<Masv>(parameters, kLaneStep)->steps_side_by_side();
 }
@@ -177,7 +198,7 @@ TEST(VehicleLanes, EveryEffectHasTheSameBits) {
       auto parameters = uneven(5);
       // On all axes, and on the yaw axes alone.
       for (int axis = law % 2; axis < Masv::kAxes; axis += 1 + law % 2) {
-        activate_in<E, Masv>(*parameters, axis, typical<E, double>(law));
+        activate_in<E, Masv>(*parameters, axis, values_of_axis<E>(law, axis));
       }
       check_bits(*parameters);
     }
@@ -196,6 +217,7 @@ TEST(VehicleLanes, WhatLanesShareMustBeTheSameInAllEngines) {
   const std::vector<Change> changes{
       [](Parameters& own) { own.axes[3].effects.active[kLeakage] = true; },
       [](Parameters& own) { std::get<kSoft>(own.axes[4].effects.values).option = 1; },
+      [](Parameters& own) { ++std::get<kSoft>(own.axes[4].effects.values).table.points; },
       [](Parameters& own) { own.gimbals[2].friction.option = 0; },
       [](Parameters& own) { own.gimbals[1].compliant = false; },
       [](Parameters& own) { own.constant_arms[3] = true; },

@@ -154,7 +154,7 @@ void set_term(ParamsOf<E, S>& params) {
   params.gain = S(kind == model::Memory::oscillator ? usual.gain * usual.width : usual.gain);
   params.direct = S(kind == model::Memory::none ? 0.0 : 0.3 * usual.gain);
   // The width of a power is the size of the largest motion, that of a slew is a rate.
-  const bool is_wide = kind == model::Memory::slew || kind == model::Memory::odd_power || kind == model::Memory::even_power;
+  const bool is_wide = kind == model::Memory::slew || model::is_power(kind);
   params.width = S(is_wide ? 20.0 * usual.width : usual.width);
   params.table.points = 0;
   if (kind == model::Memory::stops) {

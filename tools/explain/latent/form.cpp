@@ -224,7 +224,7 @@ std::vector<Form> neighbours(const Form& form, double factor) {
       break;
     case model::Memory::odd_power:
     case model::Memory::even_power:
-      add([](Form& f, double by) { f.memory.exponent = std::clamp(f.memory.exponent * by, kFlattest, kSteepest); });
+      add([](Form& f, double by) { f.memory.exponent = std::clamp(f.memory.exponent * by, kLeastExponent, kMostExponent); });
       break;
   }
   return forms;

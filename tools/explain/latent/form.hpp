@@ -30,7 +30,7 @@ struct Form {
 
   bool is_oscillator() const { return memory.kind == model::Memory::oscillator; }
   bool is_stops() const { return memory.kind == model::Memory::stops; }
-  bool is_power() const { return memory.kind == model::Memory::odd_power || memory.kind == model::Memory::even_power; }
+  bool is_power() const { return model::is_power(memory.kind); }
   /// The argument itself is beside its memory, as the last regressor.
   bool has_direct() const { return memory.kind != model::Memory::none && !is_oscillator(); }
   /// Without points, and of stops with theirs, the curve is no function over its points.
@@ -66,8 +66,8 @@ Eigen::Matrix<double, kSideBySide, Eigen::Dynamic> remembered_side_by_side(std::
 Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, double period);
 
 /// Exponents of powers that a search tries.
-inline constexpr double kFlattest = 1.3;
-inline constexpr double kSteepest = 4.0;
+inline constexpr double kLeastExponent = 1.3;
+inline constexpr double kMostExponent = 4.0;
 
 /// The form with the parameter of its memory a factor up and down.
 std::vector<Form> neighbours(const Form& form, double factor);

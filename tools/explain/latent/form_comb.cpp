@@ -330,7 +330,7 @@ std::vector<Form> with_powers(const FormRegression& regression, const Form& plai
   // A square is a power itself, and a power of time does not end with the records.
   if (size > 0.0 && plain.factor != plain.argument && plain.argument != Argument::time) {
     for (const Memory kind : {Memory::odd_power, Memory::even_power}) {
-      for (const double exponent : comb(kFlattest, kSteepest, kPowers)) {
+      for (const double exponent : comb(kLeastExponent, kMostExponent, kPowers)) {
         Form form = plain;
         form.memory.kind = kind;
         form.memory.width = size;

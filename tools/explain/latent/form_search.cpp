@@ -284,8 +284,8 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
   std::ranges::move(behind_best_curves(regression, laid, threads), std::back_inserter(laid));
-  // Neither curves nor powers replace gains: the regression is linear, where a large effect is not, and follows with a curve
-  // what is none. A power has a place of its own beside a curve over the same, which follows it as far as its points go.
+  // Gains, curves and powers are ranked apart. In the linear regression, a curve or a power follows a large effect that is
+  // neither. Within the records, a curve follows a power.
   const auto of = [&](auto&& is_in, std::size_t count) {
     std::vector<ScoredForm> some;
     std::ranges::copy_if(laid, std::back_inserter(some), [&](const ScoredForm& scored) { return is_in(scored.form); });

@@ -266,7 +266,7 @@ Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held,
     moved.criterion = left_by(evaluator, moved.fitted, threads_);
     return moved;
   };
-  /// The same with its samples at the best of the instants up to `off` rows from where they are.
+  // The same with its samples at the best of the instants up to `off` rows from where they are.
   const auto at_best_instant = [&](const Screened& about, int off) {
     const Samples own = samples_of(about, row);
     Screened best = about;
@@ -279,7 +279,7 @@ Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held,
   };
   const Samples proposed = samples_of(held, row);
   std::vector<Screened> periods;
-  for (int longer = -kPeriodOff; longer <= kPeriodOff; ++longer) {
+  for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
     const double rows = proposed.rows + longer;
     if (rows >= 2.0) {
       periods.push_back(at_best_instant(moved_to(held, {rows, proposed.passed * rows / proposed.rows}), kInstantsOff));
@@ -292,10 +292,11 @@ Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held,
   best.criterion = left_by(evaluator, held.fitted, threads_);
   for (Screened& period : periods) {
     if (!watch_.interrupted()) {
-      keep_better(at_best_instant(shortly(evaluator, std::move(period), frozen), kSamplesOff), best);
+      Screened fitted = at_best_instant(shortly(evaluator, std::move(period), frozen), kSamplesOff);
+      keep_better(shortly(evaluator, std::move(fitted), frozen), best);
     }
   }
-  return shortly(evaluator, std::move(best), frozen);
+  return watch_.interrupted() ? best : shortly(evaluator, std::move(best), frozen);
 }
 
 Screened Refiner::with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,

@@ -164,9 +164,7 @@ void UnlistedStage::drop_light_names() {
     }
     // A name and a part of a term may compensate for each other: a fit that ends early is still on the way from there.
     Assessed settled = refiner_.settled(rest.model);
-    if (settled.good()) {
-      rest = std::move(settled);
-    }
+    rest = better_of(std::move(rest), std::move(settled));
     compare(trial, rest, result_.explained, rest.goodness.fitted);
     if (policy().clearly_less * trial.held_out_ratio < 1.0) {
       result_.trials.push_back(std::move(trial));

@@ -47,19 +47,12 @@ struct Work {
 bool power_feeds_energy(const ModelParameters& parameters, const Candidate& candidate) {
   bool feeds = false;
   visit_term(parameters, candidate, [&](const auto& values) {
-    const model::MemoryParameters<double> memory{static_cast<model::Memory>(candidate.option),
-                                                 values.time,
-                                                 values.frequency,
-                                                 values.damping,
-                                                 values.width,
-                                                 values.phase,
-                                                 values.exponent};
-    for (const double most : {1.0, 4.0}) {
+    for (const double most : {1.0, model::kPowerLimit}) {
       Work work;
-      for (double share = -1.0; share <= 1.0; share += 0.1) {
-        const double rate = share * most * values.width;
+      for (int i = -10; i <= 10; ++i) {
+        const double rate = 0.1 * i * most * values.width;
         model::MemoryState<double> state;
-        work.add((values.gain * state.step(memory, rate, 1.0) + values.direct * rate) * rate);
+        work.add((values.gain * state.step(values.memory(), rate, 1.0) + values.direct * rate) * rate);
       }
       feeds = feeds || work.feeds();
     }
@@ -70,8 +63,7 @@ bool power_feeds_energy(const ModelParameters& parameters, const Candidate& cand
 }  // namespace
 
 bool is_power(const Candidate& candidate) {
-  return !candidate.choices.empty() && (candidate.option == static_cast<int>(model::Memory::odd_power) ||
-                                        candidate.option == static_cast<int>(model::Memory::even_power));
+  return !candidate.choices.empty() && model::is_power(static_cast<model::Memory>(candidate.option));
 }
 
 bool is_oscillator(const Candidate& candidate) {

@@ -37,7 +37,8 @@ template <class List>
 using ListedEffects = typename detail::Listed<List>::type;
 
 /// Puts parameters or a state of plain numbers into one lane of the same in lanes, member by member. What is not a number in
-/// lanes (an option, a count) is copied: it is the same in all lanes. Effects that the target does not have are left out.
+/// lanes (an option, a count) is copied: it is the same in all lanes. Parameters of inactive effects,
+/// and effects that the target does not have, are left out.
 template <class From, class To>
 void set_lane(int lane, const From& from, To& to) {
   model::each_number(
