@@ -15,7 +15,7 @@
 #include "model/numerics/exact_hold.hpp"
 #include "model/numerics/interpolation.hpp"
 #include "model/numerics/step_size.hpp"
-#include "model/rig_mode.hpp"
+#include "model/structure/rig_mode.hpp"
 
 namespace hotfire::model {
 
