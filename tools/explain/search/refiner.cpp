@@ -282,7 +282,8 @@ Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held,
   for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
     const double rows = proposed.rows + longer;
     if (rows >= 2.0) {
-      periods.push_back(at_best_instant(moved_to(held, {rows, proposed.passed * rows / proposed.rows}), kInstantsOff));
+      periods.push_back(moved_to(held, {rows, proposed.passed * rows / proposed.rows}));
+      periods.back().criterion = at_best_instant(periods.back(), kInstantsOff).criterion;
     }
   }
   // The coefficients that are proposed are too small rather than wrong: the right period leaves less with them as well.
@@ -290,10 +291,11 @@ Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held,
   periods.resize(std::min(periods.size(), kPeriodsFitted));
   Screened best = held;
   best.criterion = left_by(evaluator, held.fitted, threads_);
-  for (Screened& period : periods) {
+  for (const Screened& period : periods) {
     if (!watch_.interrupted()) {
-      Screened fitted = at_best_instant(shortly(evaluator, std::move(period), frozen), kSamplesOff);
-      keep_better(shortly(evaluator, std::move(fitted), frozen), best);
+      // From the samples as proposed: a fit from those that suit a gain that is too small moves the declared parameters.
+      const Screened fitted = shortly(evaluator, moved_to(period, samples_of(period, row)), frozen);
+      keep_better(at_best_instant(fitted, kSamplesOff), best);
     }
   }
   return watch_.interrupted() ? best : shortly(evaluator, std::move(best), frozen);

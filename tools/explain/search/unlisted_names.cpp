@@ -162,14 +162,12 @@ void UnlistedStage::drop_light_names() {
     if (!rest.good()) {
       continue;
     }
-    // A name and a part of a term may compensate for each other: a fit that ends early is still on the way from there.
-    Assessed settled = refiner_.settled(rest.model);
-    rest = better_of(std::move(rest), std::move(settled));
     compare(trial, rest, result_.explained, rest.goodness.fitted);
     if (policy().clearly_less * trial.held_out_ratio < 1.0) {
       result_.trials.push_back(std::move(trial));
       result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
-      result_.explained = std::move(rest);
+      Assessed settled = refiner_.settled(rest.model);
+      result_.explained = settled.good() ? std::move(settled) : std::move(rest);
     }
   }
 }
