@@ -117,7 +117,8 @@ class Vehicle {
   using EngineParameters = std::array<typename EngineModel::Parameters, Engines>;
   using Alone = std::array<EngineModel, Engines>;
   static constexpr bool kMayRunSideBySide = may_run_side_by_side<S, Engines, List>();
-  using SideBySide = EnginesSideBySide<kMayRunSideBySide ? Engines : 4, List>;
+  /// Lanes come by fours. With another number of engines the type is not used.
+  using SideBySide = EnginesSideBySide<(Engines + 3) / 4 * 4, List>;
   using Form = std::conditional_t<kMayRunSideBySide, std::variant<Alone, SideBySide>, std::variant<Alone>>;
 
   // The step is one template: T is S, with one engine after the other, or `Lanes`, with all engines at once.

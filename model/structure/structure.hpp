@@ -283,13 +283,13 @@ class ModalStructure {
   template <int Rows, int First, int MatrixRows>
   static void add_product(Eigen::Matrix<S, Rows, 1>& total, const Eigen::Matrix<S, MatrixRows, Ports>& matrix,
                           const PortVector& vector) noexcept {
-    constexpr int kTogether = Rows % 4 == 0 ? 4 : 2;
-    for (int row = 0; row + kTogether <= Rows; row += kTogether) {
-      Eigen::Matrix<S, kTogether, 1> sum = total.template segment<kTogether>(row);
+    constexpr int kRowsTogether = Rows % 4 == 0 ? 4 : 2;
+    for (int row = 0; row + kRowsTogether <= Rows; row += kRowsTogether) {
+      Eigen::Matrix<S, kRowsTogether, 1> sum = total.template segment<kRowsTogether>(row);
       for (int column = 0; column < Ports; ++column) {
-        sum += matrix.template block<kTogether, 1>(First + row, column) * vector(column);
+        sum += matrix.template block<kRowsTogether, 1>(First + row, column) * vector(column);
       }
-      total.template segment<kTogether>(row) = sum;
+      total.template segment<kRowsTogether>(row) = sum;
     }
     if constexpr (Rows % 2 == 1) {
       for (int column = 0; column < Ports; ++column) {
