@@ -278,23 +278,28 @@ Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held,
     return best;
   };
   const Samples proposed = samples_of(held, row);
-  std::vector<Screened> periods;
+  struct OfPeriod {
+    Screened proposed;
+    double least = 0.0;  ///< that it leaves at an instant nearby
+  };
+  std::vector<OfPeriod> periods;
   for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
     const double rows = proposed.rows + longer;
     if (rows >= 2.0) {
-      periods.push_back(moved_to(held, {rows, proposed.passed * rows / proposed.rows}));
-      periods.back().criterion = at_best_instant(periods.back(), kInstantsOff).criterion;
+      Screened moved = moved_to(held, {rows, proposed.passed * rows / proposed.rows});
+      const double least = at_best_instant(moved, kInstantsOff).criterion;
+      periods.push_back({std::move(moved), least});
     }
   }
   // The coefficients that are proposed are too small rather than wrong: the right period leaves less with them as well.
-  std::ranges::stable_sort(periods, {}, &Screened::criterion);
+  std::ranges::stable_sort(periods, {}, &OfPeriod::least);
   periods.resize(std::min(periods.size(), kPeriodsFitted));
   Screened best = held;
   best.criterion = left_by(evaluator, held.fitted, threads_);
-  for (const Screened& period : periods) {
+  for (OfPeriod& period : periods) {
     if (!watch_.interrupted()) {
       // From the samples as proposed: a fit from those that suit a gain that is too small moves the declared parameters.
-      const Screened fitted = shortly(evaluator, moved_to(period, samples_of(period, row)), frozen);
+      const Screened fitted = shortly(evaluator, std::move(period.proposed), frozen);
       keep_better(at_best_instant(fitted, kSamplesOff), best);
     }
   }
