@@ -50,8 +50,8 @@ namespace hotfire::model {
 using SimplexEffects =
     EffectList<CommandScale, RateLimit, CommandDelay, UnlistedSignal<Site::command>, Term<Site::command>,
                UnlistedSignal<Site::valve_command>, Term<Site::valve_command>, ValveBias, ValveHysteresis, UnlistedOpening,
-               ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, Term<Site::flow>, UnlistedPressure, PistonFriction,
-               UnlistedMotion<Site::piston>, Term<Site::piston>, UnlistedDeflection, Term<Site::load_spring>,
+               Term<Site::valve>, ValveDeadband, ValveAsymmetry, Leakage, UnlistedFlow, Term<Site::flow>, UnlistedPressure,
+               PistonFriction, UnlistedMotion<Site::piston>, Term<Site::piston>, UnlistedDeflection, Term<Site::load_spring>,
                VariableMomentArm, Backlash, SoftStiffness, StructuralMode, GimbalFriction, GimbalCompliance, DuctHardening,
                TorqueOffset, CrossAxis, UnlistedMotion<Site::engine_torque>, Term<Site::engine_torque>, UnlistedCrossTorque,
                SensorNonlinearity, UnlistedWiperPlay, UnlistedReading, UnlistedDrift, UnlistedRipple, Term<Site::sensor, 0>,

@@ -222,8 +222,7 @@ class Axis : public AxisStates {
     pass_through<Site::valve_command>(effects, acting_, state.effects, valve_command, keep);
     state.inputs(kValveCommand) = valve_command.value - linear_command;
 
-    Hydraulics<S> oil = hydraulics(state, mean(kOpening), mean(kPressure), time, keep);
-    oil.seen = &seen;
+    Hydraulics<S> oil = hydraulics(state, mean(kOpening), mean(kPressure), seen, keep);
     state.inputs(kFlow) =
         oil.flow - valve.rated_flow * mean(kOpening) + sum_over<Site::flow>(effects, acting_, state.effects, oil, keep);
 
@@ -314,16 +313,16 @@ class Axis : public AxisStates {
   static S saturated(const S& command) noexcept { return clamp_symmetric<S>(command, S{1.0}); }
 
   /// The opening of the spool at a position, and the flow through the valve's orifices under a load pressure.
-  Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, const Precise<S>& time,
+  Hydraulics<S> hydraulics(State& state, const S& spool, const S& pressure, const Surroundings<S>& seen,
                            Keep keep) const noexcept {
-    Signal<S> valve{spool, h_, time};
+    Signal<S> valve{spool, h_, seen.time, S{0.0}, &seen};
     pass_through<Site::valve>(parameters_.effects, acting_, state.effects, valve, keep);
     const S& opening = valve.value;
     const S& supply = parameters_.actuator.supply_pressure;
     const S drop = 1.0 - sign_of(opening) * pressure / supply;
     // The root's slope is infinite at zero drop; below 1e-9 of the supply the flow is zero to any sensor.
     const S flow = parameters_.servovalve.rated_flow * opening * sqrt(select(value_of(drop) > 1e-9, drop, S{1e-9}));
-    return {pressure, opening, supply, h_, time, flow};
+    return {pressure, opening, supply, h_, seen.time, flow, &seen};
   }
 
   Precise<S> mid_step(const State& state) const noexcept { return state.clock.at(h_, 0.5); }
@@ -366,8 +365,9 @@ class Axis : public AxisStates {
     evaluate(state, at_rest(state), around, Keep::no);
     state.y(kOpening) = torque_motor(state, state.y) + state.inputs(kValveCommand);
     settle<Site::valve>(parameters_.effects, state.effects, Signal<S>{state.y(kOpening), h_});
+    const Surroundings<S> seen = around_state(state, state.y, mid_step(state));
     settle<Site::flow>(parameters_.effects, state.effects,
-                       hydraulics(state, state.y(kOpening), state.y(kPressure), mid_step(state), Keep::no));
+                       hydraulics(state, state.y(kOpening), state.y(kPressure), seen, Keep::no));
     evaluate(state, at_rest(state), around, Keep::no);
     return parameters_.servovalve.rated_flow * state.y(kOpening) + state.inputs(kFlow) -
            parameters_.actuator.leakage * state.y(kPressure);

@@ -47,12 +47,13 @@ constexpr bool is_power(Memory kind) noexcept { return kind == Memory::odd_power
 template <class S>
 struct MemoryParameters {
   Memory kind = Memory::none;
-  S time{0.0};       ///< [s]
-  S frequency{1.0};  ///< [Hz]
-  S damping{0.5};    ///< of critical [1]
-  S width{1.0};      ///< in the argument's unit
-  S phase{0.0};      ///< of an oscillator or of the samples of a hold at the start [rad]
-  S exponent{2.0};   ///< of a power [1]
+  S time{0.0};        ///< [s]
+  S frequency{1.0};   ///< [Hz]
+  S damping{0.5};     ///< of critical [1]
+  S width{1.0};       ///< in the argument's unit
+  S phase{0.0};       ///< of an oscillator or of the samples of a hold at the start [rad]
+  S exponent{2.0};    ///< of a power [1]
+  double mean = 0.0;  ///< how late in a step a hold's argument is known, in steps: 0.5 where it is the mean over the step
 };
 
 inline constexpr std::size_t kMostStops = 4;
@@ -116,7 +117,7 @@ class MemoryState {
         value_ = value_ + clamp_symmetric<S>(s - value_, params.width * h);
         return value_;
       case Memory::hold:
-        return held(value_of(params.time), begins ? value_of(params.phase) : 0.0, s, h);
+        return held(params, begins ? value_of(params.phase) : 0.0, s, h);
       case Memory::quantise:
         return params.width * std::round(value_of(s) / value_of(params.width));
       case Memory::dead_zone:
@@ -182,13 +183,14 @@ class MemoryState {
     return value_of(size) > kLeast ? S(params.width * exp(params.exponent * log(size))) : S{0.0};
   }
 
-  /// The newest sample of the argument. A sample is due at a time between two steps: its value is interpolated.
-  S held(double time, double phase, const S& s, double h) noexcept {
+  /// The newest sample of the argument. A sample is due at a time between two arguments: its value is interpolated.
+  S held(const MemoryParameters<S>& params, double phase, const S& s, double h) noexcept {
+    const double time = value_of(params.time);
     const double turns = phase / (2.0 * std::numbers::pi);
     since_ += (turns - std::floor(turns)) * time;
     if (since_ >= time * (1.0 - 1e-9)) {
       since_ = std::clamp(since_ - time, 0.0, time);
-      value_ = s + (earlier_[0] - s) * std::min(since_ / h, 1.0);
+      value_ = s + (earlier_[0] - s) * std::min(params.mean + since_ / h, 1.0);
     }
     since_ += h;
     earlier_[0] = s;

@@ -24,16 +24,23 @@ inline constexpr std::array<std::string_view, kArgumentNames.size() + 1> kFactor
 enum class Order { curve_last, curve_first };
 inline constexpr std::array<std::string_view, 2> kOrderNames{"curve_last", "curve_first"};
 
-/// Name and unit of the quantity that a term adds at its site.
+/// Name and unit of the quantity that a term adds at its site. `own` is the argument that a site of a signal transmits.
 template <Site at, int channel>
 struct Names;
 template <>
 struct Names<Site::command, -1> {
   static constexpr std::string_view name = "term_command", unit = "rad";
+  static constexpr Argument own = Argument::command;
 };
 template <>
 struct Names<Site::valve_command, -1> {
   static constexpr std::string_view name = "term_valve_command", unit = "1";
+  static constexpr Argument own = Argument::valve_command;
+};
+template <>
+struct Names<Site::valve, -1> {
+  static constexpr std::string_view name = "term_opening", unit = "1";
+  static constexpr Argument own = Argument::spool;
 };
 template <>
 struct Names<Site::flow, -1> {
@@ -54,10 +61,12 @@ struct Names<Site::engine_torque, -1> {
 template <>
 struct Names<Site::sensor, 0> {
   static constexpr std::string_view name = "term_piston_reading", unit = "m";
+  static constexpr Argument own = Argument::position;
 };
 template <>
 struct Names<Site::sensor, 1> {
   static constexpr std::string_view name = "term_engine_reading", unit = "rad";
+  static constexpr Argument own = Argument::angle;
 };
 
 }  // namespace term
@@ -96,7 +105,9 @@ struct Term {
     S exponent{2.0};
     UnlistedTable<S> table{};
     MemoryParameters<S> memory() const noexcept {
-      return {static_cast<Memory>(option), time, frequency, damping, width, phase, exponent};
+      // A command is held over a step, and a sensor reads the end of one. All else is the mean over a step.
+      constexpr double kMean = at == Site::command || at == Site::sensor ? 0.0 : 0.5;
+      return {static_cast<Memory>(option), time, frequency, damping, width, phase, exponent, kMean};
     }
     static constexpr auto choices() {
       return std::array{Choice<Params>{"argument", kArgumentNames, &Params::argument},
@@ -162,11 +173,7 @@ struct Term {
   template <class S, class Input>
   static S quantity(Argument argument, const Input& input) noexcept {
     if constexpr (std::is_same_v<Input, Signal<S>>) {
-      constexpr Argument kOwn = at == Site::command         ? Argument::command
-                                : at == Site::valve_command ? Argument::valve_command
-                                : channel == 0              ? Argument::position
-                                                            : Argument::angle;
-      if (argument == kOwn) {
+      if (argument == Names::own) {
         return input.value;
       }
     } else if constexpr (std::is_same_v<Input, Spring<S>>) {

@@ -209,6 +209,42 @@ TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
   CHECK(explain::moved_forms(regression, kPistonSensor, {elsewhere}, moved, 2).empty());
 }
 
+// In a loop a regression finds less of the memory and of the signal that it replaces. The whole of both is one more start.
+TEST(FormSearch, AMemoryOfTheSignalOfASiteMayReplaceIt) {
+  const auto form_of = [](model::Site site, Argument argument, Memory kind, double criterion) {
+    ScoredForm scored;
+    scored.form.site = site;
+    scored.form.argument = argument;
+    scored.form.memory.kind = kind;
+    scored.score.criterion = criterion;
+    scored.score.coefficients = Eigen::Vector2d(0.6, -0.9);
+    scored.score.move = Eigen::VectorXd::Constant(3, 0.5);
+    return scored;
+  };
+  using enum model::Site;
+  ScoredForm product = form_of(flow, Argument::spool, Memory::hold, 1.0);
+  product.form.factor = Argument::rate;
+  ScoredForm curved = form_of(flow, Argument::spool, Memory::hold, 2.0);
+  curved.form.memory.time = 0.028;
+  curved.form.curve_first = true;
+  curved.form.points = {-1.0, 1.0};
+  const auto replaced = explain::replacing({product, curved, form_of(flow, Argument::spool, Memory::hold, 3.0),
+                                            form_of(flow, Argument::spool, Memory::washout, 1.0),
+                                            form_of(valve_command, Argument::spool, Memory::lag, 1.0),
+                                            form_of(valve_command, Argument::valve_command, Memory::lag, 4.0)});
+  CHECK_EQUAL(2, replaced.size());
+  // What the spool does acts at the valve, by the samples of the better one.
+  CHECK(replaced[0].form.site == valve);
+  DOUBLES_EQUAL(0.028, replaced[0].form.memory.time, 0.0);
+  CHECK(replaced[0].form.points.empty() && !replaced[0].form.curve_first);
+  CHECK(replaced[1].form.site == valve_command);
+  for (const ScoredForm& form : replaced) {
+    DOUBLES_EQUAL(1.0, form.score.coefficients(0), 0.0);
+    DOUBLES_EQUAL(-1.0, form.score.coefficients(1), 0.0);
+    DOUBLES_EQUAL(0.0, form.score.move.norm(), 0.0);
+  }
+}
+
 // A curve that rises and falls within the motion: behind one that only rises, a play is one in front of it.
 TEST(FormSearch, APlayBehindACurveIsFoundWithItsWidth) {
   constexpr double kHalfWidth = 3.0 * kPistonNoise;

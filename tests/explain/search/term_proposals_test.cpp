@@ -17,6 +17,7 @@ using model::Memory;
 using model::Site;
 
 using FlowTerm = model::Term<Site::flow>;
+using OpeningTerm = model::Term<Site::valve>;
 using TorqueTerm = model::Term<Site::engine_torque>;
 
 int factor(Argument argument) { return 1 + static_cast<int>(argument); }
@@ -114,6 +115,39 @@ TEST(TermProposals, AMemoryOfAProductIsFoundWhereTheSmoothedSignalHidesIt) {
   DOUBLES_EQUAL(0.455, term_of<FlowTerm>(right->fitted).time, 0.3 * 0.455);
 }
 
+namespace {
+
+/// The best proposal at the oil for records of an axis that carries a load and has a term that the declared one does not.
+template <class E>
+std::string best_under_load(double gain) {
+  ModelFile loaded = declared();
+  add_effect<model::TorqueOffset>(std::get<SimplexParameters>(loaded.parameters), [](auto& offset) { offset.torque = 4e4; });
+  ModelFile truth = loaded;
+  add_effect<E>(std::get<SimplexParameters>(truth.parameters), [&](auto& term) {
+    term.argument = static_cast<int>(Argument::position);
+    term.option = static_cast<int>(Memory::saturation);
+    term.width = 1e-3;
+    term.gain = gain;
+  });
+  explain::Fitted around = about_declared();
+  around.base = loaded.parameters;
+  const explain::Dataset data = explain::make_dataset(loaded, {record_of(truth)});
+  explain::Located located = explain::locate(data, around, 2);
+  std::erase_if(located.places, [](const explain::Place& place) { return !place.has("flow"); });
+  const auto proposed = explain::propose_terms(data, around, located, 2, {});
+  CHECK(!proposed.empty());
+  return explain::start_of(around, proposed.front(), explain::Scales{})->candidate.name;
+}
+
+}  // namespace
+
+// The load takes a sixth of the supply pressure: what is added to the opening gives a sixth less flow against it than along.
+TEST(TermProposals, ALawOfTheOpeningIsSeparatedFromOneOfTheFlow) {
+  const double rated = SimplexParameters{}.servovalve.rated_flow;
+  STRCMP_EQUAL(std::string(OpeningTerm::name).c_str(), best_under_load<OpeningTerm>(15.0).c_str());
+  STRCMP_EQUAL(std::string(FlowTerm::name).c_str(), best_under_load<FlowTerm>(15.0 * rated).c_str());
+}
+
 TEST(TermProposals, NothingIsProposedWhereNothingIsMissing) { CHECK(proposed_for(declared(), about_declared()).empty()); }
 
 TEST(TermProposals, ASiteThatHasATermGetsNoSecondOne) {
@@ -186,16 +220,22 @@ struct HeldValveCommand {
   static constexpr double kRow = 2e-3;
   static constexpr double kTurn = 2.0 * std::numbers::pi;
 
-  HeldValveCommand() {
+  /// A start with the samples of every `rows` rows, of which `passed` have passed at the start, and a gain.
+  Screened start(double rows, double passed, double gain, bool replaces) const {
     explain::ScoredForm form;
     form.form.site = Site::valve_command;
     form.form.argument = Argument::valve_command;
     form.form.memory.kind = Memory::hold;
-    form.form.memory.time = 4.0 * kRow;
-    form.form.memory.phase = 0.92 / 4.0 * kTurn;
-    form.score.coefficients = Eigen::Vector2d(0.5, -0.5);
+    form.form.memory.time = rows * kRow;
+    form.form.memory.phase = passed / rows * kTurn;
+    form.form.replaces = replaces;
+    form.score.coefficients = Eigen::Vector2d(gain, -gain);
     form.score.move = Eigen::VectorXd::Zero(std::ssize(around.free));
-    proposed = explain::start_of(around, form, scales).value();
+    return explain::start_of(around, form, scales).value();
+  }
+
+  static const auto& term_of(const Screened& held) {
+    return std::get<Term::Params<double>>(std::get<SimplexParameters>(held.fitted.base).effects.values);
   }
 
   /// The declared parameters compensate for a part of the gain: short fits leave up to a tenth of it to them.
@@ -223,7 +263,6 @@ struct HeldValveCommand {
   const explain::Scales scales;
   const explain::Watch watch;
   const explain::Refiner refiner{data, evaluator, evaluator, evaluator, scales, 2, watch};
-  Screened proposed;
 };
 
 }  // namespace
@@ -231,13 +270,30 @@ struct HeldValveCommand {
 // From another period a fit of the coefficients alone ends at half of the hold and more delay.
 TEST(TermProposals, AHeldSignalInsideTheLoopIsFittedWithItsPeriodAndTheInstantOfItsSamples) {
   const HeldValveCommand search;
-  const Screened held = search.refiner.with_samples(search.evaluator, search.proposed, search.around.u);
+  const Screened proposed = search.start(4.0, 0.92, 0.5, false);
+  const Screened held = search.refiner.with_samples(
+      search.evaluator, search.refiner.over_periods(search.evaluator, proposed, false), search.around.u);
   HeldValveCommand::check_is_true_one(held);
 
   // Another proposal takes these samples, and this one keeps them.
   const auto of = [&](const Screened& other, const Screened& own) {
     return search.refiner.with_samples_of(search.evaluator, other, own, search.around.u);
   };
-  HeldValveCommand::check_is_true_one(of(held, search.proposed));
-  HeldValveCommand::check_is_true_one(of(search.proposed, held));
+  HeldValveCommand::check_is_true_one(of(held, proposed));
+  HeldValveCommand::check_is_true_one(of(proposed, held));
+}
+
+// Three rows from its samples, half of a period of seven: no instant nearby is right.
+TEST(TermProposals, TheSamplesOfASignalThatIsReplacedAreFoundFromAnyInstant) {
+  const HeldValveCommand search;
+  const Screened start = search.start(9.0, 5.5, 1.0, true);
+  CHECK(start.replaces);
+  const auto periods = search.refiner.over_periods(search.evaluator, start, true);
+  const auto& best = HeldValveCommand::term_of(periods.front().proposed);
+  DOUBLES_EQUAL(7.0 * HeldValveCommand::kRow, best.time, 1e-9);
+  DOUBLES_EQUAL(1.0, 7.0 * best.phase / HeldValveCommand::kTurn, 0.1);
+  // The true law at its own samples leaves noise alone, each other period more.
+  CHECK(periods.front().least < 1.1);
+  CHECK(periods[1].least > 1.5);
+  CHECK(search.refiner.over_periods(search.evaluator, start, false).front().least > periods.front().least);
 }

@@ -171,6 +171,21 @@ TEST(TermMemory, AHoldTakesItsSamplesBetweenTheStepsWhereTheyAreDue) {
   }
 }
 
+TEST(TermMemory, AHoldOfMeansOverStepsTakesTheValueAtTheInstantOfTheSample) {
+  Parameters parameters = of(Memory::hold);
+  parameters.mean = 0.5;
+  for (const double steps : {5.0, 2.5, 3.25}) {
+    parameters.time = steps * kMemoryStep;
+    model::MemoryState<double> state;
+    for (int n = 0; n < 50; ++n) {
+      const double held = state.step(parameters, n + 0.5, kMemoryStep);
+      const double due = steps * std::floor(n / steps);
+      // The mean over a step is known for half a step back: a sample that was due earlier takes that of the step before.
+      DOUBLES_EQUAL(n < steps ? 0.5 : std::max(due, std::ceil(due) - 0.5), held, 1e-12);
+    }
+  }
+}
+
 TEST(TermMemory, MemorylessDistortionsAreWhatTheyAreCalled) {
   model::MemoryState<double> state;
   Parameters parameters = of(Memory::quantise);

@@ -142,6 +142,7 @@ void set_term(ParamsOf<E, S>& params) {
   };
   const Usual usual = E::site == Site::command         ? Usual{Argument::command, 0.05, 0.01}
                       : E::site == Site::valve_command ? Usual{Argument::valve_command, 0.05, 0.05}
+                      : E::site == Site::valve         ? Usual{Argument::spool, 0.05, 0.05}
                       : E::site == Site::flow          ? Usual{Argument::load_pressure, -2e-11, 5e5}
                       : E::site == Site::piston        ? Usual{Argument::rate, 2e4, 0.02}
                       : E::site == Site::load_spring   ? Usual{Argument::deflection, 0.1, 5e-5}

@@ -59,6 +59,19 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 using AllKinds = std::make_index_sequence<model::kMemoryNames.size()>;
 
+/// True for laws of the spool or of its flow at the oil: the opening is the signal that the valve transmits.
+bool is_of_opening(const Form& form) {
+  return (form.site == model::Site::valve || form.site == model::Site::flow) &&
+         (form.argument == model::Argument::spool || form.argument == model::Argument::flow);
+}
+
+/// True for a memory that ends at what enters it, or nearly so, once that rests.
+bool follows_at_rest(model::Memory kind) {
+  using enum model::Memory;
+  constexpr std::array kFollowing{delay, lag, resonance, play, slew, hold, quantise, dead_zone, saturation};
+  return std::ranges::find(kFollowing, kind) != kFollowing.end();
+}
+
 }  // namespace
 
 double Form::entering(double value) const {
@@ -178,6 +191,32 @@ Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, 
     columns.col(0) = remembered(form, argument, period);
   }
   return columns;
+}
+
+bool is_replaced(const Form& form) {
+  const auto is_at = [&](model::Site site, model::Argument argument) {
+    return form.site == site && form.argument == argument;
+  };
+  const bool is_read = form.site == model::Site::sensor &&
+                       form.argument == (form.channel == 0 ? model::Argument::position : model::Argument::angle);
+  return !form.factor && (is_read || is_at(model::Site::command, model::Argument::command) ||
+                          is_at(model::Site::valve_command, model::Argument::valve_command) ||
+                          is_at(model::Site::load_spring, model::Argument::deflection) || is_of_opening(form));
+}
+
+std::optional<Form> in_place_of_signal(Form form) {
+  if (!is_replaced(form) || !follows_at_rest(form.memory.kind)) {
+    return std::nullopt;
+  }
+  if (is_of_opening(form)) {
+    form.site = model::Site::valve;
+    form.argument = model::Argument::spool;
+  }
+  form.points.clear();
+  form.values.clear();
+  form.curve_first = false;
+  form.replaces = true;
+  return form;
 }
 
 std::vector<Form> neighbours(const Form& form, double factor) {

@@ -24,6 +24,7 @@ struct Form {
   model::MemoryParameters<double> memory{};
   bool curve_first = false;
   std::vector<double> points{};  ///< of the curve, or the widths of the stops; none: a gain
+  bool replaces = false;         ///< the signal of its site as a whole: the memory's output for the signal itself
   /// Of a curve in front of a memory that is not linear: its values at its points, up to a common factor. Of an oscillator
   /// what the curve adds to its frequency [Hz].
   std::vector<double> values{};
@@ -68,6 +69,14 @@ Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, 
 /// Exponents of powers that a search tries.
 inline constexpr double kLeastExponent = 1.3;
 inline constexpr double kMostExponent = 4.0;
+
+/// True for the signal that the form's site transmits: a law there may replace it. That of the oil's port is the opening of
+/// the valve, by which its flow is as well.
+bool is_replaced(const Form& form);
+
+/// The form as a law that replaces the signal of its site by what the memory makes of it, without a curve. None where it is
+/// a law of another quantity, or where the memory forgets a signal that rests.
+std::optional<Form> in_place_of_signal(Form form);
 
 /// The form with the parameter of its memory a factor up and down.
 std::vector<Form> neighbours(const Form& form, double factor);

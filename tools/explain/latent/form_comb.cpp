@@ -234,15 +234,6 @@ void add_plays_and_slews(const Form& plain, double size, const Rate& rate, std::
   }
 }
 
-/// True for the signal that the form's site transmits: a law there may replace it.
-bool is_replaced(const Form& form) {
-  const auto is_at = [&](Site site, Argument argument) { return form.site == site && form.argument == argument; };
-  const bool is_read =
-      form.site == Site::sensor && form.argument == (form.channel == 0 ? Argument::position : Argument::angle);
-  return !form.factor &&
-         (is_read || is_at(Site::command, Argument::command) || is_at(Site::valve_command, Argument::valve_command));
-}
-
 /// Holds of the form's argument over the comb of their period and of the instants of their samples.
 std::vector<Form> with_holds(const FormRegression& regression, const Form& plain) {
   std::vector<Form> forms;

@@ -23,14 +23,15 @@ struct Regressors {
   Eigen::VectorXd largest;
 };
 
+template <class AddedBy>
 Regressors scaled_regressors(std::span<const Form> forms, const std::vector<Eigen::MatrixXd>& quantities,
-                             const Dataset& data) {
+                             AddedBy&& added_by) {
   Regressors all{{}, Eigen::VectorXd::Zero(kBatch)};
   for (std::size_t e = 0; e < quantities.size(); ++e) {
     auto& added = all.added.emplace_back(decltype(all.added)::value_type::Zero(kBatch, quantities[e].rows()));
     Eigen::Index first = 0;
     for (const Form& form : forms) {
-      added.middleRows(first, form.size()) = regressors(form, quantities[e], data.experiments[e].period).transpose();
+      added.middleRows(first, form.size()) = added_by(form, e).transpose();
       first += form.size();
     }
     if (added.cols() > 0) {
@@ -104,6 +105,20 @@ std::vector<FormScore> FormRegression::score(std::span<const Form> forms, unsign
   return scores;
 }
 
+/// What a form's regressors add at its port, but for a constant. What is added to the opening of the valve acts through the
+/// orifices: its flow falls with the pressure that is left across them.
+Eigen::MatrixXd FormRegression::added_by(const Form& form, std::size_t experiment) const {
+  const Eigen::MatrixXd& seen = quantities_[experiment];
+  Eigen::MatrixXd columns = regressors(form, seen, problem_.data.experiments[experiment].period);
+  if (form.site == model::Site::valve) {
+    const auto of = [&](model::Argument quantity) { return seen.col(static_cast<Eigen::Index>(quantity)).array(); };
+    const double supply = problem_.parameters.actuator.supply_pressure;
+    const auto drop = 1.0 - of(model::Argument::spool).sign() * of(model::Argument::load_pressure) / supply;
+    columns.array().colwise() *= drop.max(0.0).sqrt();
+  }
+  return columns;
+}
+
 /// What a unit at the form's site is at the port of its place, over that port's scale.
 double FormRegression::to_port(const Form& form) const {
   const auto& parameters = problem_.parameters;
@@ -114,6 +129,7 @@ double FormRegression::to_port(const Form& form) const {
   const double unit = form.site == model::Site::command
                           ? parameters.servovalve.position_gain * parameters.actuator.moment_arm
                       : form.site == model::Site::load_spring ? stiffness
+                      : form.site == model::Site::valve       ? parameters.servovalve.rated_flow
                                                               : 1.0;
   return unit / problem_.scales.input(static_cast<int>(*place_.port));
 }
@@ -126,7 +142,8 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
     first.push_back(columns);
     columns += form.size();
   }
-  const auto [added, largest] = scaled_regressors(forms, quantities_, problem_.data);
+  const auto [added, largest] =
+      scaled_regressors(forms, quantities_, [&](const Form& form, std::size_t e) { return added_by(form, e); });
   // Columns beyond those of the forms are zero: of a fixed size, the flow takes a fraction of the time.
   using States = Eigen::Matrix<double, kFlowStates, kBatch, Eigen::RowMajor>;
   using Row = Eigen::Matrix<double, 1, kBatch>;

@@ -43,6 +43,7 @@ class FormRegression {
 
  private:
   void score_some(std::span<const Form> forms, std::span<FormScore> scores) const;
+  Eigen::MatrixXd added_by(const Form& form, std::size_t experiment) const;
   double to_port(const Form& form) const;
 
   const LatentProblem& problem_;

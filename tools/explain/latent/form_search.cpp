@@ -10,6 +10,7 @@
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/latent/correlation.hpp"
 #include "tools/explain/latent/form_comb.hpp"
+#include "tools/explain/policy/policy.hpp"
 
 namespace hotfire::explain {
 
@@ -101,6 +102,27 @@ void refine(const FormRegression& regression, std::vector<ScoredForm>& forms, un
     }
     for (std::size_t f = 0; f < forms.size(); ++f) {
       factors[f] = moved[f] ? factors[f] : std::sqrt(factors[f]);
+    }
+  }
+}
+
+/// Moves the laws of an added flow to the opening of the valve where they explain clearly more: the orifices between the two
+/// let less through under load. Both are one place, because a signal without a law follows either.
+void take_site(const FormRegression& regression, std::vector<ScoredForm>& forms, unsigned threads) {
+  std::vector<Form> at_opening;
+  std::vector<std::size_t> of;
+  for (std::size_t f = 0; f < forms.size(); ++f) {
+    if (forms[f].form.site == model::Site::flow) {
+      at_opening.push_back(forms[f].form);
+      at_opening.back().site = model::Site::valve;
+      of.push_back(f);
+    }
+  }
+  std::vector<ScoredForm> opened = scored(regression, std::move(at_opening), threads);
+  for (std::size_t i = 0; i < opened.size(); ++i) {
+    // The criterion is minus twice the log likelihood.
+    if (opened[i].score.criterion < forms[of[i]].score.criterion - 2.0 * policy().tied_gain) {
+      forms[of[i]] = std::move(opened[i]);
     }
   }
 }
@@ -294,9 +316,28 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   std::vector<ScoredForm> best = of([](const Form& form) { return !form.has_curve() && !form.is_power(); }, kRefined);
   std::ranges::move(of([](const Form& form) { return form.has_curve(); }, kRefined), std::back_inserter(best));
   std::ranges::move(of([](const Form& form) { return form.is_power(); }, kRefined), std::back_inserter(best));
+  take_site(regression, best, threads);
   refine(regression, best, threads);
   keep_best(best, most);
   return best;
+}
+
+std::vector<ScoredForm> replacing(const std::vector<ScoredForm>& found) {
+  std::vector<ScoredForm> all;
+  for (const ScoredForm& scored : best_of_each(found, found.size())) {
+    auto form = in_place_of_signal(scored.form);
+    const auto is_of_same_memory = [&](const ScoredForm& other) {
+      return other.form.site == form->site && other.form.memory.kind == form->memory.kind;
+    };
+    if (form && std::ranges::none_of(all, is_of_same_memory)) {
+      FormScore score = scored.score;
+      score.coefficients = Eigen::VectorXd::Constant(2, 1.0);
+      score.coefficients(1) = -1.0;
+      score.move.setZero();
+      all.push_back({std::move(*form), std::move(score)});
+    }
+  }
+  return all;
 }
 
 std::vector<ScoredForm> moved_forms(const FormRegression& regression, const LatentPlace& place,
@@ -314,6 +355,7 @@ std::vector<ScoredForm> moved_forms(const FormRegression& regression, const Late
   }
   std::vector<ScoredForm> moved = scored(regression, std::move(forms), threads);
   std::erase_if(moved, [](const ScoredForm& form) { return !std::isfinite(form.score.criterion); });
+  take_site(regression, moved, threads);
   refine(regression, moved, threads);
   return moved;
 }

@@ -20,6 +20,11 @@ struct ScoredForm {
 std::vector<ScoredForm> search_forms(const FormRegression& regression, const LatentPlace& place, std::size_t most,
                                      unsigned threads);
 
+/// The forms that replace the signal of their site by what a memory makes of it, one for each memory of `found`: the
+/// memory's output is added and the signal itself subtracted. A regression finds less of both where a loop follows what is
+/// missing.
+std::vector<ScoredForm> replacing(const std::vector<ScoredForm>& found);
+
 /// Forms that were found at other places, scored at this one. The screening at one place may miss a law that it finds at a
 /// place which the records hardly separate from it. Each memory's parameter is refined here. Forms that `here` already has
 /// are left out.

@@ -48,11 +48,16 @@ constexpr int kPeriodOff = 4;
 /// The periods near that one that are fitted, of those that leave least as proposed.
 constexpr std::size_t kPeriodsFitted = 3;
 /// How many rows the samples may be off: at a period that is not fitted, and at one that is.
-constexpr int kInstantsOff = 1;
+constexpr int kInstantsOff = 2;
 constexpr int kSamplesOff = 2;
+/// Turns in which samples and all else are fitted under fine steps.
+constexpr int kTurns = 3;
 /// Where beside a row they are tried: a logger that is in step with them reads before or after the sample.
 constexpr double kBesideRow = 0.02;
 constexpr double kTurn = 2.0 * std::numbers::pi;
+
+/// The shortest row of the data.
+double log_row(const Dataset& data) { return std::ranges::min(data.experiments, {}, &Experiment::period).period; }
 
 /// When a held term samples, in rows.
 struct Samples {
@@ -259,56 +264,81 @@ Screened Refiner::shortly(const Evaluator& evaluator, Screened proposal, std::sp
   return proposal;
 }
 
-Screened Refiner::with_samples(const Evaluator& evaluator, const Screened& held, std::span<const double> frozen) const {
-  const double row = std::ranges::min(data_.experiments, {}, &Experiment::period).period;
-  const auto moved_to = [&](Screened moved, const Samples& samples) {
-    set_samples(moved, samples, row);
-    moved.criterion = left_by(evaluator, moved.fitted, threads_);
-    return moved;
-  };
-  // The same with its samples at the best of the instants up to `off` rows from where they are.
-  const auto at_best_instant = [&](const Screened& about, int off) {
-    const Samples own = samples_of(about, row);
-    Screened best = about;
-    for (int early = -off; early <= off && !watch_.interrupted(); ++early) {
-      for (const double part : {-kBesideRow, kBesideRow, 0.5}) {
-        keep_better(moved_to(about, {own.rows, std::round(own.passed) + early + part}), best);
-      }
+Screened Refiner::with_samples_at(const Evaluator& evaluator, Screened held, double rows, double passed) const {
+  set_samples(held, {rows, passed}, log_row(data_));
+  held.criterion = left_by(evaluator, held.fitted, threads_);
+  return held;
+}
+
+/// A held term with its samples at the best of the instants up to `off` rows from where they are.
+Screened Refiner::at_best_instant(const Evaluator& evaluator, const Screened& held, int off) const {
+  const Samples own = samples_of(held, log_row(data_));
+  Screened best = held;
+  for (int early = -off; early <= off && !watch_.interrupted(); ++early) {
+    for (const double part : {-kBesideRow, kBesideRow, 0.5}) {
+      keep_better(with_samples_at(evaluator, held, own.rows, std::round(own.passed) + early + part), best);
     }
-    return best;
-  };
-  const Samples proposed = samples_of(held, row);
-  struct OfPeriod {
-    Screened proposed;
-    double least = 0.0;  ///< that it leaves at an instant nearby
-  };
+  }
+  return best;
+}
+
+std::vector<Refiner::OfPeriod> Refiner::over_periods(const Evaluator& evaluator, const Screened& held, bool whole) const {
+  const Samples proposed = samples_of(held, log_row(data_));
   std::vector<OfPeriod> periods;
   for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
     const double rows = proposed.rows + longer;
     if (rows >= 2.0) {
-      Screened moved = moved_to(held, {rows, proposed.passed * rows / proposed.rows});
-      const double least = at_best_instant(moved, kInstantsOff).criterion;
-      periods.push_back({std::move(moved), least});
+      Screened moved = with_samples_at(evaluator, held, rows, proposed.passed * rows / proposed.rows);
+      Screened best = at_best_instant(evaluator, moved, whole ? static_cast<int>(rows) / 2 : kInstantsOff);
+      const double least = best.criterion;
+      periods.push_back({std::move(whole ? best : moved), least});
     }
   }
-  // The coefficients that are proposed are too small rather than wrong: the right period leaves less with them as well.
   std::ranges::stable_sort(periods, {}, &OfPeriod::least);
+  return periods;
+}
+
+Screened Refiner::with_samples(const Evaluator& evaluator, std::vector<OfPeriod> periods,
+                               std::span<const double> frozen) const {
   periods.resize(std::min(periods.size(), kPeriodsFitted));
-  Screened best = held;
-  best.criterion = left_by(evaluator, held.fitted, threads_);
+  std::optional<Screened> best;
   for (OfPeriod& period : periods) {
-    if (!watch_.interrupted()) {
-      // From the samples as proposed: a fit from those that suit a gain that is too small moves the declared parameters.
-      const Screened fitted = shortly(evaluator, std::move(period.proposed), frozen);
-      keep_better(at_best_instant(fitted, kSamplesOff), best);
+    if (best && watch_.interrupted()) {
+      break;
+    }
+    // From the samples as proposed: a fit from those that suit a gain that is too small moves the declared parameters.
+    Screened fitted = at_best_instant(evaluator, shortly(evaluator, std::move(period.proposed), frozen), kSamplesOff);
+    if (!best || fitted.criterion < best->criterion) {
+      best = std::move(fitted);
     }
   }
-  return watch_.interrupted() ? best : shortly(evaluator, std::move(best), frozen);
+  return watch_.interrupted() ? std::move(*best) : shortly(evaluator, std::move(*best), frozen);
+}
+
+Assessed Refiner::of_held(const Screened& screened, std::span<const double> frozen, const Effort& effort) const {
+  Assessed best;
+  Screened held = screened;
+  for (int turn = 0; turn < kTurns && !watch_.interrupted(); ++turn) {
+    const Samples before = samples_of(held, log_row(data_));
+    held.criterion = left_by(fine_, held.fitted, threads_);
+    held = at_best_instant(fine_, held, kSamplesOff);
+    const bool is_same = samples_of(held, log_row(data_)).passed == before.passed;
+    if (turn > 0 && is_same) {
+      break;
+    }
+    Assessed fitted = turn == 0 ? of_screened(held.fitted, frozen, effort) : ranked(held.fitted, effort);
+    best = best.good() ? better_of(std::move(best), std::move(fitted)) : std::move(fitted);
+    if (!best.good()) {
+      break;
+    }
+    held.fitted = best.model;
+  }
+  return best;
 }
 
 Screened Refiner::with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
                                   std::span<const double> frozen) const {
-  const double row = std::ranges::min(data_.experiments, {}, &Experiment::period).period;
+  const double row = log_row(data_);
   const auto of_own_fit = [&](Screened fitted) {
     fitted.criterion = left_by(evaluator, fitted.fitted, threads_);
     return shortly(evaluator, std::move(fitted), frozen);

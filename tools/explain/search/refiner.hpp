@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/search/screening.hpp"
@@ -37,13 +38,24 @@ class Refiner {
   Assessed of_screened(const Fitted& screened, std::span<const double> frozen, const Effort& effort = kRanking) const {
     return ranked(start_of_screened(coarse_, screened, frozen), effort);
   }
+  /// A screened held term with everything else, the instants of its samples and all else in turn: under long steps it
+  /// samples once a step.
+  Assessed of_held(const Screened& screened, std::span<const double> frozen, const Effort& effort) const;
   /// A proposal after a short fit on `evaluator` of everything that is free, if that leaves less.
   Screened shortly(const Evaluator& evaluator, Screened proposal, std::span<const double> frozen) const;
-  /// A held term by the period and the phase of its samples that leave least. No fit moves them, since they have no
-  /// derivative. The periods are whole rows, because the logger of a sampled signal is in step with it. A hold of too small
-  /// a share asks for samples that are later: the best few periods are compared, with their phases, after a short fit of
-  /// each.
-  Screened with_samples(const Evaluator& evaluator, const Screened& held, std::span<const double> frozen) const;
+  /// A held term at one period of its samples.
+  struct OfPeriod {
+    Screened proposed;   ///< at the instants that were proposed
+    double least = 0.0;  ///< that it leaves at an instant nearby
+  };
+  /// A held term at each period nearby, with the coefficients that were proposed: what leaves least first. No fit moves
+  /// samples, since they have no derivative. The periods are whole rows, because the logger of a sampled signal is in step
+  /// with it. Coefficients of a regression are too small rather than wrong, and suit samples that are later: instants nearby
+  /// are compared. `whole`: the term replaces the whole signal, so that all instants are compared and the best is taken.
+  std::vector<OfPeriod> over_periods(const Evaluator& evaluator, const Screened& held, bool whole) const;
+  /// A held term by the period and the phase of its samples that leave least: the best few periods are compared, with their
+  /// phases, after a short fit of each. `periods`: one at least.
+  Screened with_samples(const Evaluator& evaluator, std::vector<OfPeriod> periods, std::span<const double> frozen) const;
   /// A held term by its own samples or those of another, whichever leaves less after a short fit.
   Screened with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
                            std::span<const double> frozen) const;
@@ -81,6 +93,8 @@ class Refiner {
   Fitted start_of_screened(const Evaluator& evaluator, const Fitted& screened, std::span<const double> frozen) const;
   std::optional<Evaluator> rough_about(const Fitted& model) const;
   bool is_done(const Assessed& winner) const;
+  Screened with_samples_at(const Evaluator& evaluator, Screened held, double rows, double passed) const;
+  Screened at_best_instant(const Evaluator& evaluator, const Screened& held, int off) const;
   Assessed from_other_values(const Assessed& winner, const Candidate& candidate) const;
 
   const Dataset& data_;

@@ -20,9 +20,10 @@ struct Screened {
   /// BIC less that of the current model, whose own parameters were moved by the same linear fits; negative is better.
   double criterion = 0.0;
   double seconds = 0.0;
-  bool good = false;    ///< false: no start could be simulated
-  bool scanned = true;  ///< false: still waits for a law that it contains, to start from there
-  double left = 1.0;    ///< rms error on the rows a fit sees, over that of the current model
+  bool good = false;      ///< false: no start could be simulated
+  bool scanned = true;    ///< false: still waits for a law that it contains, to start from there
+  double left = 1.0;      ///< rms error on the rows a fit sees, over that of the current model
+  bool replaces = false;  ///< a term that replaces the signal of its site as a whole
 };
 
 /// Ranks candidates around one model. A candidate's own parameters are simulated with gradients; what was free before

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <memory>
 #include <numbers>
+#include <span>
 
 #include "tools/explain/latent/oscillation_search.hpp"
 #include "tools/explain/policy/policy.hpp"
@@ -212,20 +213,23 @@ std::optional<Screened> start_of(const Fitted& around, const ScoredForm& propose
   }
   start.criterion = proposed.score.criterion;
   start.good = true;
+  start.replaces = proposed.form.replaces;
   return start;
 }
 
 std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& around, const ScoredForm& proposed,
                                    const Scales& scales, double without, unsigned threads) {
   const Stopwatch stopwatch;
+  // At other instants than its own, a sampled signal leaves more than nothing does.
+  const bool is_whole = proposed.form.replaces && proposed.form.memory.kind == model::Memory::hold;
   std::optional<Screened> best;
-  for (const double share : kSharesOfTerm) {
+  for (const double share : std::span(kSharesOfTerm).first(is_whole ? 1 : kSharesOfTerm.size())) {
     auto start = start_of(around, proposed, scales, share);
     if (!start) {
       break;
     }
     start->criterion = left_by(evaluator, start->fitted, threads);
-    if (start->criterion < (best ? best->criterion : without)) {
+    if (is_whole || start->criterion < (best ? best->criterion : without)) {
       best = std::move(start);
     } else if (best) {
       break;
@@ -257,6 +261,9 @@ std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around,
   const double without = places.front().regression->left_without();
   if (!watch.interrupted()) {
     exchange_best(places, threads);
+    for (FormsOfPlace& place : places) {
+      std::ranges::move(replacing(place.forms), std::back_inserter(place.forms));
+    }
   }
   std::vector<ScoredForm> forms;
   for (FormsOfPlace& place : places) {

@@ -39,6 +39,8 @@ void compare_and_say(Trial& trial, const Assessed& with, const Assessed& beside)
 constexpr std::size_t kTermFinalists = 2;
 /// Forms of every site that are fitted shortly.
 constexpr std::size_t kFittedOfSite = 3;
+/// Held signals of which the periods near their own are tried.
+constexpr std::size_t kClocks = 4;
 /// Finalists in the place of those that something speaks against.
 constexpr std::size_t kReplaced = 4;
 
@@ -87,38 +89,70 @@ std::vector<Screened> by_simulation(const UnlistedTask& task, const Evaluator& e
 
 bool is_held(const Screened& proposal) { return proposal.candidate.option == static_cast<int>(model::Memory::hold); }
 
+/// A held signal with the periods near its own.
+struct Clock {
+  Screened* held = nullptr;
+  std::vector<Refiner::OfPeriod> periods;
+};
+
+/// The held signals whose samples are fitted: of those that replace a signal and those that leave least, at every site the
+/// one that leaves least at any period near its own.
+std::vector<Clock> clocks_of(const UnlistedTask& task, const Evaluator& evaluator, std::vector<Screened>& proposals) {
+  std::vector<Screened*> held;
+  for (Screened& proposal : proposals) {
+    if (is_held(proposal)) {
+      held.push_back(&proposal);
+    }
+  }
+  std::ranges::stable_sort(held, {}, [](const Screened* s) { return std::pair(!s->replaces, s->criterion); });
+  held.resize(std::min(held.size(), kClocks));
+  std::vector<Clock> clocks;
+  for (Screened* proposal : held) {
+    Clock clock{proposal, task.refiner.over_periods(evaluator, *proposal, proposal->replaces)};
+    if (task.watch.interrupted()) {
+      break;
+    }
+    const auto of_site = std::ranges::find_if(
+        clocks, [&](const Clock& other) { return other.held->candidate.site == proposal->candidate.site; });
+    if (of_site == clocks.end()) {
+      clocks.push_back(std::move(clock));
+    } else if (clock.periods.front().least < of_site->periods.front().least) {
+      *of_site = std::move(clock);
+    }
+  }
+  return clocks;
+}
+
 /// A short fit of the best forms of every site: where the effect is large, what a form leaves before any fit says little of
-/// what it can explain. The best held signal is fitted with each period near its own. The others try its samples: a rig has
-/// one clock.
+/// what it can explain. Held signals are fitted with their samples. Those that are not take the samples of the one that
+/// leaves least: a rig has one clock.
 void fit_best_shortly(const UnlistedTask& task, const Evaluator& evaluator, std::span<const double> frozen,
                       std::vector<Screened>& proposals) {
-  Screened* clock = nullptr;
-  const auto fit = [&](Screened& proposal) {
+  const auto fit = [&](Screened& proposal, auto&& fitted) {
     task.watch.progress(
         {Work::unlisted, fmt::format("unlisted: a short fit of {}", label(proposal.candidate)), SharesOfWork::kProposed});
     const Stopwatch stopwatch;
-    if (&proposal == clock) {
-      proposal = task.refiner.with_samples(evaluator, proposal, frozen);
-    } else if (is_held(proposal)) {
-      proposal = task.refiner.with_samples_of(evaluator, *clock, std::move(proposal), frozen);
-    } else {
-      proposal = task.refiner.shortly(evaluator, std::move(proposal), frozen);
-    }
-    proposal.seconds += stopwatch.seconds();
+    const double seconds = proposal.seconds;
+    proposal = fitted();
+    proposal.seconds = seconds + stopwatch.seconds();
   };
-  for (Screened& proposal : proposals) {
-    if (is_held(proposal) && (clock == nullptr || proposal.criterion < clock->criterion)) {
-      clock = &proposal;
+  std::vector<Clock> clocks = clocks_of(task, evaluator, proposals);
+  for (Clock& clock : clocks) {
+    if (!task.watch.interrupted()) {
+      fit(*clock.held, [&] { return task.refiner.with_samples(evaluator, std::move(clock.periods), frozen); });
     }
   }
-  if (clock != nullptr) {
-    fit(*clock);
-  }
+  const auto best = std::ranges::min_element(clocks, {}, [](const Clock& clock) { return clock.held->criterion; });
   std::map<std::string, std::size_t> of_site;
   for (Screened& proposal : proposals) {
-    if (of_site[proposal.candidate.site]++ < kFittedOfSite && &proposal != clock && !task.watch.interrupted()) {
-      fit(proposal);
+    if (std::ranges::find(clocks, &proposal, &Clock::held) != clocks.end() ||
+        of_site[proposal.candidate.site]++ >= kFittedOfSite || task.watch.interrupted()) {
+      continue;
     }
+    fit(proposal, [&] {
+      return is_held(proposal) ? task.refiner.with_samples_of(evaluator, *best->held, std::move(proposal), frozen)
+                               : task.refiner.shortly(evaluator, std::move(proposal), frozen);
+    });
   }
   order_by_site(proposals);
 }
@@ -154,7 +188,8 @@ struct Finalist {
 /// Fits what was screened with everything else and judges it. `trial` says how it does.
 Finalist fit_finalist(const UnlistedTask& task, std::span<const double> frozen, const Screened& screened, Trial& trial) {
   Finalist finalist;
-  finalist.model = task.refiner.of_screened(screened.fitted, frozen, kCheck);
+  finalist.model = is_held(screened) ? task.refiner.of_held(screened, frozen, kCheck)
+                                     : task.refiner.of_screened(screened.fitted, frozen, kCheck);
   if (!finalist.model.good()) {
     return finalist;
   }

@@ -82,9 +82,10 @@ std::string with_unit(double value, const std::string& unit) {
 std::string added_by_term(const Candidate& candidate) {
   using model::Site;
   using model::term::Names;
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kAdded{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kAdded{
       {{Names<Site::command, -1>::name, "addition to the command"},
        {Names<Site::valve_command, -1>::name, "addition to the valve command"},
+       {Names<Site::valve, -1>::name, "addition to the opening of the valve"},
        {Names<Site::flow, -1>::name, "addition to the flow"},
        {Names<Site::piston, -1>::name, "added force against the piston"},
        {Names<Site::load_spring, -1>::name, "addition to the deflection of the load spring"},
