@@ -38,7 +38,7 @@ const auto& term_of(const explain::Fitted& fitted) {
 /// Proposals at every likely place, or, where `site` is named, at its place alone: the regression takes seconds a place.
 std::vector<Screened> proposed_for(const ModelFile& truth, explain::Fitted around, const std::string& site = "") {
   const explain::Dataset data = data_of(truth);
-  explain::Located located = explain::locate(data, about_declared(), 2);
+  explain::Located located = explain::locate(data, around, 2);
   if (!site.empty()) {
     std::erase_if(located.places, [&](const explain::Place& place) { return !place.has(site); });
     CHECK(!located.places.empty() && located.places.front().is_likely);
@@ -131,12 +131,9 @@ std::string best_under_load(double gain) {
   });
   explain::Fitted around = about_declared();
   around.base = loaded.parameters;
-  const explain::Dataset data = explain::make_dataset(loaded, {record_of(truth)});
-  explain::Located located = explain::locate(data, around, 2);
-  std::erase_if(located.places, [](const explain::Place& place) { return !place.has("flow"); });
-  const auto proposed = explain::propose_terms(data, around, located, 2, {});
+  const auto proposed = proposed_for(truth, around, "flow");
   CHECK(!proposed.empty());
-  return explain::start_of(around, proposed.front(), explain::Scales{})->candidate.name;
+  return proposed.front().candidate.name;
 }
 
 }  // namespace
@@ -234,10 +231,6 @@ struct HeldValveCommand {
     return explain::start_of(around, form, scales).value();
   }
 
-  static const auto& term_of(const Screened& held) {
-    return std::get<Term::Params<double>>(std::get<SimplexParameters>(held.fitted.base).effects.values);
-  }
-
   /// The declared parameters compensate for a part of the gain: short fits leave up to a tenth of it to them.
   static void check_is_true_one(const Screened& held) {
     constexpr double kTolerance = 0.12;
@@ -272,7 +265,7 @@ TEST(TermProposals, AHeldSignalInsideTheLoopIsFittedWithItsPeriodAndTheInstantOf
   const HeldValveCommand search;
   const Screened proposed = search.start(4.0, 0.92, 0.5, false);
   const Screened held = search.refiner.with_samples(
-      search.evaluator, search.refiner.over_periods(search.evaluator, proposed, false), search.around.u);
+      search.evaluator, search.refiner.over_periods(search.evaluator, proposed), search.around.u);
   HeldValveCommand::check_is_true_one(held);
 
   // Another proposal takes these samples, and this one keeps them.
@@ -288,12 +281,13 @@ TEST(TermProposals, TheSamplesOfASignalThatIsReplacedAreFoundFromAnyInstant) {
   const HeldValveCommand search;
   const Screened start = search.start(9.0, 5.5, 1.0, true);
   CHECK(start.replaces);
-  const auto periods = search.refiner.over_periods(search.evaluator, start, true);
-  const auto& best = HeldValveCommand::term_of(periods.front().proposed);
+  const auto periods = search.refiner.over_periods(search.evaluator, start);
+  const auto& best = term_of<HeldValveCommand::Term>(periods.front().proposed.fitted);
   DOUBLES_EQUAL(7.0 * HeldValveCommand::kRow, best.time, 1e-9);
   DOUBLES_EQUAL(1.0, 7.0 * best.phase / HeldValveCommand::kTurn, 0.1);
   // The true law at its own samples leaves noise alone, each other period more.
   CHECK(periods.front().least < 1.1);
   CHECK(periods[1].least > 1.5);
-  CHECK(search.refiner.over_periods(search.evaluator, start, false).front().least > periods.front().least);
+  CHECK(search.refiner.over_periods(search.evaluator, search.start(9.0, 5.5, 1.0, false)).front().least >
+        periods.front().least);
 }

@@ -59,6 +59,12 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 using AllKinds = std::make_index_sequence<model::kMemoryNames.size()>;
 
+/// True for a law of the signal that a site transmits.
+template <model::Site at, int channel = -1>
+bool is_own(const Form& form) {
+  return form.site == at && form.channel == channel && form.argument == model::term::Names<at, channel>::own;
+}
+
 /// True for laws of the spool or of its flow at the oil: the opening is the signal that the valve transmits.
 bool is_of_opening(const Form& form) {
   return (form.site == model::Site::valve || form.site == model::Site::flow) &&
@@ -194,14 +200,10 @@ Eigen::MatrixXd regressors(const Form& form, const Eigen::MatrixXd& quantities, 
 }
 
 bool is_replaced(const Form& form) {
-  const auto is_at = [&](model::Site site, model::Argument argument) {
-    return form.site == site && form.argument == argument;
-  };
-  const bool is_read = form.site == model::Site::sensor &&
-                       form.argument == (form.channel == 0 ? model::Argument::position : model::Argument::angle);
-  return !form.factor && (is_read || is_at(model::Site::command, model::Argument::command) ||
-                          is_at(model::Site::valve_command, model::Argument::valve_command) ||
-                          is_at(model::Site::load_spring, model::Argument::deflection) || is_of_opening(form));
+  using enum model::Site;
+  return !form.factor &&
+         (is_own<command>(form) || is_own<valve_command>(form) || is_own<sensor, 0>(form) || is_own<sensor, 1>(form) ||
+          is_of_opening(form) || (form.site == load_spring && form.argument == model::Argument::deflection));
 }
 
 std::optional<Form> in_place_of_signal(Form form) {

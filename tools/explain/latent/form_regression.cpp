@@ -112,9 +112,9 @@ Eigen::MatrixXd FormRegression::added_by(const Form& form, std::size_t experimen
   Eigen::MatrixXd columns = regressors(form, seen, problem_.data.experiments[experiment].period);
   if (form.site == model::Site::valve) {
     const auto of = [&](model::Argument quantity) { return seen.col(static_cast<Eigen::Index>(quantity)).array(); };
-    const double supply = problem_.parameters.actuator.supply_pressure;
-    const auto drop = 1.0 - of(model::Argument::spool).sign() * of(model::Argument::load_pressure) / supply;
-    columns.array().colwise() *= drop.max(0.0).sqrt();
+    const auto opening = of(model::Argument::spool);
+    const auto share = of(model::Argument::flow) / (problem_.parameters.servovalve.rated_flow * opening);
+    columns.array().colwise() *= (opening != 0.0).select(share, 1.0);
   }
   return columns;
 }

@@ -57,7 +57,7 @@ constexpr double kBesideRow = 0.02;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// The shortest row of the data.
-double log_row(const Dataset& data) { return std::ranges::min(data.experiments, {}, &Experiment::period).period; }
+double shortest_row(const Dataset& data) { return std::ranges::min(data.experiments, {}, &Experiment::period).period; }
 
 /// When a held term samples, in rows.
 struct Samples {
@@ -265,14 +265,14 @@ Screened Refiner::shortly(const Evaluator& evaluator, Screened proposal, std::sp
 }
 
 Screened Refiner::with_samples_at(const Evaluator& evaluator, Screened held, double rows, double passed) const {
-  set_samples(held, {rows, passed}, log_row(data_));
+  set_samples(held, {rows, passed}, shortest_row(data_));
   held.criterion = left_by(evaluator, held.fitted, threads_);
   return held;
 }
 
 /// A held term with its samples at the best of the instants up to `off` rows from where they are.
 Screened Refiner::at_best_instant(const Evaluator& evaluator, const Screened& held, int off) const {
-  const Samples own = samples_of(held, log_row(data_));
+  const Samples own = samples_of(held, shortest_row(data_));
   Screened best = held;
   for (int early = -off; early <= off && !watch_.interrupted(); ++early) {
     for (const double part : {-kBesideRow, kBesideRow, 0.5}) {
@@ -282,16 +282,16 @@ Screened Refiner::at_best_instant(const Evaluator& evaluator, const Screened& he
   return best;
 }
 
-std::vector<Refiner::OfPeriod> Refiner::over_periods(const Evaluator& evaluator, const Screened& held, bool whole) const {
-  const Samples proposed = samples_of(held, log_row(data_));
+std::vector<Refiner::OfPeriod> Refiner::over_periods(const Evaluator& evaluator, const Screened& held) const {
+  const Samples proposed = samples_of(held, shortest_row(data_));
   std::vector<OfPeriod> periods;
   for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
     const double rows = proposed.rows + longer;
     if (rows >= 2.0) {
       Screened moved = with_samples_at(evaluator, held, rows, proposed.passed * rows / proposed.rows);
-      Screened best = at_best_instant(evaluator, moved, whole ? static_cast<int>(rows) / 2 : kInstantsOff);
+      Screened best = at_best_instant(evaluator, moved, held.replaces ? static_cast<int>(rows) / 2 : kInstantsOff);
       const double least = best.criterion;
-      periods.push_back({std::move(whole ? best : moved), least});
+      periods.push_back({std::move(held.replaces ? best : moved), least});
     }
   }
   std::ranges::stable_sort(periods, {}, &OfPeriod::least);
@@ -319,10 +319,10 @@ Assessed Refiner::of_held(const Screened& screened, std::span<const double> froz
   Assessed best;
   Screened held = screened;
   for (int turn = 0; turn < kTurns && !watch_.interrupted(); ++turn) {
-    const Samples before = samples_of(held, log_row(data_));
+    const Samples before = samples_of(held, shortest_row(data_));
     held.criterion = left_by(fine_, held.fitted, threads_);
     held = at_best_instant(fine_, held, kSamplesOff);
-    const bool is_same = samples_of(held, log_row(data_)).passed == before.passed;
+    const bool is_same = samples_of(held, shortest_row(data_)).passed == before.passed;
     if (turn > 0 && is_same) {
       break;
     }
@@ -338,7 +338,7 @@ Assessed Refiner::of_held(const Screened& screened, std::span<const double> froz
 
 Screened Refiner::with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
                                   std::span<const double> frozen) const {
-  const double row = log_row(data_);
+  const double row = shortest_row(data_);
   const auto of_own_fit = [&](Screened fitted) {
     fitted.criterion = left_by(evaluator, fitted.fitted, threads_);
     return shortly(evaluator, std::move(fitted), frozen);

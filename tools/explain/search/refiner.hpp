@@ -45,14 +45,14 @@ class Refiner {
   Screened shortly(const Evaluator& evaluator, Screened proposal, std::span<const double> frozen) const;
   /// A held term at one period of its samples.
   struct OfPeriod {
-    Screened proposed;   ///< at the instants that were proposed
-    double least = 0.0;  ///< that it leaves at an instant nearby
+    Screened proposed;   ///< at the instants that were proposed; of a signal that is replaced at the best ones
+    double least = 0.0;  ///< that it leaves at the best of the instants that are compared
   };
   /// A held term at each period nearby, with the coefficients that were proposed: what leaves least first. No fit moves
   /// samples, since they have no derivative. The periods are whole rows, because the logger of a sampled signal is in step
   /// with it. Coefficients of a regression are too small rather than wrong, and suit samples that are later: instants nearby
-  /// are compared. `whole`: the term replaces the whole signal, so that all instants are compared and the best is taken.
-  std::vector<OfPeriod> over_periods(const Evaluator& evaluator, const Screened& held, bool whole) const;
+  /// are compared. Of a signal that is replaced as a whole, all instants are compared and the best is taken.
+  std::vector<OfPeriod> over_periods(const Evaluator& evaluator, const Screened& held) const;
   /// A held term by the period and the phase of its samples that leave least: the best few periods are compared, with their
   /// phases, after a short fit of each. `periods`: one at least.
   Screened with_samples(const Evaluator& evaluator, std::vector<OfPeriod> periods, std::span<const double> frozen) const;

@@ -108,7 +108,7 @@ std::vector<Clock> clocks_of(const UnlistedTask& task, const Evaluator& evaluato
   held.resize(std::min(held.size(), kClocks));
   std::vector<Clock> clocks;
   for (Screened* proposal : held) {
-    Clock clock{proposal, task.refiner.over_periods(evaluator, *proposal, proposal->replaces)};
+    Clock clock{proposal, task.refiner.over_periods(evaluator, *proposal)};
     if (task.watch.interrupted()) {
       break;
     }
@@ -124,8 +124,8 @@ std::vector<Clock> clocks_of(const UnlistedTask& task, const Evaluator& evaluato
 }
 
 /// A short fit of the best forms of every site: where the effect is large, what a form leaves before any fit says little of
-/// what it can explain. Held signals are fitted with their samples. Those that are not take the samples of the one that
-/// leaves least: a rig has one clock.
+/// what it can explain. Of the held signals one of every site is fitted with its samples. The others try the samples of the
+/// one that leaves least: a rig has one clock.
 void fit_best_shortly(const UnlistedTask& task, const Evaluator& evaluator, std::span<const double> frozen,
                       std::vector<Screened>& proposals) {
   const auto fit = [&](Screened& proposal, auto&& fitted) {
