@@ -39,17 +39,19 @@ Record with_reading(Law&& law, Record record = record_of(declared())) {
   return record;
 }
 
-/// The smoothed signal of the sensor's place for a record.
-struct AtSensor {
-  explicit AtSensor(const Record& record, double period = 0.0)
-      : data(explain::thinned(explain::make_dataset(declared(), {record}), period)),
+/// The smoothed signal of a place for a record.
+struct AtPlace {
+  AtPlace(const Record& record, const LatentPlace& where, double period = 0.0)
+      : place(where),
+        data(explain::thinned(explain::make_dataset(declared(), {record}), period)),
         problem(explain::latent_problem(data, about_declared(), 2)),
-        input(explain::most_likely_input(problem, kPistonSensor)) {
-    explain::smooth(problem, kPistonSensor, input);
+        input(explain::most_likely_input(problem, place)) {
+    explain::smooth(problem, place, input);
   }
 
-  FormRegression regression() const { return {problem, kPistonSensor, input, FormRegression::Arguments::simulated}; }
+  FormRegression regression() const { return {problem, place, input, FormRegression::Arguments::simulated}; }
 
+  LatentPlace place;
   explain::Dataset data;
   explain::LatentProblem problem;
   explain::LatentInput input;
@@ -58,7 +60,7 @@ struct AtSensor {
 /// The best form of the sensor's place for a record.
 struct Best {
   explicit Best(const Record& record, double period = 0.0) {
-    const AtSensor sensor(record, period);
+    const AtPlace sensor(record, kPistonSensor, period);
     form = explain::search_forms(sensor.regression(), kPistonSensor, 1, 2).at(0);
   }
 
@@ -163,6 +165,29 @@ TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
 }
 
 // A quantum that is off by a hundredth is off by half a quantum at the ends of the range.
+// In the resonance of the load. Filters of the deflection, and curves over what they make of it, leave twice as much.
+TEST(FormSearch, ACurveInFrontOfAFilterIsFoundThatNothingBehindTheFilterShows) {
+  ModelFile truth = declared();
+  add_effect<model::Term<model::Site::engine_torque>>(std::get<SimplexParameters>(truth.parameters), [](auto& term) {
+    term.option = static_cast<int>(Memory::washout);
+    term.argument = static_cast<int>(Argument::deflection);
+    term.order = static_cast<int>(model::term::Order::curve_first);
+    term.time = 0.03;
+    term.table.points = 9;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double x = 0.25 * (static_cast<double>(i) - 4.0);
+      term.table.x[i] = 4e-4 * x;
+      term.table.y[i] = 4e3 * x * std::pow(std::abs(x), 1.4);
+    }
+  });
+  constexpr LatentPlace kEngine{explain::Port::engine, 0};
+  const AtPlace engine(record_of(truth), kEngine);
+  const ScoredForm best = explain::search_forms(engine.regression(), kEngine, 1, 2).at(0);
+  CHECK(best.form.curve_first && best.form.is_filter());
+  CHECK(best.form.argument == Argument::deflection || best.form.argument == Argument::load_pressure);
+  CHECK(best.score.left < explain::policy().left_by_single);
+}
+
 TEST(FormSearch, AFineQuantumOfASignalIsFound) {
   static constexpr double kQuantum = 1.5e-4;  // m, a fiftieth of the range
   Record record = record_of(declared());
@@ -194,7 +219,8 @@ TEST(FormSearch, APowerIsFoundWithItsExponent) {
 // Half as wide again: the refinement goes on until the response explains most.
 TEST(FormSearch, AFormThatWasFoundElsewhereIsTunedToThePlaceThatItIsMovedTo) {
   static constexpr double kWidth = 2e-3;
-  const AtSensor sensor(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }));
+  const AtPlace sensor(with_reading([](double command) { return -0.5 * std::clamp(command, -kWidth, kWidth); }),
+                       kPistonSensor);
   ScoredForm elsewhere;
   elsewhere.form.site = model::Site::flow;
   elsewhere.form.argument = Argument::command;
@@ -269,12 +295,13 @@ namespace {
 template <class Shift>
 void check_oscillation_is_found(const Record& quiet, double frequency, double tall, Shift shift,
                                 std::initializer_list<double> at) {
-  const AtSensor sensor(with_reading(
-      [&, turns = 0.0](double command) mutable {
-        turns += 2e-3 * (frequency + shift(command));
-        return tall * kPistonNoise * std::sin(2.0 * std::numbers::pi * turns);
-      },
-      quiet));
+  const AtPlace sensor(with_reading(
+                           [&, turns = 0.0](double command) mutable {
+                             turns += 2e-3 * (frequency + shift(command));
+                             return tall * kPistonNoise * std::sin(2.0 * std::numbers::pi * turns);
+                           },
+                           quiet),
+                       kPistonSensor);
   const FormRegression regression = sensor.regression();
   CHECK(regression.left_without() > explain::policy().left_by_single);
   const std::vector<Form> forms = explain::find_oscillations(regression, kPistonSensor, 2);

@@ -91,3 +91,17 @@ TEST(Locate, OpeningAddsThePlacesThatLeaveAsLittleAndNoOthers) {
   const Located rest = open.beyond(located);
   CHECK(!rest.allows("sensor.piston") && rest.allows("valve") && !rest.allows("engine_torque"));
 }
+
+TEST(Locate, WhatOneSignalExplainsMayActAtEveryLikelyPlaceAndWhatNoneDoesAtTheBestAlone) {
+  Located located;
+  CHECK(!located.may_act_at("load_spring"));
+  located.places.resize(3);
+  located.places[0].sites = {"load_spring", "structure"};
+  located.places[0].is_likely = true;
+  located.places[1].sites = {"engine_torque"};
+  located.places[1].is_likely = true;
+  located.places[2].sites = {"piston"};
+  CHECK(located.may_act_at("structure") && !located.may_act_at("engine_torque"));
+  located.is_single = true;
+  CHECK(located.may_act_at("load_spring") && located.may_act_at("engine_torque") && !located.may_act_at("piston"));
+}

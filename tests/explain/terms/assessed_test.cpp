@@ -5,6 +5,8 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include "tests/explain/latent/missing_effect.hpp"
+
 namespace {
 
 using namespace hotfire::explain;
@@ -64,6 +66,26 @@ TEST(Assessed, ADeclaredParameterSixTolerancesOffReplacesSomethingAndAnEffectsOw
   CHECK_FALSE(is_within_tolerances(model));
   model.free[1].scale = FreeParameter::Scale::logarithmic;
   CHECK(is_within_tolerances(model));
+}
+
+TEST(Assessed, AtTheNoiseAModelWithinItsTolerancesIsMoreCredibleThanOneBeyond) {
+  const Dataset data = hotfire::test::data_of(hotfire::test::declared());
+  const Evaluator evaluator(data, Resolution::fine);
+  Assessed within;
+  within.model = hotfire::test::about_declared();
+  CHECK(evaluator.predict(within.model.base, within.model.free, within.model.u, 1, within.prediction));
+  Assessed beyond = within;
+  beyond.model.u[0] = 6.0;
+  CHECK_TRUE(is_more_credible(data, within, beyond));
+  CHECK_FALSE(is_more_credible(data, within, within));
+  CHECK_FALSE(is_more_credible(data, beyond, beyond));
+  // Above the noise the error decides, not this.
+  Assessed far = beyond;
+  for (double& reading : far.prediction[0][0]) {
+    reading += hotfire::test::kPistonNoise;
+  }
+  CHECK_FALSE(is_more_credible(data, within, far));
+  CHECK_FALSE(is_more_credible(data, far, beyond));
 }
 
 TEST(Assessed, ADeclaredValueMovedByTolerancesKeepsItsSignAndComesBackFromItsCoordinate) {

@@ -32,6 +32,11 @@ struct Form {
   bool is_oscillator() const { return memory.kind == model::Memory::oscillator; }
   bool is_stops() const { return memory.kind == model::Memory::stops; }
   bool is_power() const { return model::is_power(memory.kind); }
+  /// A linear memory that gives another output in front of a curve than behind it.
+  bool is_filter() const {
+    return memory.kind == model::Memory::lag || memory.kind == model::Memory::washout ||
+           memory.kind == model::Memory::resonance || memory.kind == model::Memory::band_pass;
+  }
   /// The argument itself is beside its memory, as the last regressor.
   bool has_direct() const { return memory.kind != model::Memory::none && !is_oscillator(); }
   /// Without points, and of stops with theirs, the curve is no function over its points.

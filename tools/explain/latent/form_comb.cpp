@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -19,6 +20,9 @@ using model::Site;
 
 /// Points of a curve in front of a memory: as many as a term holds.
 constexpr int kCurvePoints = model::kUnlistedPoints;
+/// Those of a curve by which a memory is screened, and the fewest that are not a straight line.
+constexpr int kRoughPoints = 5;
+constexpr std::size_t kFewestPoints = 3;
 /// Share of a smoothed signal's variance that no function follows: what a smoother adds.
 constexpr double kLeastScatter = 1e-3;
 /// Widths at which a straight line may bend, over the 99th percentile of the argument: from what play and noise hide.
@@ -355,7 +359,25 @@ std::optional<Form> with_curve(const FormRegression& regression, Form form, bool
   form.points = curve_first && form.memory.kind != Memory::none
                     ? spread_points(sorted_values(regression, form), kCurvePoints)
                     : followed_points(regression, form);
-  return form.points.size() >= 3 ? std::optional(std::move(form)) : std::nullopt;
+  return form.points.size() >= kFewestPoints ? std::optional(std::move(form)) : std::nullopt;
+}
+
+std::vector<Form> behind_rough_curves(const FormRegression& regression, const std::vector<Form>& remembering) {
+  std::vector<Form> forms;
+  std::map<Argument, std::vector<double>> points;
+  for (Form form : remembering) {
+    if (form.is_filter() && !form.factor) {
+      const auto [own, is_new] = points.try_emplace(form.argument);
+      if (is_new) {
+        own->second = spread_points(sorted_values(regression, form), kRoughPoints);
+      }
+      form.curve_first = true;
+      form.points = own->second;
+      forms.push_back(std::move(form));
+    }
+  }
+  std::erase_if(forms, [](const Form& form) { return form.points.size() < kFewestPoints; });
+  return forms;
 }
 
 std::vector<Form> behind_curve(const FormRegression& regression, const Form& curve, const Eigen::VectorXd& values) {

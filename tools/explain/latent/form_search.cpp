@@ -29,6 +29,8 @@ constexpr int kMemoriesOfOne = 4;
 /// Forms whose response explains most, and memories of one argument among them.
 constexpr std::size_t kScreenedByResponse = 12;
 constexpr int kResponsesOfOne = 2;
+/// Filters behind a curve that go on.
+constexpr std::size_t kBehindCurve = 6;
 /// A memory explains clearly more than its argument where it leaves less than this share of what that leaves.
 constexpr double kClearlyLess = 0.9;
 /// Forms over which curves are laid, of those with a memory and of those without.
@@ -195,6 +197,27 @@ std::vector<Form> screened_by_signal(const SignalCorrelation& correlation, std::
   return best;
 }
 
+/// The best forms, at most `most`, and `kResponsesOfOne` of one argument, with their parameters where they explain most.
+std::vector<Form> best_responses(const FormRegression& regression, std::vector<Form> forms, std::size_t most,
+                                 unsigned threads) {
+  const std::size_t count = forms.size();
+  std::vector<ScoredForm> best;
+  for (ScoredForm& form : best_of_each(scored(regression, std::move(forms), threads), count)) {
+    const auto of_same =
+        std::ranges::count_if(best, [&](const ScoredForm& other) { return is_of_same(form.form, other.form); });
+    if (best.size() == most) {
+      break;
+    }
+    if (of_same < kResponsesOfOne) {
+      best.push_back(std::move(form));
+    }
+  }
+  refine(regression, best, threads);
+  std::vector<Form> refined;
+  std::ranges::transform(best, std::back_inserter(refined), &ScoredForm::form);
+  return refined;
+}
+
 /// Of the memories those whose response explains most of what is left. The smoothed signal is mostly noise where the plant
 /// hides what acts on it, and ranks a gain over the right memory of the right argument behind hundreds of others; the
 /// readings do not. A comb's parameter is that of the smoothed signal, except of a hold: it is the readings that show when a
@@ -215,22 +238,21 @@ std::vector<Form> screened_by_response(const FormRegression& regression, const s
       forms.push_back(scored.form);
     }
   }
-  const std::size_t count = forms.size();
-  std::vector<ScoredForm> best;
-  for (ScoredForm& form : best_of_each(scored(regression, std::move(forms), threads), count)) {
-    const auto of_same =
-        std::ranges::count_if(best, [&](const ScoredForm& other) { return is_of_same(form.form, other.form); });
-    if (best.size() == kScreenedByResponse) {
-      break;
-    }
-    if (of_same < kResponsesOfOne) {
-      best.push_back(std::move(form));
+  return best_responses(regression, std::move(forms), kScreenedByResponse, threads);
+}
+
+/// Curves in front of the filters of one quantity that explain most there. A gain and a curve behind a filter say little of
+/// them.
+std::vector<ScoredForm> with_curves_first(const FormRegression& regression, const std::vector<Form>& remembering,
+                                          unsigned threads) {
+  std::vector<Form> rough = behind_rough_curves(regression, remembering);
+  std::vector<Form> fine;
+  for (const Form& form : best_responses(regression, std::move(rough), kBehindCurve, threads)) {
+    if (auto curved = with_curve(regression, form, true)) {
+      fine.push_back(std::move(*curved));
     }
   }
-  refine(regression, best, threads);
-  forms.clear();
-  std::ranges::transform(best, std::back_inserter(forms), &ScoredForm::form);
-  return forms;
+  return scored(regression, std::move(fine), threads);
 }
 
 /// The forms that go on: by the signal, then by the response those that are not among them.
@@ -306,6 +328,9 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
   std::ranges::move(behind_best_curves(regression, laid, threads), std::back_inserter(laid));
+  if (std::ranges::none_of(laid, [](const ScoredForm& f) { return f.score.left < policy().left_by_single; })) {
+    std::ranges::move(with_curves_first(regression, forms, threads), std::back_inserter(laid));
+  }
   // Gains, curves and powers are ranked apart. In the linear regression, a curve or a power follows a large effect that is
   // neither. Within the records, a curve follows a power.
   const auto of = [&](auto&& is_in, std::size_t count) {

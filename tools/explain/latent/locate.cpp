@@ -52,6 +52,10 @@ bool Located::refutes(const std::string& site, const std::vector<std::string>& f
          std::ranges::none_of(places, [&](const Place& place) { return place.is_possible && place.has(site); });
 }
 
+bool Located::may_act_at(const std::string& site) const {
+  return !places.empty() && (places.front().has(site) || (is_single && allows(site)));
+}
+
 std::vector<std::string> Located::likely_sites() const {
   std::vector<std::string> sites;
   for (const Place& place : places) {

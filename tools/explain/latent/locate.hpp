@@ -34,6 +34,8 @@ struct Located {
   /// True if one signal explains the records, and no law at `site` can be what is missing. `found`: the sites of the effects
   /// that were found. What one of them leaves of its own law acts at its own site, and refutes no other.
   bool refutes(const std::string& site, const std::vector<std::string>& found) const;
+  /// True if what is missing may act at `site`: no signal at another place explains clearly more.
+  bool may_act_at(const std::string& site) const;
   /// The sites of all likely places.
   std::vector<std::string> likely_sites() const;
   /// The same with every place where a signal leaves as little as at the best, likely or not.

@@ -61,7 +61,8 @@ void UnlistedStage::finish() {
   }
 }
 
-bool UnlistedStage::is_worth_a_table() const { return data_.knows_unlisted() && !reaches_noise(data_, result_.explained); }
+/// A model at the noise whose parameters are far from their declared values is not what the records are of.
+bool UnlistedStage::is_worth_a_table() const { return data_.knows_unlisted() && !is_complete(data_, result_.explained); }
 
 /// True if a model leaves less than `share` of what the explained one leaves beyond noise. Noise itself cannot be explained:
 /// near it the whole error hardly falls.
@@ -147,6 +148,9 @@ bool UnlistedStage::is_better(const UnlistedSearch& found) const {
   if (is_near_noise && result_.kept.empty() && found.best && is_supported(found.trials[*found.best])) {
     return true;
   }
+  if (found.best && is_more_credible(data_, found.model, result_.explained)) {
+    return true;
+  }
   const bool is_same = found.best && is_curve_of_the_same(found.trials[*found.best].candidate, result_.kept);
   const double share = is_same ? policy().little_explained : advantage();
   return found.leaves_less_than(share * left_by_listed()) ||
@@ -209,16 +213,16 @@ bool UnlistedStage::has_unlisted() const {
   return std::ranges::any_of(result_.kept, [&](const Kept& kept) { return is_unlisted(kept); });
 }
 
-/// Index among the kept effects of the term of the grammar at whose site most of the rest acts: its law is not exact, and a
-/// term at another site would imitate the rest of it. None where what was found explains less than half: that leaves another
-/// effect, perhaps at the same site.
+/// Index among the kept effects of the term of the grammar at whose site most of the rest may act: its law is not exact, and
+/// a term at another site would imitate the rest of it. None where what was found explains less than half: that leaves
+/// another effect, perhaps at the same site.
 std::optional<std::size_t> UnlistedStage::term_of_rest(const Located& left) const {
-  if (left.places.empty() || left_by_listed() > policy().little_explained) {
+  if (left_by_listed() > policy().little_explained) {
     return std::nullopt;
   }
   for (std::size_t i = 0; i < result_.kept.size(); ++i) {
     const Candidate& candidate = result_.kept[i].trial.candidate;
-    if (is_unlisted(result_.kept[i]) && !candidate.choices.empty() && left.places.front().has(candidate.site)) {
+    if (is_unlisted(result_.kept[i]) && !candidate.choices.empty() && left.may_act_at(candidate.site)) {
       return i;
     }
   }

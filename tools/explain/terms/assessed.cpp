@@ -90,6 +90,10 @@ bool is_complete(const Dataset& data, const Assessed& assessed) {
   return reaches_noise(data, assessed) && is_within_tolerances(assessed.model);
 }
 
+bool is_more_credible(const Dataset& data, const Assessed& model, const Assessed& than) {
+  return reaches_noise(data, than) && !is_within_tolerances(than.model) && is_complete(data, model);
+}
+
 Fitted without_effect(const Fitted& model, const Candidate& candidate) {
   Fitted rest = model;
   rest.base = rest.parameters();

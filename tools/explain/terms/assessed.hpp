@@ -61,6 +61,10 @@ bool is_within_tolerances(const Fitted& model);
 /// True if a model reaches the noise within its tolerances: there is nothing to search for.
 bool is_complete(const Dataset& data, const Assessed& assessed);
 
+/// True if a model is complete and another one reaches the noise beyond its tolerances only: effects that need such values
+/// of the declared parameters imitate what is missing.
+bool is_more_credible(const Dataset& data, const Assessed& model, const Assessed& than);
+
 /// Takes the free parameters of which `unwanted` is true out of a model.
 template <class F>
 void drop_parameters(Fitted& model, F&& unwanted) {
