@@ -50,7 +50,7 @@ double chosen_constant(double constant, double size) {
   const Evaluator fine(data, Resolution::fine);
   const Assessed wrong = assess(fine, 1, with_curve<E>(constant, size, candidate));
   CHECK(wrong.good());
-  const Assessed right = assess(fine, 1, with_least_zeros(data, wrong.zeros, wrong.model, candidate).value());
+  const Assessed right = assess(fine, 1, with_chosen_constant(data, wrong.zeros, wrong.model, candidate).value());
   CHECK(right.good());
   DOUBLES_EQUAL(1.0, Goodness::combined(right.goodness.fitted), 0.05);
   return first_ordinate<E>(right.model);
@@ -91,7 +91,7 @@ TEST(TermConstant, IntervalsOfACurveAreThoseOfItsShape) {
     CHECK(!estimate.interval);
   }
   const Dataset data = test::data_of(test::declared());
-  const Fitted given = with_least_zeros(data, {{-1e-4, 0.0, 0.0}}, fitted, candidate).value();
+  const Fitted given = with_chosen_constant(data, {{-1e-4, 0.0, 0.0}}, fitted, candidate).value();
   for (const Estimate& estimate : estimates(given.free, given.u, given.normal)) {
     CHECK(estimate.interval.has_value());
     DOUBLES_EQUAL(2e-4, estimate.value, 1e-9);
@@ -99,10 +99,26 @@ TEST(TermConstant, IntervalsOfACurveAreThoseOfItsShape) {
   }
 }
 
+TEST(TermConstant, ACurveInFrontOfAMemoryThatForgetsConstantsIsZeroAtZero) {
+  Candidate candidate;
+  const Fitted fitted = with_curve<PistonReading>(3e-4, 1e-4, candidate);
+  const Dataset data = test::data_of(test::declared());
+  candidate.choices = {static_cast<int>(model::Argument::position), 0, static_cast<int>(model::term::Order::curve_first)};
+  for (const model::Memory memory : {model::Memory::washout, model::Memory::band_pass}) {
+    candidate.option = static_cast<int>(memory);
+    // The highest of its three points is at zero.
+    const Fitted given = with_chosen_constant(data, {{0.0, 0.0, 0.0}}, fitted, candidate).value();
+    DOUBLES_EQUAL(-1e-4, first_ordinate<PistonReading>(given), 1e-12);
+  }
+  candidate.option = static_cast<int>(model::Memory::lag);
+  const Fitted kept = with_chosen_constant(data, {{0.0, 0.0, 0.0}}, fitted, candidate).value();
+  DOUBLES_EQUAL(3e-4, first_ordinate<PistonReading>(kept), 1e-12);
+}
+
 TEST(TermConstant, ModelWithoutACurveStaysAsItIs) {
   Candidate candidate;
   Fitted fitted = with_curve<PistonReading>(0.0, 0.0, candidate);
   const Dataset data = test::data_of(test::declared());
-  const Fitted same = with_least_zeros(data, {{1e-3, 1e-3, 0.0}}, fitted, candidate).value_or(fitted);
+  const Fitted same = with_chosen_constant(data, {{1e-3, 1e-3, 0.0}}, fitted, candidate).value_or(fitted);
   DOUBLES_EQUAL(0.0, first_ordinate<PistonReading>(same), 0.0);
 }

@@ -14,16 +14,16 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Gives the curves of unlisted terms the constants with which the records have the least zeros, where the error stays.
+/// Gives the curves of unlisted terms the constants that no record determines, where the error stays.
 void choose_constants(const Dataset& data, const Evaluator& whole, unsigned threads, const std::vector<Kept>& found,
                       Assessed& fitted) {
   constexpr double kSameError = 1.001;
   for (const Kept& kept : found) {
-    const auto least = with_least_zeros(data, fitted.zeros, fitted.model, kept.trial.candidate);
-    if (!least) {
+    const auto given = with_chosen_constant(data, fitted.zeros, fitted.model, kept.trial.candidate);
+    if (!given) {
       continue;
     }
-    Assessed moved = assess(whole, threads, *least);
+    Assessed moved = assess(whole, threads, *given);
     if (moved.good() &&
         Goodness::combined(moved.goodness.fitted) <= kSameError * Goodness::combined(fitted.goodness.fitted)) {
       fitted = std::move(moved);

@@ -36,21 +36,37 @@ void raise(ModelParameters& parameters, const Candidate& candidate, double by) {
   });
 }
 
+double value_at_zero(const ModelParameters& parameters, const Candidate& candidate) {
+  double value = 0.0;
+  visit_table(parameters, candidate, [&]<class>(const auto&, const auto& table) {
+    value = model::curve_value<double>(table.x, table.y, static_cast<std::size_t>(table.points), 0.0);
+  });
+  return value;
+}
+
+/// The constant with which the records have the least zeros; nothing if the readings at rest do not move with it. `small`:
+/// a change of it by which they are differentiated.
+std::optional<double> constant_of_least_zeros(const Dataset& data, const Zeros& zeros, const ModelParameters& plant,
+                                              const Candidate& candidate, double small) {
+  ModelParameters raised = plant;
+  raise(raised, candidate, small);
+  const double step = data.experiments.front().period;
+  const auto shift = shift_at_rest(std::get<SimplexParameters>(plant), std::get<SimplexParameters>(raised), small, step);
+  return common_shift(data, zeros, shift).amount;
+}
+
 }  // namespace
 
-std::optional<Fitted> with_least_zeros(const Dataset& data, const Zeros& zeros, const Fitted& fitted,
-                                       const Candidate& candidate) {
+std::optional<Fitted> with_chosen_constant(const Dataset& data, const Zeros& zeros, const Fitted& fitted,
+                                           const Candidate& candidate) {
   const ModelParameters plant = fitted.parameters();
   const double size = largest_ordinate(plant, candidate);
   if (!(size > 0.0) || is_oscillator(candidate)) {
     return std::nullopt;
   }
-  const double small = kSmallOfCurve * size;
-  ModelParameters raised = plant;
-  raise(raised, candidate, small);
-  const double step = data.experiments.front().period;
-  const auto shift = shift_at_rest(std::get<SimplexParameters>(plant), std::get<SimplexParameters>(raised), small, step);
-  const std::optional<double> constant = common_shift(data, zeros, shift).amount;
+  const std::optional<double> constant = forgets_constants(candidate)
+                                             ? -value_at_zero(plant, candidate)
+                                             : constant_of_least_zeros(data, zeros, plant, candidate, kSmallOfCurve * size);
   if (!constant || !(std::abs(*constant) <= kMostOfCurve * size)) {
     return std::nullopt;
   }

@@ -70,6 +70,12 @@ bool is_oscillator(const Candidate& candidate) {
   return !candidate.choices.empty() && candidate.option == static_cast<int>(model::Memory::oscillator);
 }
 
+bool forgets_constants(const Candidate& candidate) {
+  const auto kind = static_cast<model::Memory>(candidate.option);
+  return !candidate.choices.empty() && candidate.choices[2] == static_cast<int>(model::term::Order::curve_first) &&
+         (kind == model::Memory::washout || kind == model::Memory::band_pass);
+}
+
 bool is_unlisted(const ModelParameters& plant, const Candidate& candidate) {
   bool result = false;
   visit_effects(plant, [&]<class E>(std::size_t index, const auto&) {

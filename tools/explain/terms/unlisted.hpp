@@ -22,6 +22,9 @@ bool is_oscillator(const Candidate& candidate);
 /// True for a term that is a power of its argument.
 bool is_power(const Candidate& candidate);
 
+/// True for a curve in front of a memory whose output is zero at rest: a constant of the curve adds nothing.
+bool forgets_constants(const Candidate& candidate);
+
 /// True if the candidate's effect, of the list of `plant`, is a term of unknown law.
 bool is_unlisted(const ModelParameters& plant, const Candidate& candidate);
 
