@@ -88,4 +88,13 @@ TEST(Verdict, TermsOverTheTimeOfARecordAreRecognised) {
   CHECK_TRUE(is_of_record_time({0, 0, "unlisted_drift", "piston", "sensor.piston"}));
   CHECK_FALSE(is_of_record_time({0, 0, "unlisted_torque", "friction_along_position", "engine_torque"}));
   CHECK_FALSE(is_of_record_time(kLeakage));
+  using enum hotfire::model::Argument;
+  const auto term = [](hotfire::model::Argument argument, int factor, hotfire::model::Memory memory = {}) {
+    return Candidate{0, static_cast<int>(memory), "term_flow", "", "flow", {static_cast<int>(argument), factor, 0}};
+  };
+  CHECK_TRUE(is_of_record_time(term(time, 0)));
+  CHECK_TRUE(is_of_record_time(term(time, 1 + static_cast<int>(rate))));
+  CHECK_TRUE(is_of_record_time(term(rate, 1 + static_cast<int>(time))));
+  CHECK_FALSE(is_of_record_time(term(rate, 0)));
+  CHECK_FALSE(is_of_record_time(term(time, 0, hotfire::model::Memory::oscillator)));
 }

@@ -182,11 +182,11 @@ class EverySentence {
   void of_warnings() {
     using namespace words;
     for (const std::string& text :
-         {ended_early(), drifts("unlisted_torque", "engine_torque"), fault_of_record("sensor_scale", "load_pressure"),
-          left_out("servovalve.position_gain"), no_tolerance(), moved_far("engine.inertia", 3.4),
-          at_a_bound("effects.gimbal_friction.coulomb_torque"), undetermined("effects.leakage.laminar"),
-          not_supported("gimbal_friction (coulomb)"), noise_differs("load_pressure", 1e4, 2.5e4),
-          unused_channel("sweep.csv", "supply", every_channel().channels),
+         {ended_early(), drifts("unlisted_torque", "engine_torque", true), drifts("term_flow", "flow", false),
+          fault_of_record("sensor_scale", "load_pressure"), left_out("servovalve.position_gain"), no_tolerance(),
+          moved_far("engine.inertia", 3.4), at_a_bound("effects.gimbal_friction.coulomb_torque"),
+          undetermined("effects.leakage.laminar"), not_supported("gimbal_friction (coulomb)"),
+          noise_differs("load_pressure", 1e4, 2.5e4), unused_channel("sweep.csv", "supply", every_channel().channels),
           unused_channel("sweep.csv", "supply", {"position"}), not_at_rest("sweep.csv", 0.35),
           excluded("sweep.csv", 3.0, 3.5), input_held("sweep.csv"), common_bias(0.012)}) {
       check_.add(text);

@@ -66,9 +66,10 @@ ModelParameters plant_of(const SearchResult& found, bool keep_drift) {
   ModelParameters plant = fitted.parameters();
   for (const Kept& kept : found.kept) {
     const Candidate& candidate = kept.trial.candidate;
-    if (is_fault_of_record(candidate)) {
+    const bool is_drift = is_of_record_time(candidate) && !keep_drift;
+    if (is_fault_of_record(candidate) || (is_drift && !has_mean_over_time(plant, candidate))) {
       set_active(plant, candidate.effect, false);
-    } else if (is_of_record_time(candidate) && !keep_drift) {
+    } else if (is_drift) {
       visit_table(plant, candidate, [&]<class>(const auto&, auto& table) {
         const auto end = table.y.begin() + table.points;
         std::fill(table.y.begin(), end, std::accumulate(table.y.begin(), end, 0.0) / table.points);

@@ -14,7 +14,8 @@ namespace hotfire::explain {
 ReportSeries series_of(const std::vector<Record>& records, const Dataset& data, const SearchResult& found);
 
 /// The explained model as a rig runs it: what is a fault of the records and not of the plant is left out. What drifted over
-/// the time of a record is set to its mean, since another run has another clock; unless `keep_drift`.
+/// the time of a record is set to its mean, since another run has another clock, or left out if it has none; unless
+/// `keep_drift`.
 ModelParameters plant_of(const SearchResult& found, bool keep_drift);
 
 /// The explained model fitted once more, to the rows that were held out as well: what the rig runs has seen all that there

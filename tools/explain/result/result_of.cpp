@@ -64,10 +64,11 @@ std::vector<CalibratedParameter> calibration_of(const SearchResult& found, const
 }
 
 /// Effects that are no fault of the plant.
-void warn_of_channels(const std::vector<Kept>& found, std::vector<std::string>& warnings) {
+void warn_of_channels(const ModelParameters& plant, const std::vector<Kept>& found, std::vector<std::string>& warnings) {
   for (const Kept& kept : found) {
     if (is_of_record_time(kept.trial.candidate)) {
-      warnings.push_back(words::drifts(kept.trial.candidate.name, kept.trial.candidate.site));
+      warnings.push_back(words::drifts(kept.trial.candidate.name, kept.trial.candidate.site,
+                                       has_mean_over_time(plant, kept.trial.candidate)));
     }
     const std::string& name = kept.trial.candidate.name;
     if (is_fault_of_record(kept.trial.candidate)) {
@@ -84,7 +85,7 @@ std::vector<std::string> warnings_of(const ModelFile& model, const Dataset& data
     warnings.push_back(words::ended_early());
   }
   warn_of_rows(data, warnings);
-  warn_of_channels(found.kept, warnings);
+  warn_of_channels(found.explained.model.base, found.kept, warnings);
   for (const Candidate& effect : found.not_supported) {
     warnings.push_back(words::not_supported(label(effect)));
   }

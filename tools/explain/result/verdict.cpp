@@ -7,6 +7,7 @@
 #include <array>
 
 #include "tools/explain/policy/policy.hpp"
+#include "tools/explain/terms/table_points.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 #include "tools/explain/words/conclusions.hpp"
 
@@ -86,9 +87,20 @@ bool is_fault_of_record(const Candidate& candidate) {
 }
 
 bool is_of_record_time(const Candidate& candidate) {
+  if (!candidate.choices.empty()) {
+    constexpr auto kTime = static_cast<int>(model::Argument::time);
+    return !is_oscillator(candidate) && (candidate.choices[0] == kTime || candidate.choices[1] == 1 + kTime);
+  }
   return candidate.name.starts_with("unlisted_") &&
          (candidate.option_name == "time" || candidate.option_name.ends_with("_along_time") ||
           candidate.name == model::UnlistedDrift::name);
+}
+
+bool has_mean_over_time(const ModelParameters& parameters, const Candidate& candidate) {
+  bool has = false;
+  const bool is_product = !candidate.choices.empty() && candidate.choices[1] != 0;
+  visit_table(parameters, candidate, [&]<class>(const auto&, const auto& table) { has = !is_product && table.points > 0; });
+  return has;
 }
 
 Verdict verdict_of(const Dataset& data, const SearchResult& found) {

@@ -11,8 +11,12 @@ namespace hotfire::explain {
 /// True of an effect that is a fault of the record, not of the plant: a channel that is mis-scaled or late.
 bool is_fault_of_record(const Candidate& candidate);
 
-/// True for a term over the time of the record: it says what drifted, and means nothing in another run.
+/// True for a term over the time of the record, alone or times another quantity: it says what drifted, and means nothing in
+/// another run. An oscillation is not one.
 bool is_of_record_time(const Candidate& candidate);
+
+/// True of such a term if it has a mean over the records: a table over time alone.
+bool has_mean_over_time(const ModelParameters& parameters, const Candidate& candidate);
 
 /// The verdict of a search (docs/report.md). It is undecided if nothing is kept, more than noise is left, and the search was
 /// interrupted or not asked for.

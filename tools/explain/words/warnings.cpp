@@ -10,11 +10,11 @@ std::string ended_early() {
   return "The search ended early, by Ctrl-C or --seconds. The report has the results up to then.";
 }
 
-std::string drifts(const std::string& effect, const std::string& site) {
+std::string drifts(const std::string& effect, const std::string& site, bool has_mean) {
   return fmt::format(
-      "{} at {} drifts over the time of these records. explained.toml has its mean, because it runs other records. The "
-      "report has its table, and --keep-drift writes it.",
-      effect, site);
+      "{} at {} drifts over the time of these records. {}, because it runs other records. The report has its law, and "
+      "--keep-drift writes it.",
+      effect, site, has_mean ? "explained.toml has its mean" : "explained.toml does not have it");
 }
 
 std::string fault_of_record(const std::string& effect, const std::string& channel) {

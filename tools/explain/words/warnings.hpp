@@ -8,7 +8,8 @@ namespace hotfire::explain::words {
 
 /// Warnings of a report, `warnings` in report.json.
 std::string ended_early();
-std::string drifts(const std::string& effect, const std::string& site);
+/// `has_mean`: over time, which is then in the explained model.
+std::string drifts(const std::string& effect, const std::string& site, bool has_mean);
 std::string fault_of_record(const std::string& effect, const std::string& channel);
 std::string left_out(const std::string& key);
 std::string no_tolerance();
