@@ -165,6 +165,12 @@ TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
 }
 
 // A quantum that is off by a hundredth is off by half a quantum at the ends of the range.
+TEST(FormSearch, ALawWhoseSizeDriftsIsAProductWithTime) {
+  const Best best(with_reading([row = 0](double command) mutable { return 5e-4 * command * (2e-3 * row++); }));
+  CHECK(best.form.form.argument == Argument::command && best.form.form.factor == Argument::time);
+  CHECK(best.form.score.left < 1.1);
+}
+
 // In the resonance of the load. Filters of the deflection, and curves over what they make of it, leave twice as much.
 TEST(FormSearch, ACurveInFrontOfAFilterIsFoundThatNothingBehindTheFilterShows) {
   ModelFile truth = declared();

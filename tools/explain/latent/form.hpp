@@ -54,6 +54,11 @@ std::string in_words(const Form& form);
 /// that a smoother gives.
 Eigen::MatrixXd quantities(const LatentProblem& problem, std::size_t experiment, const Eigen::MatrixXd& deviations);
 
+/// True for a law of the record's time, alone or times another quantity.
+inline bool is_of_time(const Form& form) {
+  return form.argument == model::Argument::time || form.factor == model::Argument::time;
+}
+
 /// What the form is a law of, by row: its argument, times its factor.
 Eigen::VectorXd argument_of(const Form& form, const Eigen::MatrixXd& quantities);
 

@@ -271,7 +271,7 @@ std::vector<Form> with_memories(const FormRegression& regression, const Form& pl
   for (const Experiment& experiment : regression.problem().data.experiments) {
     period = std::min(period, experiment.period);
   }
-  if (!(size > 0.0) || !(rate.largest > 0.0) || plain.argument == Argument::time) {
+  if (!(size > 0.0) || !(rate.largest > 0.0) || is_of_time(plain)) {
     return forms;
   }
   const auto add = [&](Memory kind, auto&& set) {
@@ -323,7 +323,7 @@ std::vector<Form> with_powers(const FormRegression& regression, const Form& plai
   std::vector<Form> forms;
   const double size = size_of(regression, plain);
   // A square is a power itself, and a power of time does not end with the records.
-  if (size > 0.0 && plain.factor != plain.argument && plain.argument != Argument::time) {
+  if (size > 0.0 && plain.factor != plain.argument && !is_of_time(plain)) {
     for (const Memory kind : {Memory::odd_power, Memory::even_power}) {
       for (const double exponent : comb(kLeastExponent, kMostExponent, kPowers)) {
         Form form = plain;

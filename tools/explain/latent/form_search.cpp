@@ -296,6 +296,9 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
     for (std::size_t b = 0; b <= a && a + 1 < kArguments; ++b) {
       plain.push_back(at_place(place, static_cast<Argument>(a), static_cast<Argument>(b)));
     }
+    if (static_cast<Argument>(a) != Argument::time) {  // a law whose size drifts
+      plain.push_back(at_place(place, static_cast<Argument>(a), Argument::time));
+    }
   }
   for (const Form& form : plain) {
     std::ranges::move(with_memories(regression, form), std::back_inserter(forms));
