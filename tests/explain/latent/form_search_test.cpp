@@ -164,7 +164,6 @@ TEST(FormSearch, ARateLimitThatIsExceededForMomentsOnlyIsFound) {
   DOUBLES_EQUAL(kLimit, best.form.form.memory.width, 0.05 * kLimit);
 }
 
-// A quantum that is off by a hundredth is off by half a quantum at the ends of the range.
 TEST(FormSearch, ALawWhoseSizeDriftsIsAProductWithTime) {
   const Best best(with_reading([row = 0](double command) mutable { return 5e-4 * command * (2e-3 * row++); }));
   CHECK(best.form.form.argument == Argument::command && best.form.form.factor == Argument::time);
@@ -194,6 +193,7 @@ TEST(FormSearch, ACurveInFrontOfAFilterIsFoundThatNothingBehindTheFilterShows) {
   CHECK(best.score.left < explain::policy().left_by_single);
 }
 
+// A quantum that is off by a hundredth is off by half a quantum at the ends of the range.
 TEST(FormSearch, AFineQuantumOfASignalIsFound) {
   static constexpr double kQuantum = 1.5e-4;  // m, a fiftieth of the range
   Record record = record_of(declared());
