@@ -9,6 +9,7 @@
 
 #include <CppUTest/TestHarness.h>
 
+#include "tests/explain/latent/missing_effect.hpp"
 #include "tests/explain/readings.hpp"
 #include "tests/support/add_effect.hpp"
 #include "tools/simulate/simulate.hpp"
@@ -140,6 +141,38 @@ TEST(LatentInput, TheSignalOfASensorIsAsFastAsItIsAndThatOfAPortIsSlow) {
   CHECK(fast < 1.0);
   CHECK(most_likely(0.1, kPistonSensor).correlation_time > fast);
   CHECK(most_likely(37.0, {Port::engine, 0}).correlation_time > 5.0);
+}
+
+TEST(LatentInput, WhatAnEffectRepresentsOfTheSignalIsGivenBack) {
+  using Scale = model::SensorScale;
+  const auto set_error = [](double error) {
+    return [error](auto& effect) {
+      effect.option = 1;  // engine
+      effect.error = error;
+    };
+  };
+  ModelFile truth = test::with_effect<model::TorqueOffset>({2e3});
+  test::add_effect<Scale>(std::get<SimplexParameters>(truth.parameters), set_error(0.05));
+  const Dataset data = explain::make_dataset(test::declared(), {test::record_of(truth)});
+  Fitted fitted;
+  fitted.base = test::declared().parameters;
+  const std::size_t effect = test::add_effect<Scale>(std::get<SimplexParameters>(fitted.base), set_error(0.03));
+  const auto smoothed = [&] {
+    const LatentProblem problem = explain::latent_problem(data, fitted, 1);
+    LatentInput input = explain::most_likely_input(problem, Smoothed::kEngine);
+    explain::smooth(problem, Smoothed::kEngine, input);
+    return input;
+  };
+  // A torque cannot imitate a twentieth of a reading that the piston does not have.
+  CHECK(smoothed().leaves[1] > 1.5);
+
+  explain::Candidate candidate;
+  candidate.effect = effect;
+  fitted.free = explain::effect_parameters(fitted.base, candidate, explain::scales_of(fitted.base, data));
+  fitted.u = {fitted.free.front().coordinate(0.03)};
+  const LatentInput beside = smoothed();
+  CHECK(beside.leaves[1] < 1.1);
+  DOUBLES_EQUAL(0.05, fitted.free.front().value(fitted.u.front() + beside.move(0)), 1e-3);
 }
 
 TEST(LatentInput, HeldOutRowsAreNotLookedAt) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "tools/explain/fit/slopes.hpp"
 #include "tools/explain/latent/row_products.hpp"
@@ -202,6 +203,16 @@ class Filter {
 
 }  // namespace
 
+std::vector<std::size_t> moved_beside(const Fitted& around) {
+  std::vector<std::size_t> moved;
+  for (std::size_t k = 0; k < around.free.size(); ++k) {
+    if (!around.free[k].is_initial_state()) {
+      moved.push_back(k);
+    }
+  }
+  return moved;
+}
+
 LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned threads) {
   // Zeros that are integrated out of the residuals would correlate all rows of a record, which a filter takes one by one.
   Dataset without_priors = data;
@@ -211,24 +222,19 @@ LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned
   const Evaluator evaluator(without_priors, Resolution::coarse, Resolution::rough);
   const auto parameters = std::get<SimplexParameters>(around.parameters());
   LatentProblem problem{data, parameters, flow_scales(parameters), {}, {}, {}, {}, {}};
-  std::vector<std::size_t> declared;
-  for (std::size_t k = 0; k < around.free.size(); ++k) {
-    if (around.free[k].is_declared()) {
-      declared.push_back(k);
-    }
-  }
+  const std::vector<std::size_t> moved = moved_beside(around);
   Prediction prediction;
   Eigen::MatrixXd jacobian;
   if (!evaluator.predict(around.base, around.free, around.u, threads, prediction) ||
-      !differentiate(evaluator, around.base, around.free, around.u, declared, Slopes::narrow, threads, jacobian)) {
+      !differentiate(evaluator, around.base, around.free, around.u, moved, Slopes::narrow, threads, jacobian)) {
     return problem;
   }
-  const auto count = static_cast<Eigen::Index>(declared.size());
+  const auto count = static_cast<Eigen::Index>(moved.size());
   Eigen::Index parameters_in_all = count;
   const Eigen::VectorXd residual = evaluator.residuals(prediction);
   std::vector<std::vector<Eigen::Index>> zero_row(data.experiments.size());
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    std::vector<Eigen::Index>& own = problem.own.emplace_back(declared.size());
+    std::vector<Eigen::Index>& own = problem.own.emplace_back(moved.size());
     std::iota(own.begin(), own.end(), Eigen::Index{0});
     for (std::size_t c = 0; c < data.channels.size(); ++c) {
       zero_row[e].push_back(-1);
@@ -244,7 +250,8 @@ LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned
   }
   problem.expected = Eigen::VectorXd::Zero(parameters_in_all);
   for (Eigen::Index k = 0; k < count; ++k) {
-    problem.expected(k) = -around.u[declared[static_cast<std::size_t>(k)]];
+    const std::size_t own = moved[static_cast<std::size_t>(k)];
+    problem.expected(k) = around.free[own].is_declared() ? -around.u[own] : 0.0;
   }
   for (const Stretch& s : evaluator.stretches()) {
     const Experiment& experiment = data.experiments[s.experiment];
@@ -269,13 +276,19 @@ double likelihood_without(const LatentProblem& problem) {
   return Filter(problem, std::nullopt, {}).likelihood(move);
 }
 
+LatentInput input_of(const LatentProblem& problem, const LatentPlace& place, const LatentPrior& prior) {
+  LatentInput input;
+  input.prior = prior;
+  input.log_likelihood = Filter(problem, place, prior).likelihood(input.move);
+  return input;
+}
+
 LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& place) {
   LatentInput best;
   const auto look = [&](const LatentPrior& prior) {
-    Eigen::VectorXd move;
-    const double likelihood = Filter(problem, place, prior).likelihood(move);
-    if (best.prior.deviation == 0.0 || likelihood > best.log_likelihood) {
-      best = {likelihood, prior, move, {}, {}, {}};
+    LatentInput input = input_of(problem, place, prior);
+    if (best.prior.deviation == 0.0 || input.log_likelihood > best.log_likelihood) {
+      best = std::move(input);
     }
   };
   for (double logarithm = kSmallest; logarithm < kLargest + 0.5; logarithm += kCoarse) {

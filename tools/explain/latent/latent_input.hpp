@@ -29,8 +29,13 @@ struct LatentProblem {
   Eigen::VectorXd expected;                               ///< prior mean of the parameters' move, in tolerances
 };
 
-/// The problem about a fitted model. Empty flows if the model could not be simulated. Its parameters are the declared ones,
-/// in tolerances, then the zero of every channel of every record, in its prior's deviation (zeros.hpp).
+/// Indices of the free parameters of a fitted model that may move beside an unknown signal: all but those of the records'
+/// starts. An effect that was fitted while the signal was missing represents some of it.
+std::vector<std::size_t> moved_beside(const Fitted& around);
+
+/// The problem about a fitted model. Empty flows if the model could not be simulated. Its parameters are those of
+/// `moved_beside` in their coordinates, declared ones with their tolerances as prior, the others with one unit about where
+/// they are; then the zero of every channel of every record, in its prior's deviation (zeros.hpp).
 LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned threads);
 
 /// What a signal is like before it is seen: an Ornstein-Uhlenbeck process.
@@ -52,6 +57,9 @@ struct LatentInput {
 
 /// Log likelihood of the records without any unknown signal.
 double likelihood_without(const LatentProblem& problem);
+
+/// A signal at `place` with a given prior: its likelihood, and the move of the problem's parameters beside it.
+LatentInput input_of(const LatentProblem& problem, const LatentPlace& place, const LatentPrior& prior);
 
 /// The most likely size of a signal at `place`, and at a sensor its most likely correlation time: what a sensor adds may be
 /// fast, and a slow prior would compare places by how well it fits.

@@ -108,7 +108,6 @@ Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
     place.gain = input.log_likelihood - without;
     place.where = wanted[i].first;
     place.prior = input.prior;
-    place.move = input.move;
   });
   const double best = std::ranges::max(tried, {}, [](const auto& t) { return t.first.gain; }).first.gain;
   if (best < policy().least_gain) {

@@ -17,8 +17,7 @@ struct Place {
   bool is_possible = false;    ///< it leaves as little as the best: a law may act here, which costs less than a signal
   bool is_likely = false;      ///< ... and no other place explains clearly more
   LatentPlace where{};
-  LatentPrior prior{};     ///< of the most likely signal
-  Eigen::VectorXd move{};  ///< of the parameters of its problem beside it
+  LatentPrior prior{};  ///< of the most likely signal
 
   bool has(const std::string& site) const;
 };

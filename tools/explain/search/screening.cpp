@@ -33,6 +33,8 @@ constexpr double kHopeful = 0.1;
 /// A law with more parameters of its own is not scanned: it starts from where the laws that it contains end.
 constexpr std::size_t kMostScanned = 6;
 constexpr std::size_t kStarts = 3;
+/// How often the step of a scan of one parameter is halved about the best value.
+constexpr int kNarrowings = 3;
 constexpr int kShortFit = 6;
 constexpr int kFullFit = 12;
 constexpr int kFullFits = 2;
@@ -48,8 +50,7 @@ FitOptions fit_options(int iterations, const Frozen& frozen) {
 
 void sort_best_first(std::vector<Screened>& screened) {
   std::erase_if(screened, [](const Screened& s) { return !s.good; });
-  std::sort(screened.begin(), screened.end(),
-            [](const Screened& a, const Screened& b) { return a.criterion < b.criterion; });
+  std::ranges::sort(screened, {}, &Screened::criterion);
 }
 
 /// True if a law's criterion is close enough to its name's best, of either sign.
@@ -225,6 +226,22 @@ std::vector<Screening::Start> Screening::scan(Fitted fitted, const std::vector<s
   return starts;
 }
 
+void Screening::narrow(const Fitted& fitted, std::vector<Start>& starts) const {
+  double step = HUGE_VAL;
+  for (const Start& other : std::span(starts).subspan(1)) {
+    step = std::min(step, std::abs(other.u.back() - starts.front().u.back()));
+  }
+  for (int i = 0; i < kNarrowings && step > 0.0 && std::isfinite(step); ++i) {
+    step *= 0.5;
+    const double best = starts.front().u.back();
+    const auto [low, high] = fitted.free.back().range();
+    std::vector<Start> beside = scan(fitted, {{std::max(low, best - step)}, {std::min(high, best + step)}});
+    if (!beside.empty() && beside.front().cost < starts.front().cost) {
+      starts.front() = std::move(beside.front());
+    }
+  }
+}
+
 Screened Screening::start(const Candidate& candidate, const std::vector<std::vector<double>>& sharpened) const {
   const Stopwatch stopwatch;
   Screened best;
@@ -242,10 +259,8 @@ Screened Screening::start(const Candidate& candidate, const std::vector<std::vec
     return best;
   }
   // One or two parameters, or a table, have one valley; more have several.
-  const bool has_table = std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
-  const bool one_valley =
-      own.size() <= 2 || std::all_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.is_ordinate(); });
-  const std::size_t valleys = one_valley ? 1 : kStarts;
+  const bool has_table = std::ranges::any_of(own, &FreeParameter::is_ordinate);
+  const bool one_valley = own.size() <= 2 || std::ranges::all_of(own, &FreeParameter::is_ordinate);
   std::vector<Start> starts =
       scan(fitted, is_periodic(candidate)
                        ? periodic_starts(evaluator_, fitted, current_.free.size(), sharpened[channel_of_sinusoid(candidate)])
@@ -255,7 +270,10 @@ Screened Screening::start(const Candidate& candidate, const std::vector<std::vec
   const bool searched =
       has_table || std::any_of(own.begin(), own.end(), [](const FreeParameter& p) { return p.unit == "Hz"; });
   const bool hopeless = !searched && !starts.empty() && starts.front().cost >= cost_;
-  for (std::size_t i = 0; i < starts.size() && i < (hopeless ? 1 : valleys); ++i) {
+  if (!hopeless && !searched && own.size() == 1 && !starts.empty()) {
+    narrow(fitted, starts);
+  }
+  for (std::size_t i = 0; i < starts.size() && i < (hopeless || one_valley ? 1 : kStarts); ++i) {
     Screened screened{candidate, fitted, 0.0, 0.0, true};
     screened.fitted.u = starts[i].u;
     Tangent tangent = tangent_of(evaluator_, screened.fitted, fit_options(0, frozen_));

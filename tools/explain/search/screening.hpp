@@ -58,6 +58,9 @@ class Screening {
   std::size_t first_used() const { return evaluator_.data().used.front() ? 0 : 1; }
   Fitted with_candidate(const Candidate& candidate) const;
   std::vector<Start> scan(Fitted fitted, const std::vector<std::vector<double>>& points) const;
+  /// Halves the step of a scan of one parameter about its best start, the first of `starts`. The error of a law that
+  /// switches has ripples over its parameter, and a fit from a start far off ends in one.
+  void narrow(const Fitted& fitted, std::vector<Start>& starts) const;
   /// The channel that shows a sinusoid: a sensor's own shows in that sensor alone.
   std::size_t channel_of_sinusoid(const Candidate& candidate) const {
     return candidate.name == model::UnlistedRipple::name ? static_cast<std::size_t>(candidate.option) : first_used();

@@ -140,9 +140,7 @@ struct FormsOfPlace {
 /// explain too little, those of smoothed quantities are searched too.
 FormsOfPlace forms_of_place(const LatentProblem& problem, const Place& place, unsigned threads) {
   FormsOfPlace found{place.where, {}, {}};
-  LatentInput input;
-  input.prior = place.prior;
-  input.move = place.move;
+  LatentInput input = input_of(problem, place.where, place.prior);
   smooth(problem, place.where, input);
   for (const auto arguments : {FormRegression::Arguments::simulated, FormRegression::Arguments::smoothed}) {
     found.regression = std::make_unique<FormRegression>(problem, place.where, input, arguments);
@@ -205,11 +203,10 @@ std::optional<Screened> start_of(const Fitted& around, const ScoredForm& propose
     start.fitted.u.push_back(p.coordinate(std::clamp(values[p.index], p.lower, p.upper)));
     start.fitted.free.push_back(p);
   }
-  Eigen::Index declared = 0;
-  for (std::size_t k = 0; k < around.free.size(); ++k) {
-    if (around.free[k].is_declared()) {
-      start.fitted.u[k] += share * proposed.score.move(declared++);
-    }
+  Eigen::Index moved = 0;
+  for (const std::size_t k : moved_beside(around)) {
+    const auto [low, high] = around.free[k].range();
+    start.fitted.u[k] = std::clamp(start.fitted.u[k] + share * proposed.score.move(moved++), low, high);
   }
   start.criterion = proposed.score.criterion;
   start.good = true;
