@@ -201,6 +201,29 @@ class Filter {
   double correlation_time_;
 };
 
+/// The records with zeros that are known. Zeros that are integrated out of the residuals would correlate all rows of a
+/// record, which a filter takes one by one.
+Dataset without_zeros(Dataset data) {
+  for (Experiment& experiment : data.experiments) {
+    experiment.zero_deviation.assign(data.channels.size(), 0.0);
+  }
+  return data;
+}
+
+/// A prediction of `logged` at the rows of `data`, which is thinned from it.
+Prediction at_rows_of(const Dataset& data, const Dataset& logged, Prediction prediction) {
+  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+    const auto every = static_cast<std::size_t>(data.experiments[e].log_rows / logged.experiments[e].log_rows);
+    for (std::vector<double>& channel : prediction[e]) {
+      for (std::size_t row = 0; row < data.experiments[e].rows(); ++row) {
+        channel[row] = channel[row * every];
+      }
+      channel.resize(data.experiments[e].rows());
+    }
+  }
+  return prediction;
+}
+
 }  // namespace
 
 std::vector<std::size_t> moved_beside(const Fitted& around) {
@@ -213,25 +236,22 @@ std::vector<std::size_t> moved_beside(const Fitted& around) {
   return moved;
 }
 
-LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned threads) {
-  // Zeros that are integrated out of the residuals would correlate all rows of a record, which a filter takes one by one.
-  Dataset without_priors = data;
-  for (Experiment& experiment : without_priors.experiments) {
-    experiment.zero_deviation.assign(data.channels.size(), 0.0);
-  }
-  const Evaluator evaluator(without_priors, Resolution::coarse, Resolution::rough);
+LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const Fitted& around, unsigned threads) {
+  const Dataset all_rows = without_zeros(logged);
+  const Dataset kept_rows = without_zeros(data);
+  const Evaluator evaluator(kept_rows, Resolution::coarse, Resolution::rough);
   const auto parameters = std::get<SimplexParameters>(around.parameters());
   LatentProblem problem{data, parameters, flow_scales(parameters), {}, {}, {}, {}, {}};
   const std::vector<std::size_t> moved = moved_beside(around);
   Prediction prediction;
   Eigen::MatrixXd jacobian;
-  if (!evaluator.predict(around.base, around.free, around.u, threads, prediction) ||
+  if (!Evaluator(all_rows, Resolution::coarse).predict(around.base, around.free, around.u, threads, prediction) ||
       !differentiate(evaluator, around.base, around.free, around.u, moved, Slopes::narrow, threads, jacobian)) {
     return problem;
   }
   const auto count = static_cast<Eigen::Index>(moved.size());
   Eigen::Index parameters_in_all = count;
-  const Eigen::VectorXd residual = evaluator.residuals(prediction);
+  const Eigen::VectorXd residual = evaluator.residuals(at_rows_of(data, logged, std::move(prediction)));
   std::vector<std::vector<Eigen::Index>> zero_row(data.experiments.size());
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
     std::vector<Eigen::Index>& own = problem.own.emplace_back(moved.size());

@@ -36,7 +36,10 @@ std::vector<std::size_t> moved_beside(const Fitted& around);
 /// The problem about a fitted model. Empty flows if the model could not be simulated. Its parameters are those of
 /// `moved_beside` in their coordinates, declared ones with their tolerances as prior, the others with one unit about where
 /// they are; then the zero of every channel of every record, in its prior's deviation (zeros.hpp).
-LatentProblem latent_problem(const Dataset& data, const Fitted& around, unsigned threads);
+///
+/// `data`: the rows of the problem, of which it keeps a reference. `logged`: the records that they were thinned from, or the
+/// same. What the model leaves is that of `logged`: a rate limit makes something else of a command that is held longer.
+LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const Fitted& around, unsigned threads);
 
 /// What a signal is like before it is seen: an Ornstein-Uhlenbeck process.
 struct LatentPrior {

@@ -93,7 +93,7 @@ Located Located::beyond(const Located& other) const {
 Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
   const Dataset thin = thinned_to_rows(data, kMostRows);
   Located located;
-  const LatentProblem problem = latent_problem(thin, around, threads);
+  const LatentProblem problem = latent_problem(data, thin, around, threads);
   if (problem.flows.empty()) {
     return located;
   }

@@ -241,7 +241,7 @@ std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& aro
 std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around, const Located& located, unsigned threads,
                                       const Watch& watch) {
   const Dataset thin = thinned_to_rows(data, kMostRows);
-  const LatentProblem problem = latent_problem(thin, around, threads);
+  const LatentProblem problem = latent_problem(data, thin, around, threads);
   if (problem.flows.empty()) {
     return {};
   }
