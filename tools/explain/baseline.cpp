@@ -14,21 +14,6 @@ namespace {
 /// Two errors that differ by less than this share are the same.
 constexpr double kSame = 0.02;
 
-/// The rows of a prediction that a thinned dataset has.
-Prediction of_rows(const Prediction& full, const Dataset& data, const Dataset& thin) {
-  Prediction result(full.size());
-  for (std::size_t e = 0; e < full.size(); ++e) {
-    const auto every = static_cast<std::size_t>(std::lround(thin.experiments[e].period / data.experiments[e].period));
-    for (const std::vector<double>& channel : full[e]) {
-      std::vector<double>& rows = result[e].emplace_back();
-      for (std::size_t row = 0; row < channel.size(); row += every) {
-        rows.push_back(channel[row]);
-      }
-    }
-  }
-  return result;
-}
-
 /// The frequencies and the amplitudes at which one model leaves more than the other, in a sentence.
 std::string where(const Dataset& data, const Prediction& worse, const Prediction& better, std::size_t channel) {
   const std::vector<Band> of_worse = error_by_frequency(data, worse, channel);
@@ -69,7 +54,7 @@ std::optional<Baseline> baseline_of(const BlackBox& box, const Dataset& data, co
   }
   const Dataset thin = for_black_box(data);
   const Prediction by_box = simulated(box, thin);
-  const Prediction by_model = of_rows(explained, data, thin);
+  const Prediction by_model = at_thinned_rows(explained, data, thin);
   const Goodness of_box = goodness(thin, by_box);
   const Goodness of_model = goodness(thin, by_model);
   Baseline baseline;

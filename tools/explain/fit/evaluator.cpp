@@ -197,6 +197,20 @@ int steps_of(const ModelParameters& base, const Experiment& experiment, Resoluti
 
 }  // namespace
 
+Prediction at_thinned_rows(const Prediction& full, const Dataset& data, const Dataset& thin) {
+  Prediction result(full.size());
+  for (std::size_t e = 0; e < full.size(); ++e) {
+    const auto every = static_cast<std::size_t>(std::lround(thin.experiments[e].period / data.experiments[e].period));
+    for (const std::vector<double>& channel : full[e]) {
+      std::vector<double>& rows = result[e].emplace_back();
+      for (std::size_t row = 0; row < channel.size(); row += every) {
+        rows.push_back(channel[row]);
+      }
+    }
+  }
+  return result;
+}
+
 Evaluator::Evaluator(const Dataset& data, Resolution resolution, Resolution slopes)
     : data_(data), resolution_(resolution), slopes_(slopes), longest_first_(data.experiments.size()) {
   std::iota(longest_first_.begin(), longest_first_.end(), std::size_t{0});

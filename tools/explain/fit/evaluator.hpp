@@ -15,6 +15,9 @@ namespace hotfire::explain {
 /// What a model predicts: by experiment, by channel, a value a row.
 using Prediction = std::vector<std::vector<std::vector<double>>>;
 
+/// A prediction of `data` at the rows of `thin`, which is thinned from it.
+Prediction at_thinned_rows(const Prediction& full, const Dataset& data, const Dataset& thin);
+
 /// A run of consecutive rows of one channel that a fit sees, and where its residuals start in the residual vector.
 struct Stretch {
   std::size_t experiment;

@@ -210,20 +210,6 @@ Dataset without_zeros(Dataset data) {
   return data;
 }
 
-/// A prediction of `logged` at the rows of `data`, which is thinned from it.
-Prediction at_rows_of(const Dataset& data, const Dataset& logged, Prediction prediction) {
-  for (std::size_t e = 0; e < data.experiments.size(); ++e) {
-    const auto every = static_cast<std::size_t>(data.experiments[e].log_rows / logged.experiments[e].log_rows);
-    for (std::vector<double>& channel : prediction[e]) {
-      for (std::size_t row = 0; row < data.experiments[e].rows(); ++row) {
-        channel[row] = channel[row * every];
-      }
-      channel.resize(data.experiments[e].rows());
-    }
-  }
-  return prediction;
-}
-
 }  // namespace
 
 std::vector<std::size_t> moved_beside(const Fitted& around) {
@@ -251,7 +237,7 @@ LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const F
   }
   const auto count = static_cast<Eigen::Index>(moved.size());
   Eigen::Index parameters_in_all = count;
-  const Eigen::VectorXd residual = evaluator.residuals(at_rows_of(data, logged, std::move(prediction)));
+  const Eigen::VectorXd residual = evaluator.residuals(at_thinned_rows(prediction, logged, data));
   std::vector<std::vector<Eigen::Index>> zero_row(data.experiments.size());
   for (std::size_t e = 0; e < data.experiments.size(); ++e) {
     std::vector<Eigen::Index>& own = problem.own.emplace_back(moved.size());

@@ -16,7 +16,7 @@ struct LatentPlace {
   std::size_t channel = 0;  ///< of the sensor, where it is at no port
 };
 
-/// What is known before the signal is: the plant's flow, what the records leave, and how declared parameters move it.
+/// What is known before the signal is: the plant's flow, what the records leave, and how parameters move it.
 struct LatentProblem {
   const Dataset& data;
   model::Simplex<double>::Parameters parameters;  ///< that the flow is simulated under
@@ -26,7 +26,7 @@ struct LatentProblem {
                                                           ///< channel; NaN where a row is not fitted
   std::vector<std::vector<Eigen::MatrixXd>> sensitivity;  ///< by experiment and channel: a row a parameter of `own`
   std::vector<std::vector<Eigen::Index>> own;             ///< by experiment: the parameters that move it
-  Eigen::VectorXd expected;                               ///< prior mean of the parameters' move, in tolerances
+  Eigen::VectorXd expected;                               ///< prior mean of the parameters' move, in their coordinates
 };
 
 /// Indices of the free parameters of a fitted model that may move beside an unknown signal: all but those of the records'

@@ -231,10 +231,10 @@ void Screening::narrow(const Fitted& fitted, std::vector<Start>& starts) const {
   for (const Start& other : std::span(starts).subspan(1)) {
     step = std::min(step, std::abs(other.u.back() - starts.front().u.back()));
   }
+  const auto [low, high] = fitted.free.back().range();
   for (int i = 0; i < kNarrowings && step > 0.0 && std::isfinite(step); ++i) {
     step *= 0.5;
     const double best = starts.front().u.back();
-    const auto [low, high] = fitted.free.back().range();
     std::vector<Start> beside = scan(fitted, {{std::max(low, best - step)}, {std::min(high, best + step)}});
     if (!beside.empty() && beside.front().cost < starts.front().cost) {
       starts.front() = std::move(beside.front());
