@@ -66,6 +66,25 @@ TEST(Locate, WhatIsMissingBesideAFrictionThatSticksIsLocated) {
   CHECK(!located.allows("load_spring"));
 }
 
+// One signal at the piston represents what a rate limit and a leakage leave together.
+TEST(Locate, ASignalCostsLessBesideARightEffectAndAsMuchBesideAWrongOne) {
+  const ModelFile right = with_effect<model::RateLimit>({0.02});
+  ModelFile truth = right;
+  add_effect<model::Leakage>(std::get<SimplexParameters>(truth.parameters),
+                             [](auto& leakage) { leakage.coefficient = 6e-11; });
+  const explain::Dataset data = data_of(truth);
+  const auto cost_beside = [&](const ModelFile& model) {
+    explain::Fitted about = about_declared();
+    about.base = model.parameters;
+    return explain::cost_of_signal(data, about, 2);
+  };
+  const double alone = cost_beside(declared());
+  CHECK(cost_beside(right) < 0.5 * alone);
+  CHECK(cost_beside(with_effect<model::TorqueOffset>({3e3})) > 0.95 * alone);
+  // Of both there is only noise left, which the readings' own quantum makes smaller than declared.
+  CHECK(cost_beside(truth) < 0.05 * alone);
+}
+
 TEST(Locate, AnInvisibleMissingTermIsNoPlace) {
   // A thousandth of the torque that the test above locates: below what 20 s of the sensors show.
   CHECK(located_in(with_effect<model::DuctHardening>({3e6})).places.empty());

@@ -94,12 +94,8 @@ Given bowed() {
     constexpr double kTorque = 8e3;
     constexpr double kAngle = 0.02;
     values.argument = static_cast<int>(model::Argument::angle);
-    values.table.points = static_cast<int>(values.table.x.size());
-    for (std::size_t k = 0; k < values.table.x.size(); ++k) {
-      const double place = 2.0 * static_cast<double>(k) / static_cast<double>(values.table.x.size() - 1) - 1.0;
-      values.table.x[k] = kAngle * place;
-      values.table.y[k] = kTorque * place * place;
-    }
+    values.factor = 1 + static_cast<int>(model::Argument::angle);
+    values.gain = kTorque / (kAngle * kAngle);
   }));
 }
 

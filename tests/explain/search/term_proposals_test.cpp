@@ -291,3 +291,39 @@ TEST(TermProposals, TheSamplesOfASignalThatIsReplacedAreFoundFromAnyInstant) {
   CHECK(search.refiner.over_periods(search.evaluator, search.start(9.0, 5.5, 1.0, false)).front().least >
         periods.front().least);
 }
+
+TEST(TermProposals, ATermWithoutItsMemoryIsAGainThatDoesWhatBothDid) {
+  const auto with_play = [](double direct) {
+    explain::Fitted fitted = about_declared();
+    fitted.base = with_term<FlowTerm>([&](auto& term) {
+                    term.option = static_cast<int>(Memory::play);
+                    term.argument = static_cast<int>(Argument::rate);
+                    term.factor = factor(Argument::position);
+                    term.gain = 0.1;
+                    term.direct = direct;
+                    term.width = 1e-6;
+                  }).parameters;
+    return fitted;
+  };
+  Screened start;
+  const SimplexParameters neutral;
+  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
+    if constexpr (std::is_same_v<E, FlowTerm>) {
+      start.candidate.effect = index;
+    }
+  });
+  start.candidate.option = static_cast<int>(Memory::play);
+  start.candidate.choices = {static_cast<int>(Argument::rate), factor(Argument::position), 0};
+  const explain::Fitted both = with_play(0.3);
+  const auto plain = explain::without_memory(both, start.candidate, explain::Scales{});
+  CHECK(plain.has_value());
+  STRCMP_EQUAL("gain of rate x position", plain->candidate.option_name.c_str());
+  explain::Fitted fitted = plain->fitted;
+  fitted.base = fitted.parameters();
+  const auto& term = term_of<FlowTerm>(fitted);
+  LONGS_EQUAL(static_cast<int>(Memory::none), term.option);
+  DOUBLES_EQUAL(0.4, term.gain, 1e-12);
+  DOUBLES_EQUAL(0.0, term.direct, 0.0);
+  LONGS_EQUAL(both.free.size() + 1, fitted.free.size());
+  CHECK(!explain::without_memory(with_play(0.0), start.candidate, explain::Scales{}));
+}

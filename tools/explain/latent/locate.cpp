@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "model/declaration/sites.hpp"
@@ -16,6 +18,8 @@ namespace {
 
 /// Rows at most: of two minutes at 250 Hz. Gains are a thousand times what decides between places.
 constexpr double kMostRows = 3.2e4;
+/// Rows at most where models are compared by what a signal beside them costs: that is thousands.
+constexpr double kMostRowsCompared = 4e3;
 
 std::string site(model::Site at) { return std::string(model::site_name(at)); }
 
@@ -146,6 +150,24 @@ Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
     located.places.push_back(std::move(place));
   }
   return located;
+}
+
+double cost_of_signal(const Dataset& data, const Fitted& around, unsigned threads) {
+  const Dataset thin = thinned_to_rows(data, kMostRowsCompared);
+  const LatentProblem problem = latent_problem(data, thin, around, threads);
+  if (problem.flows.empty()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double values = 0.0;
+  for (const Eigen::MatrixXd& left : problem.left) {
+    values += static_cast<double>(left.array().isFinite().count());
+  }
+  const double of_noise = -0.5 * values * (1.0 + std::log(2.0 * std::numbers::pi));
+  double most = -std::numeric_limits<double>::infinity();
+  for (const auto& [place, sites] : places_of(problem.data)) {
+    most = std::max(most, most_likely_input(problem, place).log_likelihood);
+  }
+  return of_noise - most;
 }
 
 }  // namespace hotfire::explain

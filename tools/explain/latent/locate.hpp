@@ -50,4 +50,9 @@ struct Located {
 /// about a kilobyte a row.
 Located locate(const Dataset& data, const Fitted& around, unsigned threads);
 
+/// How much less likely the records are beside a model with one unknown signal, at the place where it is most likely, than
+/// noise alone would be, in log likelihood. A small or slow signal costs little. Infinite if the model cannot be simulated.
+/// Records of more than 4,000 rows together are thinned to as many.
+double cost_of_signal(const Dataset& data, const Fitted& around, unsigned threads);
+
 }  // namespace hotfire::explain

@@ -238,6 +238,39 @@ std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& aro
   return best;
 }
 
+std::optional<Screened> without_memory(const Fitted& fitted, const Candidate& term, const Scales& scales) {
+  Screened plain;
+  plain.candidate = term;
+  plain.candidate.option = static_cast<int>(model::Memory::none);
+  plain.fitted = fitted;
+  plain.fitted.base = fitted.parameters();
+  double gain = 0.0;
+  visit_term(plain.fitted.base, term, [&](auto& values) {
+    if (values.option == plain.candidate.option || values.direct == 0.0) {
+      return;
+    }
+    Form form;
+    form.argument = static_cast<model::Argument>(values.argument);
+    form.factor = values.factor > 0 ? std::optional(static_cast<model::Argument>(values.factor - 1)) : std::nullopt;
+    plain.candidate.option_name = in_words(form);
+    gain = values.gain + values.direct;
+    values.gain = gain;
+    values.direct = 0.0;
+    values.table.points = 0;
+  });
+  if (gain == 0.0) {
+    return std::nullopt;
+  }
+  activate(plain.fitted.base, plain.candidate);
+  drop_parameters(plain.fitted, [&](const FreeParameter& p) { return p.is_of_effect(term.effect); });
+  for (FreeParameter& parameter : effect_parameters(plain.fitted.base, plain.candidate, scales)) {
+    parameter.unit_size = std::abs(gain);
+    plain.fitted.u.push_back(parameter.coordinate(gain));
+    plain.fitted.free.push_back(std::move(parameter));
+  }
+  return plain;
+}
+
 std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around, const Located& located, unsigned threads,
                                       const Watch& watch) {
   const Dataset thin = thinned_to_rows(data, kMostRows);

@@ -25,4 +25,8 @@ std::optional<Screened> start_of(const Fitted& around, const ScoredForm& propose
 std::optional<Screened> best_start(const Evaluator& evaluator, const Fitted& around, const ScoredForm& proposed,
                                    const Scales& scales, double without, unsigned threads);
 
+/// A fitted term by its argument alone, where its law has that beside a memory: the same model without the memory, to be
+/// fitted. None for another law.
+std::optional<Screened> without_memory(const Fitted& fitted, const Candidate& term, const Scales& scales);
+
 }  // namespace hotfire::explain

@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
+#include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
+#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/search/screening.hpp"
 #include "tools/explain/search/unlisted_stage.hpp"
 #include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/reasons.hpp"
@@ -98,18 +104,81 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
       excess_over_noise(data_, result_.explained.prediction) <= policy().visible || options_.watch.interrupted()) {
     return;
   }
-  Found without{result_.kept, result_.explained, result_.rival};
-  restore(names);
+  start_from_if_better(names);
+}
+
+/// Searches for terms of unknown law beside `names`. Keeps them and the terms where they leave clearly less than what was
+/// found.
+void UnlistedStage::start_from_if_better(Found names) {
+  Found before{result_.kept, result_.explained, result_.rival};
+  const std::size_t given = names.kept.size();
+  restore(std::move(names));
   add_beside(Names::given);
   name_terms();
-  const double left = excess_over_noise(data_, without.explained.prediction);
-  const bool is_better = result_.kept.size() > names.kept.size() &&
+  const double left = excess_over_noise(data_, before.explained.prediction);
+  const bool is_better = result_.kept.size() > given &&
                          excess_over_noise(data_, result_.explained.prediction) < policy().clearly_less * left &&
-                         held_out_rows_agree(result_.explained, without.explained);
+                         held_out_rows_agree(result_.explained, before.explained);
   if (!is_better) {
-    restore(std::move(without));
+    restore(std::move(before));
   }
   file_hypothesis();
+}
+
+/// The name without which an unknown signal costs most, by its best law, fitted alone; none where it saves less than a
+/// tenth.
+///
+/// A signal beside the calibrated model represents everything that is missing, and its prior makes that unlikely. Beside a
+/// right name it has less to represent. A wrong name imitates what the signal represents anyway.
+std::optional<Screened> UnlistedStage::name_that_saves_most() const {
+  const Fitted& around = result_.calibrated.model;
+  const Evaluator evaluator = refiner_.for_screening(around);
+  const Screening screening(evaluator, around, scales_, options_.threads);
+  std::vector<Screened> names;
+  for (Screened& law : screening.run(candidates_beside(around.base, data_), "beside an unknown signal", options_.watch)) {
+    const bool is_known =
+        std::ranges::any_of(names, [&](const Screened& name) { return name.candidate.name == law.candidate.name; });
+    if (!is_known) {
+      names.push_back(std::move(law));
+    }
+  }
+  const double alone = cost_of_signal(coarse_.data(), around, options_.threads);
+  parallel_for(names.size(), options_.threads, [&](std::size_t i) {
+    names[i].criterion = options_.watch.interrupted() ? alone : cost_of_signal(coarse_.data(), names[i].fitted, 1);
+  });
+  const auto best = std::ranges::min_element(names, {}, &Screened::criterion);
+  const bool saves = best != names.end() && best->criterion < (1.0 - policy().open_share) * alone;
+  return saves ? std::optional(std::move(*best)) : std::nullopt;
+}
+
+/// The other hypothesis where what was found leaves more than the noise: the name without which an unknown signal costs
+/// most, with terms of unknown law beside it. What explains most alone, from which the search starts, may imitate both.
+/// Tried once, since it is beside the calibrated model.
+void UnlistedStage::start_from_name_beside_a_signal(const Found& names) {
+  if (!is_hydraulic_axis(result_.calibrated.model.base) || started_from_name_ ||
+      excess_over_noise(data_, result_.explained.prediction) <= policy().visible || options_.watch.interrupted()) {
+    return;
+  }
+  started_from_name_ = true;
+  options_.watch.progress({Work::locating, "comparing listed effects beside an unknown signal"});
+  const std::optional<Screened> name = name_that_saves_most();
+  const auto is_only_name = [&](const std::vector<Kept>& kept) {
+    const auto is_listed = [&](const Kept& k) { return !is_unlisted(k); };
+    const auto is_it = [&](const Kept& k) { return k.trial.candidate.name == name->candidate.name; };
+    return std::ranges::count_if(kept, is_listed) == 1 && std::ranges::any_of(kept, is_it);
+  };
+  if (!name || is_only_name(names.kept) || is_only_name(result_.kept)) {
+    return;
+  }
+  Assessed fitted = refiner_.of_screened(name->fitted, result_.calibrated.model.u);
+  if (!fitted.good() || options_.watch.interrupted()) {
+    return;
+  }
+  Trial trial{result_.next_round(), name->candidate, true, 0.0, 1.0, name->seconds, "kept", ""};
+  compare(trial, fitted, result_.calibrated, fitted.goodness.fitted);
+  trial.reason = words::text(words::Reason::saves_signal);
+  result_.trials.push_back(trial);
+  start_from_if_better({{Kept{std::move(trial), {}}}, std::move(fitted), std::nullopt});
 }
 
 /// Brings the decisions of all trials in line with the effects that are kept: those of the other hypothesis are dropped, and
@@ -141,11 +210,15 @@ void UnlistedStage::file_hypothesis() {
   }
 }
 
-/// A name beside a term of unknown law that hardly leaves more without it is the term's.
+/// A name beside a term of unknown law is the term's if no channel has clearly more left without the name. The term may be
+/// far from right in another channel.
 void UnlistedStage::drop_light_names() {
   if (!has_unlisted()) {
     return;
   }
+  const auto leaves_hardly_more = [](const ChannelFit& without, const ChannelFit& with) {
+    return policy().clearly_less * std::sqrt(without.mean_square) < std::sqrt(with.mean_square) || with.rows == 0.0;
+  };
   for (std::size_t i = result_.kept.size(); i-- > 0;) {
     if (is_unlisted(result_.kept[i]) || options_.watch.interrupted()) {
       continue;
@@ -163,7 +236,7 @@ void UnlistedStage::drop_light_names() {
       continue;
     }
     compare(trial, rest, result_.explained, rest.goodness.fitted);
-    if (policy().clearly_less * trial.held_out_ratio < 1.0) {
+    if (std::ranges::equal(rest.goodness.held_out, result_.explained.goodness.held_out, leaves_hardly_more)) {
       result_.trials.push_back(std::move(trial));
       result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
       Assessed settled = refiner_.settled(rest.model);

@@ -285,6 +285,16 @@ void settle_best(const UnlistedTask& task, UnlistedSearch& result) {
     compare_and_say(best, settled, task.beside);
     result.model = std::move(settled);
   }
+  // A memory that the records do not need imitates what the regression makes of the plant.
+  if (const auto plain = without_memory(result.model.model, best.candidate, task.scales)) {
+    Assessed simple = task.refiner.settled(plain->fitted);
+    if (simple.good() && criterion_change(simple, result.model, result.model.goodness.fitted) <= 0.0 &&
+        held_out_ratio(simple, result.model) < 1.0 + policy().least_held_out_drop) {
+      best.candidate = plain->candidate;
+      compare_and_say(best, simple, task.beside);
+      result.model = std::move(simple);
+    }
+  }
   if (is_periodic(best.candidate)) {
     Assessed common = task.refiner.settled(with_common_phase(task.data, result.model.model, best.candidate));
     if (common.good() && criterion_change(common, result.model, result.model.goodness.fitted) <= 0.0) {

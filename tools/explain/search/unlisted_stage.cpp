@@ -53,6 +53,7 @@ void UnlistedStage::finish() {
     add_beside(Names::open);
     name_terms();
     return_to_names_if_better(names);
+    start_from_name_beside_a_signal(names);
     drop_light_names();
     drop_names_that_explain_little();
   }

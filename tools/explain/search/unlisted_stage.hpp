@@ -27,7 +27,8 @@ class UnlistedStage {
 
   /// The end of a search: names that the located place refutes are taken out; a term of unknown law takes the place of the
   /// names or comes beside them where it leaves clearly less; names that were given up are tried again with terms beside
-  /// them; names without weight are dropped; what is left is located.
+  /// them; so is the name without which an unknown signal costs most; names without weight are dropped; what is left is
+  /// located.
   void finish();
 
   /// Where the term acts that the explained model is missing; nowhere for a mass, which has one place only.
@@ -79,6 +80,9 @@ class UnlistedStage {
   bool replace_misfit(const Located& left);
   void name_terms();
   void return_to_names_if_better(const Found& names);
+  void start_from_name_beside_a_signal(const Found& names);
+  std::optional<Screened> name_that_saves_most() const;
+  void start_from_if_better(Found names);
   void file_hypothesis();
   void drop_light_names();
   void drop_names_that_explain_little();
@@ -95,6 +99,7 @@ class UnlistedStage {
   std::vector<double> beside_values_;      ///< of that model's free parameters; none: not asked for yet
   std::optional<UnlistedSearch> instead_;  ///< beside the calibrated model, once it was searched for
   std::size_t instead_trials_ = 0;         ///< where its trials are among all
+  bool started_from_name_ = false;         ///< that saves an unknown signal most: tried
 };
 
 }  // namespace hotfire::explain

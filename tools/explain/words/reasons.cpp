@@ -20,6 +20,7 @@ std::string_view text(Reason reason) noexcept {
       ", more than noise at the site of a term of unknown law",
       ", more than the term of unknown law",
       "; another hypothesis is kept",
+      "saves an unknown signal most",
       "fitted jointly before the search was interrupted; other candidates were not",
       "screened before the search was interrupted",
       "not fitted before the search was interrupted"};

@@ -23,11 +23,12 @@ enum class Reason {
   rest_of_term,
   leaves_more,
   other_hypothesis,
+  saves_signal,
   interrupted_refined,
   interrupted_screened,
   interrupted_before
 };
-inline constexpr std::size_t kReasons = 16;
+inline constexpr std::size_t kReasons = 17;
 std::string_view text(Reason reason) noexcept;
 
 /// How a law compares with another one of the same effect, whose label follows.
