@@ -36,6 +36,14 @@ TEST(Assessed, WhatClearsTheWorstChannelCountsByTheRmsOverAll) {
   DOUBLES_EQUAL(std::sqrt(10.0 / 901.0), held_out_ratio(leaving({3.0, 1.0}), leaving({30.0, 1.0})), 1e-12);
 }
 
+TEST(Assessed, AModelThatLeavesClearlyMoreOfOneChannelLeavesMoreHoweverFarOffTheOtherIs) {
+  CHECK_TRUE(leaves_clearly_more(leaving({18.0, 6.0}), leaving({18.0, 1.0})));
+  // Half of the mean square is clearly less: 1.43 times the rms is clearly more.
+  CHECK_FALSE(leaves_clearly_more(leaving({18.0, 1.4}), leaving({18.0, 1.0})));
+  CHECK_TRUE(leaves_clearly_more(leaving({18.0, 1.45}), leaving({18.0, 1.0})));
+  CHECK_FALSE(leaves_clearly_more(leaving({18.0, 1.0}), leaving({30.0, 6.0})));
+}
+
 TEST(Assessed, HeldOutErrorHasToFallWhereTheRowsContainWhatIsMissing) {
   CHECK_TRUE(held_out_rows_agree(leaving({1.0, 2.0}), leaving({1.0, 6.0})));
   CHECK_FALSE(held_out_rows_agree(leaving({1.0, 6.0}), leaving({1.0, 6.0})));

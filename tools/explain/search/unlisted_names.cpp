@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -216,9 +215,6 @@ void UnlistedStage::drop_light_names() {
   if (!has_unlisted()) {
     return;
   }
-  const auto leaves_hardly_more = [](const ChannelFit& without, const ChannelFit& with) {
-    return policy().clearly_less * std::sqrt(without.mean_square) < std::sqrt(with.mean_square) || with.rows == 0.0;
-  };
   for (std::size_t i = result_.kept.size(); i-- > 0;) {
     if (is_unlisted(result_.kept[i]) || options_.watch.interrupted()) {
       continue;
@@ -236,7 +232,7 @@ void UnlistedStage::drop_light_names() {
       continue;
     }
     compare(trial, rest, result_.explained, rest.goodness.fitted);
-    if (std::ranges::equal(rest.goodness.held_out, result_.explained.goodness.held_out, leaves_hardly_more)) {
+    if (!leaves_clearly_more(rest, result_.explained)) {
       result_.trials.push_back(std::move(trial));
       result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
       Assessed settled = refiner_.settled(rest.model);

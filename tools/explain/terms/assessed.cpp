@@ -138,6 +138,14 @@ double held_out_ratio(const Assessed& with, const Assessed& without) {
   return error_ratio(with.goodness.held_out, without.goodness.held_out);
 }
 
+bool leaves_clearly_more(const Assessed& one, const Assessed& other) {
+  const double more = 1.0 / (policy().clearly_less * policy().clearly_less);
+  const auto is_no_more = [&](const ChannelFit& left, const ChannelFit& by_other) {
+    return left.mean_square <= more * by_other.mean_square;
+  };
+  return !std::ranges::equal(one.goodness.held_out, other.goodness.held_out, is_no_more);
+}
+
 bool held_out_rows_contain_more(const Assessed& model) {
   return std::ranges::any_of(model.goodness.held_out, [](const ChannelFit& channel) {
     return channel.mean_square - 1.0 > policy().visible * policy().visible;

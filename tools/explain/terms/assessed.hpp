@@ -96,6 +96,10 @@ double criterion_change(const Assessed& with, const Assessed& without, const std
 /// Held-out error of one model over that of another, as `error_ratio` counts it.
 double held_out_ratio(const Assessed& with, const Assessed& without);
 
+/// True if a model leaves clearly more of the held-out rows than another, in any channel. One that is far off in both must
+/// not hide the others.
+bool leaves_clearly_more(const Assessed& one, const Assessed& other);
+
 /// True if held-out rows show more than noise of what a model is missing.
 bool held_out_rows_contain_more(const Assessed& model);
 
