@@ -293,25 +293,19 @@ TEST(TermProposals, TheSamplesOfASignalThatIsReplacedAreFoundFromAnyInstant) {
 }
 
 TEST(TermProposals, ATermWithoutItsMemoryIsAGainThatDoesWhatBothDid) {
-  const auto with_play = [](double direct) {
+  Screened start;
+  const auto with_play = [&](double direct) {
     explain::Fitted fitted = about_declared();
-    fitted.base = with_term<FlowTerm>([&](auto& term) {
-                    term.option = static_cast<int>(Memory::play);
-                    term.argument = static_cast<int>(Argument::rate);
-                    term.factor = factor(Argument::position);
-                    term.gain = 0.1;
-                    term.direct = direct;
-                    term.width = 1e-6;
-                  }).parameters;
+    start.candidate.effect = add_effect<FlowTerm>(std::get<SimplexParameters>(fitted.base), [&](auto& term) {
+      term.option = static_cast<int>(Memory::play);
+      term.argument = static_cast<int>(Argument::rate);
+      term.factor = factor(Argument::position);
+      term.gain = 0.1;
+      term.direct = direct;
+      term.width = 1e-6;
+    });
     return fitted;
   };
-  Screened start;
-  const SimplexParameters neutral;
-  model::visit_effects(neutral, [&]<class E>(std::size_t index, const auto&) {
-    if constexpr (std::is_same_v<E, FlowTerm>) {
-      start.candidate.effect = index;
-    }
-  });
   start.candidate.option = static_cast<int>(Memory::play);
   start.candidate.choices = {static_cast<int>(Argument::rate), factor(Argument::position), 0};
   const explain::Fitted both = with_play(0.3);

@@ -92,6 +92,12 @@ bool UnlistedStage::replace_misfit(const Located& left) {
   return false;
 }
 
+/// True where what was found leaves more than the noise, of a plant that terms of unknown law are known for.
+bool UnlistedStage::wants_another_start() const {
+  return is_hydraulic_axis(result_.explained.model.base) &&
+         excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted();
+}
+
 /// The other hypothesis where names were given up: the same names with terms of unknown law beside them. A signal without a
 /// law explains what a name does as well, and a law may need the name.
 void UnlistedStage::return_to_names_if_better(const Found& names) {
@@ -99,11 +105,9 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
     return std::ranges::any_of(result_.kept,
                                [&](const Kept& kept) { return label(kept.trial.candidate) == label(name.trial.candidate); });
   };
-  if (std::ranges::all_of(names.kept, is_kept) || !is_hydraulic_axis(names.explained.model.base) ||
-      excess_over_noise(data_, result_.explained.prediction) <= policy().visible || options_.watch.interrupted()) {
-    return;
+  if (!std::ranges::all_of(names.kept, is_kept) && wants_another_start()) {
+    start_from_if_better(names);
   }
-  start_from_if_better(names);
 }
 
 /// Searches for terms of unknown law beside `names`. Keeps them and the terms where they leave clearly less than what was
@@ -154,8 +158,7 @@ std::optional<Screened> UnlistedStage::name_that_saves_most() const {
 /// most, with terms of unknown law beside it. What explains most alone, from which the search starts, may imitate both.
 /// Tried once, since it is beside the calibrated model.
 void UnlistedStage::start_from_name_beside_a_signal(const Found& names) {
-  if (!is_hydraulic_axis(result_.calibrated.model.base) || started_from_name_ ||
-      excess_over_noise(data_, result_.explained.prediction) <= policy().visible || options_.watch.interrupted()) {
+  if (started_from_name_ || !wants_another_start()) {
     return;
   }
   started_from_name_ = true;

@@ -79,6 +79,7 @@ class UnlistedStage {
   bool revise_term(std::size_t term, const RoundResult& listed, const Located& left);
   bool replace_misfit(const Located& left);
   void name_terms();
+  bool wants_another_start() const;
   void return_to_names_if_better(const Found& names);
   void start_from_name_beside_a_signal(const Found& names);
   std::optional<Screened> name_that_saves_most() const;
