@@ -230,6 +230,36 @@ TEST(LatentInput, TheFlowOfARowIsThatOfTheSimulation) {
   DOUBLES_EQUAL(simulated, angle, 0.01 * std::abs(simulated));
 }
 
+// A stiff seal whose friction falls to three quarters within 6 mm/s, beside a piston of 50 kg: while it breaks away, a
+// deviation grows by a thousand in a row.
+TEST(LatentInput, ASealThatBreaksAwayLeavesEveryPlaceALikelihood) {
+  const std::initializer_list<double> seal{7000.0, 1.3, 0.006, 5e8};
+  const auto problem_of = [](const Dataset& data, const ModelFile& model) {
+    return explain::latent_problem(data, data, Smoothed::about(model), 1);
+  };
+  const auto rows_that_forget = [](const LatentProblem& problem) {
+    return std::ranges::count_if(problem.flows[0].rows, [](const explain::RowFlow& row) { return row.forgets.any(); });
+  };
+  const ModelFile sticking = test::with_effect<model::PistonFriction>(seal);
+  ModelFile truth = sticking;
+  test::add_effect<model::TorqueOffset>(std::get<SimplexParameters>(truth.parameters),
+                                        [](auto& effect) { effect.torque = kTorque; });
+  const Dataset data = test::data_of(truth);
+  const LatentProblem problem = problem_of(data, sticking);
+  CHECK(rows_that_forget(problem) > 10);
+  CHECK(rows_that_forget(problem) < static_cast<std::ptrdiff_t>(data.experiments[0].rows() / 10));
+  LONGS_EQUAL(0, rows_that_forget(problem_of(data, test::declared())));
+  const double without = explain::likelihood_without(problem);
+  for (int port = 0; port < explain::kPorts; ++port) {
+    const LatentPlace place{static_cast<Port>(port), 0};
+    LatentInput input = explain::most_likely_input(problem, place);
+    CHECK(input.log_likelihood > without);
+    explain::smooth(problem, place, input);
+    CHECK(input.signal[0].allFinite());
+    CHECK(input.states[0].allFinite());
+  }
+}
+
 TEST(LatentInput, WhatAnEffectMayLeaveOfItsOwnLawRefutesNoOtherSite) {
   explain::Place torque;
   torque.sites = {"engine_torque"};

@@ -25,6 +25,9 @@ constexpr double kStartDeviation = 0.05;
 /// Deviation that a row adds to each state, over its scale: what the linear flow is wrong by at least. Far below what a
 /// sensor resolves, and far above the rounding that would make a covariance indefinite where friction sticks and slips.
 constexpr double kFlowDeviation = 1e-7;
+/// Deviation of a state, over its scale, beyond which a flow is not linear: what full opening does. Where a seal breaks away
+/// and its friction falls with speed, an unknown deviation grows by a thousand in a row, and by more in the next one.
+constexpr double kLargestDeviation = 1.0;
 /// Sizes of the signal over its scale that are looked at, as logarithms: from what no sensor sees to all that the plant has.
 constexpr double kSmallest = -16.1;  // ln 1e-7
 constexpr double kLargest = 0.7;     // ln 2
@@ -133,7 +136,7 @@ class Filter {
         if (row + 1 < experiment.rows()) {
           const FilterMatrix moves = transition(problem_.flows[e].rows[row], kept);
           means = moves.lazyProduct(means.topRows<kFilterStates>()).eval();
-          advance(moves, kept, covariance);
+          advance(moves, problem_.flows[e].rows[row], kept, covariance);
         }
       }
       products.flush();
@@ -145,6 +148,20 @@ class Filter {
     move = factor.solve(right);
     const double determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum();
     return -0.5 * (square - right.dot(move) + logarithms + determinant + count * std::log(2.0 * std::numbers::pi));
+  }
+
+  /// Lets the flow of an experiment forget every state whose deviation it would make larger than `kLargestDeviation`,
+  /// without any signal. One set of forgotten states for all places keeps their likelihoods comparable.
+  void forget_growth(std::size_t e, std::vector<RowFlow>& rows) const {
+    FilterMatrix covariance = start();
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      measure(e, row, covariance);
+      const FilterMatrix measured = covariance;
+      do {
+        covariance = measured;
+        advance(transition(rows[row], 0.0), rows[row], 0.0, covariance);
+      } while (rows[row].forget(covariance.diagonal().head<kFlowStates>().array() > kLargestDeviation * kLargestDeviation));
+    }
   }
 
   /// One experiment with the parameters moved, forward.
@@ -177,19 +194,33 @@ class Filter {
       if (row + 1 < experiment.rows()) {
         const FilterMatrix moves = transition(problem_.flows[e].rows[row], kept);
         mean = (moves * states_of(mean)).eval();
-        advance(moves, kept, covariance);
+        advance(moves, problem_.flows[e].rows[row], kept, covariance);
       }
     }
     return steps;
   }
 
  private:
-  /// The covariance a row later.
-  void advance(const FilterMatrix& moves, double kept, FilterMatrix& covariance) const {
+  /// The covariance after what the sensors read in a row.
+  void measure(std::size_t e, std::size_t row, FilterMatrix& covariance) const {
+    for (std::size_t c = 0; c < kReadState.size(); ++c) {
+      if (!std::isnan(problem_.left[e](static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(c)))) {
+        const FilterVector seen = observation(problem_.data.experiments[e], c);
+        const FilterVector spread = covariance.lazyProduct(states_of(seen));
+        covariance -= (spread / (1.0 + seen.dot(spread))).lazyProduct(states_of(spread).transpose());
+      }
+    }
+  }
+
+  /// The covariance a row later. A state that the row forgets is as unknown as at the start.
+  void advance(const FilterMatrix& moves, const RowFlow& flow, double kept, FilterMatrix& covariance) const {
     // Of this size Eigen's product for large matrices takes several times as long.
     const FilterMatrix spread = moves.lazyProduct(covariance.topRows<kFilterStates>());
     covariance = spread.lazyProduct(moves.topRows<kFilterStates>().transpose());
-    covariance.diagonal().head<kFlowStates>().array() += kFlowDeviation * kFlowDeviation;
+    for (int i = 0; i < kFlowStates; ++i) {
+      const double added = flow.forgets(i) ? kStartDeviation : kFlowDeviation;
+      covariance(i, i) += added * added;
+    }
     covariance(kSignal, kSignal) += variance_ * (1.0 - kept * kept);
     auto square = covariance.topRows<kFilterStates>();
     square = (0.5 * (square + square.transpose())).eval();
@@ -274,6 +305,10 @@ LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const F
     }
   }
   problem.flows = linear_flow(data, parameters, problem.scales, threads);
+  const Filter filter(problem, std::nullopt, {});
+  for (std::size_t e = 0; e < problem.flows.size(); ++e) {
+    filter.forget_growth(e, problem.flows[e].rows);
+  }
   return problem;
 }
 

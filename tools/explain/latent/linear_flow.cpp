@@ -127,6 +127,19 @@ RowFlow take_flow(const PortedPlant& plant, DualPlant::State& state, const FlowS
 
 }  // namespace
 
+bool RowFlow::forget(const StateSet& states) {
+  bool is_new = false;
+  for (int i = 0; i < kFlowStates; ++i) {
+    if (states(i) && !forgets(i)) {
+      is_new = true;
+      forgets(i) = true;
+      transition.row(i).setZero();
+      response.row(i).setZero();
+    }
+  }
+  return is_new;
+}
+
 FlowScales flow_scales(const PlainPlant::Parameters& parameters) {
   const auto& valve = parameters.servovalve;
   const auto& actuator = parameters.actuator;

@@ -19,11 +19,17 @@ inline constexpr std::array<int, 3> kReadState{model::AxisStates::kPiston, model
 inline constexpr int kPorts = 5;
 enum class Port { torque_motor, oil, piston, spring, engine };
 
+using StateSet = Eigen::Array<bool, kFlowStates, 1>;
+
 /// From one row of a record to the next, along a simulation: deviation+ = transition deviation + response input, with the
 /// input of every port held over the row. Both without unit: states and inputs over `FlowScales`.
 struct RowFlow {
   Eigen::Matrix<double, kFlowStates, kFlowStates> transition;
   Eigen::Matrix<double, kFlowStates, kPorts> response;
+  StateSet forgets = StateSet::Constant(false);  ///< states that it leaves unknown
+
+  /// Forgets states. True if one of them was remembered before.
+  bool forget(const StateSet& states);
 };
 
 /// Sizes of states and inputs, all from the declared model: supply pressure, full flow, and what full opening does.
