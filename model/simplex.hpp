@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 #include "model/actuator/axis.hpp"
@@ -40,8 +41,11 @@ class Simplex : public Axis<S, List> {
   /// The steady state under a constant command [rad]: set-up only.
   State steady(const S& command) const;
 
-  /// The same of an axis that may have no position feedback: its piston is then at `piston` [m].
-  State resting(const S& command, const S& piston) const { return this->settled(command, Uncoupled{}, piston); }
+  /// The same of an axis whose piston was seen at `piston` [m], if it was: it rests there without position feedback, and as
+  /// far as a play in the valve lets it.
+  State resting(const S& command, const std::optional<double>& piston) const {
+    return this->settled(command, Uncoupled{}, piston);
+  }
 
   /// The same beside another axis, whose motion is given: `around(angle)` is the `Coupling` at the axis's own angle [rad].
   template <class Around>

@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "model/actuator/parts.hpp"
@@ -10,7 +12,6 @@
 #include "model/declaration/effect.hpp"
 #include "model/numerics/clock.hpp"
 #include "model/numerics/exact_hold.hpp"
-#include "model/numerics/root.hpp"
 
 namespace hotfire::model {
 
@@ -156,35 +157,11 @@ class Axis : public AxisStates {
   S engine_compliance() const noexcept { return engine_compliance_; }
 
   /// The steady state under a constant command [rad]: set-up only. The valve's flow equals the leakage, the engine's torques
-  /// balance, friction is unloaded. If a dead band leaves the piston free, it is at the command. Without position feedback
-  /// it is held at `piston` [m] until the first step.
+  /// balance, friction is unloaded. If a dead band leaves the piston free, it is at the command. `piston` is where the
+  /// piston was seen [m]: without position feedback it is held there until the first step (at 0 if it was not seen), and a
+  /// play in the valve lets it rest there, as far as the play goes.
   template <class Around>
-  State settled(const S& command, const Around& around, const S& piston = S{0.0}) const {
-    State state;
-    Signal<S> commanded{command, h_};
-    settle<Site::command>(parameters_.effects, state.effects, commanded);
-    pass_through<Site::command>(parameters_.effects, acting_, state.effects, commanded, Keep::no);
-    state.inputs(kCommand) = parameters_.actuator.moment_arm * commanded.value;
-    constexpr double kWidth = 1e-6;  // m, rad: far below what a sensor sees
-    const auto flow_at = [&](const S& at) {
-      state.y(kPiston) = at;
-      const auto force_at = [&](const S& angle) { return excess_force(state, angle, around); };
-      state.y(kAngle) = root_of_decreasing<S>(at / parameters_.actuator.moment_arm, kWidth, force_at);
-      excess_force(state, state.y(kAngle), around);
-      return net_flow(state, around);
-    };
-    const S& fed = parameters_.servovalve.position_feedback;
-    flow_at(value_of(fed) > 0.0 ? root_of_decreasing<S>(state.inputs(kCommand) / fed, kWidth, flow_at) : piston);
-    evaluate(state, at_rest(state), around, Keep::no);
-    const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
-    const Surroundings<S> seen = around_state(state, state.y, state.clock.at(h_));
-    for (std::size_t channel = 0; channel < truth.size(); ++channel) {
-      settle_channel<S, List>(static_cast<int>(channel), parameters_.effects, state.effects,
-                              Signal<S>{truth[channel], h_, state.clock.at(h_), S{0.0}, &seen});
-    }
-    measure(state);
-    return state;
-  }
+  State settled(const S& command, const Around& around, const std::optional<double>& piston = std::nullopt) const;
 
   /// Opens a step with the command [rad] held.
   void begin(State& state, const S& command, Advance& advance) const noexcept {
@@ -331,47 +308,12 @@ class Axis : public AxisStates {
     return {state.y, state.y, state.y, state.y, S{0.0}, mid_step(state)};
   }
 
-  /// At rest at `angle` and the piston of `state`: the force of the load spring beyond what the engine's torques need [N].
-  /// Leaves angle, force and the structure's deflection in `state`.
   template <class Around>
-  S excess_force(State& state, const S& angle, const Around& around) const noexcept {
-    const auto& effects = parameters_.effects;
-    const S nominal = parameters_.actuator.moment_arm;
-    state.y(kAngle) = angle;
-    const Surroundings<S> seen = around_state(state, state.y, mid_step(state));
-    // Keeps what the springs remember of their force, so that the search in them starts near it.
-    const Spring<S> still = spring_around(
-        around, Spring<S>{state.y(kPiston) - nominal * angle, angle, nominal, nominal, stiffness_,
-                          parameters_.actuator.stiffness, parameters_.structure.stiffness, h_, seen.time, &seen});
-    settle<Site::load_spring>(effects, state.effects, still);
-    Spring<S> geometry = still;
-    pass_through<Site::load_spring>(effects, acting_, state.effects, geometry, Keep::yes);
-    Motion<S> motion{angle, S{0.0}, S{0.0}, engine_compliance_, h_};
-    motion.seen = &seen;
-    look_around(around, motion);
-    const S torque = sum_over<Site::engine_torque>(effects, acting_, state.effects, motion, Keep::no);
-    const S needed = (parameters_.engine.duct_stiffness * angle + torque_around(around, torque)) / geometry.arm;
-    state.spring_force = needed;
-    settle<Site::structure>(effects, state.effects, AttachPoint<S>{needed, h_});
-    evaluate(state, at_rest(state), around, Keep::no);
-    return state.spring_force - needed;
-  }
-
-  /// At rest under the load in `state`: what flows into the extend chamber [m^3/s]. Leaves pressure and spool in `state`.
+  S excess_force(State& state, const S& angle, const Around& around) const noexcept;
   template <class Around>
-  S net_flow(State& state, const Around& around) const noexcept {
-    state.y(kPressure) = (state.spring_force + state.inputs(kPistonForce)) / parameters_.actuator.piston_area;
-    state.y(kWashout) = state.y(kPressure);
-    evaluate(state, at_rest(state), around, Keep::no);
-    state.y(kOpening) = torque_motor(state, state.y) + state.inputs(kValveCommand);
-    settle<Site::valve>(parameters_.effects, state.effects, Signal<S>{state.y(kOpening), h_});
-    const Surroundings<S> seen = around_state(state, state.y, mid_step(state));
-    settle<Site::flow>(parameters_.effects, state.effects,
-                       hydraulics(state, state.y(kOpening), state.y(kPressure), seen, Keep::no));
-    evaluate(state, at_rest(state), around, Keep::no);
-    return parameters_.servovalve.rated_flow * state.y(kOpening) + state.inputs(kFlow) -
-           parameters_.actuator.leakage * state.y(kPressure);
-  }
+  S net_flow(State& state, const Around& around) const noexcept;
+  template <class FlowAt>
+  void rest_in_play(State& state, double piston, FlowAt&& flow_at) const;
 
   void measure(State& state) const noexcept {
     const std::array<S, 3> truth{state.y(kPiston), state.y(kAngle), state.y(kPressure)};
@@ -398,3 +340,5 @@ class Axis : public AxisStates {
 };
 
 }  // namespace hotfire::model
+
+#include "model/actuator/axis_rest.hpp"

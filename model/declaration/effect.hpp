@@ -370,6 +370,21 @@ void settle(const EffectParameters<S, List>& parameters, EffectStates<S, List>& 
   });
 }
 
+/// Lets the active effects of one site that have a play come from the input `before`. Returns whether there is one.
+template <Site site, class S, class List>
+bool come_from(const EffectParameters<S, List>& parameters, EffectStates<S, List>& states, const S& before) noexcept {
+  bool any = false;
+  List::for_each([&]<class E, std::size_t I>() {
+    if constexpr (E::site == site && requires { E::come_from(std::get<I>(states.values), before); }) {
+      if (parameters.active[I]) {
+        E::come_from(std::get<I>(states.values), before);
+        any = true;
+      }
+    }
+  });
+  return any;
+}
+
 /// True if an active effect of the list enters at `site`.
 template <Site site, class S, class List>
 bool any_active(const EffectParameters<S, List>& parameters) noexcept {

@@ -20,11 +20,6 @@ inline std::span<const double> values_of(const Record& inputs, std::string_view 
   return channel != nullptr ? std::span<const double>(channel->values) : std::span<const double>();
 }
 
-/// Piston position at the first row of a record of a hydraulic axis, if it is measured there [m]; otherwise 0.
-inline double first_piston(const Record& inputs, double moment_arm) {
-  return first_piston(values_of(inputs, "piston"), values_of(inputs, "engine"), moment_arm);
-}
-
 /// An output record with the rows of `inputs`. It holds the input channel only.
 inline Record beside(const Record& inputs, const Channel& input) {
   Record outputs;
@@ -43,9 +38,9 @@ inline FileError runaway_error(const Record& inputs, std::size_t row, std::strin
 }
 
 /// Where a plant of one axis starts under a record: a hydraulic axis in the steady state under the first command
-/// (without position feedback at the first row of its piston or engine), a driven mass at the first row of its position and
-/// velocity, each zero where the record does not have it, a moved body on its path, a structure in modal coordinates at
-/// rest, an electromechanical actuator at rest where its first row is (`at_first_row`).
+/// (`first_piston` says where, without position feedback and in a play of the valve), a driven mass at the first row of its
+/// position and velocity, each zero where the record does not have it, a moved body on its path, a structure in modal
+/// coordinates at rest, an electromechanical actuator at rest where its first row is (`at_first_row`).
 template <class Plant>
 typename Plant::State start_of(const Plant& plant, const Record& inputs) {
   using S = typename Plant::Scalar;
@@ -67,8 +62,9 @@ typename Plant::State start_of(const Plant& plant, const Record& inputs) {
                             values_of(inputs, Plant::channels[Plant::kPosition]),
                             values_of(inputs, Plant::channels[Plant::kMotorPosition]));
       } else {
-        return plant.resting(S(inputs.find(std::string(Plant::input_channel))->values.front()),
-                             S(first_piston(inputs, model::value_of(plant.parameters().actuator.moment_arm))));
+        const std::span<const double> command = inputs.find(std::string(Plant::input_channel))->values;
+        return plant.resting(S(command.front()),
+                             first_piston(plant, command, values_of(inputs, "piston"), values_of(inputs, "engine")));
       }
     }();
     state.clock.start = S(inputs.start);

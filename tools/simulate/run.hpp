@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -19,9 +22,26 @@ namespace hotfire {
 inline constexpr double kRunaway = 1e12;
 inline bool is_runaway(double reading) { return !(std::abs(reading) < kRunaway); }
 
-/// Piston position at the first row of a hydraulic axis, by what is measured there [m]; 0 where neither is.
-inline double first_piston(std::span<const double> piston, std::span<const double> engine, double moment_arm) {
-  return !piston.empty() ? piston.front() : !engine.empty() ? moment_arm * engine.front() : 0.0;
+/// Where the piston of a hydraulic axis is at the first row, by what is measured of `piston` [m] or `engine` [rad]; nothing
+/// where neither is. An axis with position feedback is at rest there: the mean of the first rows under an unchanged
+/// `command` has less noise than one row.
+template <class S>
+std::optional<double> first_piston(const model::Axis<S, model::SimplexEffects>& axis, std::span<const double> command,
+                                   std::span<const double> piston, std::span<const double> engine) {
+  using model::value_of;
+  constexpr std::size_t kRowsOfStart = 20;  // a fifth of the noise of one
+  const std::span<const double> measured = piston.empty() ? engine : piston;
+  if (measured.empty()) {
+    return std::nullopt;
+  }
+  std::size_t rows = 1;
+  while (value_of(axis.parameters().servovalve.position_feedback) > 0.0 &&
+         rows < std::min({kRowsOfStart, command.size(), measured.size()}) && command[rows] == command.front()) {
+    ++rows;
+  }
+  const double mean = std::accumulate(measured.begin(), measured.begin() + static_cast<std::ptrdiff_t>(rows), 0.0) /
+                      static_cast<double>(rows);
+  return piston.empty() ? value_of(axis.parameters().actuator.moment_arm) * mean : mean;
 }
 
 /// True if the setpoint is a position: then it has the unit of the load's.

@@ -30,6 +30,13 @@ struct ValveHysteresis {
     S last{0.0};      ///< command at the end of the last step
   };
 
+  /// Before the first step the command was `before`, in the middle of the play.
+  template <class S>
+  static void come_from(State<S>& state, const S& before) noexcept {
+    state.distance = S{0.0};
+    state.last = before;
+  }
+
   /// The command runs straight from its start to its end; the mean of the play over that line is exact.
   template <class S>
   static S step(const Params<S>& params, State<S>& state, const Signal<S>& input) noexcept {

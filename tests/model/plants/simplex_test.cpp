@@ -6,6 +6,7 @@
 #include <complex>
 #include <cstring>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "tests/model/support/plants.hpp"
@@ -285,6 +286,37 @@ TEST(Simplex, GoesOnFromACopyOfTheBytesOfItsState) {
     plant.step(copy, lively_input(plant, k * kStep));
   }
   CHECK_TRUE(same_numbers(state, copy));
+}
+
+// Every piston position is a rest at which the spool needs no more than the play: an interval of twice the play over the
+// gain of the loop, of which `steady`, which comes from the middle of the play, is an end.
+TEST(Simplex, AnAxisWithAPlayInItsValveRestsWhereItsPistonWasSeenAsFarAsThePlayGoes) {
+  constexpr double kCommand = 0.01;
+  Plant::Parameters parameters;
+  activate<model::ValveHysteresis, Plant>(parameters, {0, 0.02});
+  activate<model::TorqueOffset, Plant>(parameters, {0, -2e4});
+  const Plant plant(parameters, kStep);
+  const auto piston_at_rest = [&](double seen) { return plant.resting(kCommand, seen).y(Plant::kPiston); };
+  const double low = piston_at_rest(-1.0);
+  const double high = piston_at_rest(1.0);
+  DOUBLES_EQUAL(2.0 * 0.02 / parameters.servovalve.position_gain, high - low, 0.01 * (high - low));
+  const double from_middle = plant.steady(kCommand).y(Plant::kPiston);
+  CHECK_TRUE(std::min(high - from_middle, from_middle - low) < 1e-9);
+  for (const double share : {0.01, 0.3, 0.99}) {
+    const double seen = low + share * (high - low);
+    Plant::State state = plant.resting(kCommand, seen);
+    DOUBLES_EQUAL(seen, state.y(Plant::kPiston), 1e-12);
+    for (int k = 0; k < 4000; ++k) {
+      plant.step(state, kCommand);
+    }
+    DOUBLES_EQUAL(seen, state.y(Plant::kPiston), 1e-8);
+  }
+}
+
+TEST(Simplex, WithoutAPlayInItsValveAnAxisRestsWhereItsCommandSays) {
+  const Plant plant(three_effects(), kStep);
+  CHECK_TRUE(same_numbers(plant.steady(0.01), plant.resting(0.01, 0.03)));
+  CHECK_TRUE(same_numbers(plant.steady(0.01), plant.resting(0.01, std::nullopt)));
 }
 
 }  // namespace hotfire::test

@@ -25,7 +25,6 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
   if constexpr (Plant::topology == "imposed_motion") {
     return enter_path(plant, experiment.input, experiment.period, experiment.start);
   } else {
-    using model::value_of;
     typename Plant::State state = [&] {
       if constexpr (Plant::topology == "direct") {
         return plant.moving(start.values[0], start.values[1], S(experiment.input.front()));
@@ -47,8 +46,8 @@ typename Plant::State initial_state(const Plant& plant, const Dataset& data, con
           return coupling;
         });
       } else {
-        return plant.resting(S(experiment.input.front()), S(first_piston(experiment.measured[0], experiment.measured[1],
-                                                                         value_of(plant.parameters().actuator.moment_arm))));
+        return plant.resting(S(experiment.input.front()),
+                             first_piston(plant, experiment.input, experiment.measured[0], experiment.measured[1]));
       }
     }();
     state.clock.start = start.values[2];

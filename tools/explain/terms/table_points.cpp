@@ -121,7 +121,7 @@ Extents extents_under(const Dataset& data, const Parameters& parameters) {
                             experiment.measured[Plant::kMotorPosition]);
       } else {
         return plant.resting(experiment.input.front(),
-                             first_piston(experiment.measured[0], experiment.measured[1], parameters.actuator.moment_arm));
+                             first_piston(plant, experiment.input, experiment.measured[0], experiment.measured[1]));
       }
     }();
     auto block = experiment.fitted.begin();
