@@ -44,6 +44,7 @@ TEST(OpenLoop, AnAxisWithAPlayStartsWhereTheFirstRowsOfPistonOrEngineAre) {
   const Axis axis = axis_with_play();
   const double low = axis.resting(0.01, -1.0).y(Axis::kPiston);
   const double high = axis.resting(0.01, 1.0).y(Axis::kPiston);
+  DOUBLES_EQUAL(2.0 * 0.02 / axis.parameters().servovalve.position_gain, high - low, 0.01 * (high - low));
   const double middle = 0.5 * (low + high);
   const double noise = 0.1 * (high - low);
   DOUBLES_EQUAL(middle, start_of_piston(record_of("piston", "m", middle, noise)), 1e-3 * noise);
