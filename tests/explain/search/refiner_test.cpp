@@ -201,3 +201,22 @@ TEST(Refiner, ScreensWithRoughStepsWhereTheyChangeLittleOfWhatIsLeft) { CHECK_TR
 // What the pressure channel lacks is a thousandth of what the piston's does: over both channels together rough steps change
 // next to nothing.
 TEST(Refiner, ScreensWithRankingStepsWhereRoughOnesChangeOneChannelThatIsMetAlready) { CHECK_FALSE(screens_roughly(true)); }
+
+// The next round moved the stiffness to where nothing fits.
+TEST(Refiner, FromTheDeclaredValuesTheBetterOfTwoFitsIsKept) {
+  const Strokes strokes;
+  const Dataset& data = strokes.data;
+  Fitted model = guided_mass(data, strokes.scales, "lugre", 0.4);
+  const auto declared = explain::declared_parameters(model.base, {{"mass.stiffness", 0.05}});
+  LONGS_EQUAL(1, declared.size());
+  model.free.insert(model.free.begin(), declared.begin(), declared.end());
+  model.u.insert(model.u.begin(), -18.0);
+  const auto moved = explain::assess(strokes.fine, 1, model);
+  CHECK_FALSE(explain::reaches_noise(data, moved));
+  const auto again = strokes.refiner.from_declared_values(moved);
+  CHECK_TRUE(explain::reaches_noise(data, again));
+  DOUBLES_EQUAL(0.0, again.model.u.front(), 0.1);
+  // Where the noise is reached already there is nothing to gain but what a rounding makes of it.
+  const auto kept = strokes.refiner.from_declared_values(again);
+  CHECK(explain::Goodness::combined(kept.goodness.held_out) <= explain::Goodness::combined(again.goodness.held_out));
+}

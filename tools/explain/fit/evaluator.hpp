@@ -29,8 +29,9 @@ struct Stretch {
 
 /// How finely experiments are stepped: `fine` is what `hotfire simulate` and the rig do; `coarse` takes half as many steps
 /// and ranks candidates, a step of 1 ms being right to a hundredth of sensor noise on smooth effects; `rough` takes a
-/// quarter and screens them, where what is left is far more than such steps are wrong by.
-enum class Resolution { fine, coarse, rough };
+/// quarter and screens them, where what is left is far more than such steps are wrong by. `finest` takes twice as many as
+/// `fine`, to know the error of those.
+enum class Resolution { finest, fine, coarse, rough };
 
 /// Puts the coordinates `u` into parameters.
 ModelParameters with_values(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u);

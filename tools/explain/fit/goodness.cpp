@@ -170,4 +170,27 @@ double excess_over_noise(const Dataset& data, const Prediction& prediction) {
   return largest;
 }
 
+std::vector<double> difference_over_noise(const Dataset& data, const Prediction& one, const Prediction& other) {
+  std::vector<double> difference(data.channels.size(), 0.0);
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    double square = 0.0;
+    double rows = 0.0;
+    for (std::size_t e = 0; e < data.experiments.size(); ++e) {
+      const Experiment& experiment = data.experiments[e];
+      if (experiment.measured[c].empty()) {
+        continue;
+      }
+      for (const Block& block : experiment.scored()) {
+        for (std::size_t row = block.first; row < block.last; ++row) {
+          const double apart = (one[e][c][row] - other[e][c][row]) / experiment.noise[c];
+          square += apart * apart;
+          rows += 1.0;
+        }
+      }
+    }
+    difference[c] = rows > 0.0 ? std::sqrt(square / rows) : 0.0;
+  }
+  return difference;
+}
+
 }  // namespace hotfire::explain

@@ -55,4 +55,7 @@ double excess_over_noise(const Dataset& data, const Prediction& prediction, std:
 /// The largest of it over all channels.
 double excess_over_noise(const Dataset& data, const Prediction& prediction);
 
+/// How far two predictions are apart on the rows that are compared: rms over the noise, by channel.
+std::vector<double> difference_over_noise(const Dataset& data, const Prediction& one, const Prediction& other);
+
 }  // namespace hotfire::explain

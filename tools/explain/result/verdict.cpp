@@ -147,7 +147,10 @@ std::string sentence_of(Verdict verdict, const SearchResult& found, bool noise_i
   if (!faults.empty()) {
     text += words::faults_of_records(faults) + " ";
   }
-  return text + words::error_falls(found.kept.size() == 1, error, verdict == Verdict::explained);
+  const words::Rest rest = verdict != Verdict::explained        ? words::Rest::unexplained
+                           : found.explained.step_error.empty() ? words::Rest::of_sensors
+                                                                : words::Rest::of_sensors_and_steps;
+  return text + words::error_falls(found.kept.size() == 1, error, rest);
 }
 
 std::string what_it_is_not(const SearchResult& found) {

@@ -22,15 +22,13 @@ namespace hotfire::explain {
 
 namespace {
 
-/// Rough steps serve where they change the residuals of every channel by less than this share of them. They are shifted by
-/// that change, and what is left of it is the square of a share.
-constexpr double kLostToSteps = 0.5;
 /// Places on the way that screening moves what was free before, the whole way first. It is kept unless it leaves more than
 /// so many times what another leaves: what little a linear move misses is for the fit.
 constexpr std::array kSharesOfMove{1.0, 0.5, 0.25, 0.0};
 constexpr double kMovedTooFar = 2.0;
 
-/// True if what two models leave of every channel differs by less than that share of it. One that is met to its noise counts
+/// True if rough steps serve: what two models leave of every channel differs by a share of it that steps may change. They
+/// are shifted by that change, and what is left of it is the square of a share. A channel that is met to its noise counts
 /// with all its rows, and so it must not be lost in the residuals of another that is far off.
 bool are_alike(const Evaluator& evaluator, const Eigen::VectorXd& left, const Eigen::VectorXd& other) {
   const std::vector<double> square = evaluator.squares_by_channel(left);
@@ -111,7 +109,12 @@ Assessed Refiner::ranked(const Fitted& fitted, const Effort& effort) const {
       --rest.passes;
     }
   }
-  return refined(coarse_, fine_, threads_, std::move(start), rest);
+  Assessed ended = refined(coarse_, fine_, threads_, std::move(start), rest);
+  if (is_ranked_coarsely() && leaves_what_steps_do(data_, coarse_, threads_, ended)) {
+    Assessed closer = refined(fine_, fine_, threads_, ended.model, rest);
+    ended = better_of(std::move(ended), std::move(closer));
+  }
+  return with_step_error(std::move(ended));
 }
 
 Fitted Refiner::start_of_screened(const Evaluator& evaluator, const Fitted& screened, std::span<const double> frozen) const {
@@ -142,6 +145,25 @@ Fitted Refiner::start_of_screened(const Evaluator& evaluator, const Fitted& scre
   return best;
 }
 
+Assessed Refiner::settled(const Fitted& fitted, const Effort& effort) const {
+  return with_step_error(refined(fine_, fine_, threads_, fitted, effort));
+}
+
+Assessed Refiner::with_step_error(Assessed assessed) const {
+  if (is_ranked_coarsely()) {
+    measure_step_error(data_, coarse_, threads_, assessed);
+  }
+  return assessed;
+}
+
+Assessed Refiner::from_declared_values(Assessed fitted) const {
+  if (watch_.interrupted()) {
+    return fitted;
+  }
+  Assessed afresh = ranked(with_declared_values(fitted.model), kRanking);
+  return better_of(std::move(fitted), std::move(afresh));
+}
+
 Assessed Refiner::from_other_starts(int round, Assessed winner, const Candidate& candidate) const {
   // A term of the grammar started where the regression put it.
   if (is_done(winner) || !candidate.choices.empty()) {
@@ -150,8 +172,7 @@ Assessed Refiner::from_other_starts(int round, Assessed winner, const Candidate&
   watch_.progress({Work::fitting, fmt::format("round {}: fitting {} from other starts", round, label(candidate)),
                    SharesOfWork::kFittedWithAll});
   if (is_far_from_declared(winner.model)) {
-    Assessed afresh = ranked(with_declared_values(winner.model), kRanking);
-    winner = better_of(std::move(winner), std::move(afresh));
+    winner = from_declared_values(std::move(winner));
     if (is_done(winner)) {
       return winner;
     }
@@ -351,7 +372,7 @@ Screened Refiner::with_samples_of(const Evaluator& evaluator, const Screened& ot
 }
 
 Assessed Refiner::over_ripples(Assessed fitted, double height) const {
-  const double left = excess_over_noise(data_, fitted.prediction);
+  const double left = excess_over_noise(data_, fitted);
   if (left < policy().nothing_left || left >= height || watch_.interrupted()) {
     return fitted;
   }

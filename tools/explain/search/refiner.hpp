@@ -60,14 +60,14 @@ class Refiner {
   Screened with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
                            std::span<const double> frozen) const;
   /// Fitted under fine steps, as the report says it.
-  Assessed settled(const Fitted& fitted, const Effort& effort = kFinal) const {
-    return refined(fine_, fine_, threads_, fitted, effort);
-  }
+  Assessed settled(const Fitted& fitted, const Effort& effort = kFinal) const;
 
   /// A model that leaves something, but less beyond the noise than the ripples of its error are high, may sit in one: it is
   /// fitted along differences that are wider than a ripple, and then along narrow derivatives, from where those ended. The
   /// best of all. `height`: of the ripples, over the noise.
   Assessed over_ripples(Assessed fitted, double height = policy().near_noise) const;
+  /// Fitted again with the declared parameters at their declared values, the effects where they are. The better of both.
+  Assessed from_declared_values(Assessed fitted) const;
   /// From the declared values, and from other values of this effect, until one reaches the noise. The best of all.
   Assessed from_other_starts(int round, Assessed winner, const Candidate& candidate) const;
 
@@ -92,6 +92,8 @@ class Refiner {
  private:
   Fitted start_of_screened(const Evaluator& evaluator, const Fitted& screened, std::span<const double> frozen) const;
   std::optional<Evaluator> rough_about(const Fitted& model) const;
+  bool is_ranked_coarsely() const { return coarse_.resolution() != fine_.resolution(); }
+  Assessed with_step_error(Assessed assessed) const;
   bool is_done(const Assessed& winner) const;
   Screened with_samples_at(const Evaluator& evaluator, Screened held, double rows, double passed) const;
   Screened at_best_instant(const Evaluator& evaluator, const Screened& held, int off) const;

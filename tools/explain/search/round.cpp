@@ -45,8 +45,8 @@ RoundResult Round::run() {
   if (watch_.interrupted()) {
     return undecided();
   }
-  if (best_ && clears_up(finalists_[*best_]) && !reaches_noise(data_, finalists_[*best_])) {
-    cross_ripples();
+  if (best_ && clears_up(finalists_[*best_])) {
+    leave_local_minima();
     rank();
   }
   RoundResult result;
@@ -80,13 +80,13 @@ RoundResult Round::run() {
 /// False where what is left is of the noise's size already and a further effect takes away little of it: it then imitates
 /// how the laws that were found differ from the truth's.
 bool Round::clears_up(const Assessed& with) const {
-  const double before = excess_over_noise(data_, current_.prediction);
-  const double after = excess_over_noise(data_, with.prediction);
+  const double before = excess_over_noise(data_, current_);
+  const double after = excess_over_noise(data_, with);
   return before > policy().visible || after * after < policy().clearly_less * before * before;
 }
 
 bool Round::is_worth_a_name(const Trial& trial, const Assessed& with) const {
-  return trial.held_out_ratio < policy().hardly_less || excess_over_noise(data_, with.prediction) < policy().near_noise;
+  return trial.held_out_ratio < policy().hardly_less || excess_over_noise(data_, with) < policy().near_noise;
 }
 
 /// True if a finalist that is fitted already leaves no more than noise, and is either a simpler law of the same effect or
@@ -103,7 +103,7 @@ bool Round::is_decided_against(std::size_t wanted) const {
 }
 
 bool Round::is_near_noise(std::size_t finalist) const {
-  return excess_over_noise(data_, finalists_[finalist].prediction) < policy().near_noise;
+  return excess_over_noise(data_, finalists_[finalist]) < policy().near_noise;
 }
 
 void Round::fit_finalists() {
@@ -122,11 +122,20 @@ void Round::fit_finalists() {
   }
 }
 
-void Round::cross_ripples() {
+/// Fits those that may yet be the best from elsewhere. Two candidates that are nearly as good are not compared by the local
+/// minimum that one of them is in: all that is wrong with it may be a declared parameter that the last round moved.
+void Round::leave_local_minima() {
+  const bool is_at_noise = reaches_noise(data_, finalists_[*best_]);
   for (const std::size_t i : contenders_of(order_, screened_, finalists_)) {
-    report_progress("over ripples", i, SharesOfWork::kFittedWithAll);
     const Stopwatch stopwatch;
-    finalists_[i] = refiner_.over_ripples(std::move(finalists_[i]));
+    if (!is_at_noise) {
+      report_progress("over ripples", i, SharesOfWork::kFittedWithAll);
+      finalists_[i] = refiner_.over_ripples(std::move(finalists_[i]));
+    }
+    if (is_near_noise(i) && excess_over_noise(data_, finalists_[i]) >= policy().nothing_left) {
+      report_progress("from the declared values", i, SharesOfWork::kFittedWithAll);
+      finalists_[i] = refiner_.from_declared_values(std::move(finalists_[i]));
+    }
     trials_[i].seconds += stopwatch.seconds();
   }
 }

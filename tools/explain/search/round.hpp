@@ -37,7 +37,7 @@ class Round {
   bool is_decided_against(std::size_t wanted) const;
   bool is_near_noise(std::size_t finalist) const;
   void fit_finalists();
-  void cross_ripples();
+  void leave_local_minima();
   void add_richer_laws();
   void rank();
   Assessed winner();

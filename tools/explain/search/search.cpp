@@ -217,7 +217,7 @@ class Search {
     }
     // Of effects that explain most of the error, a ripple may be as high as what they leave.
     const double height =
-        std::max(policy().near_noise, policy().little_explained * excess_over_noise(data_, result_.calibrated.prediction));
+        std::max(policy().near_noise, policy().little_explained * excess_over_noise(data_, result_.calibrated));
     Assessed beyond = refiner_.over_ripples(result_.explained, height);
     if (excess_over_noise(data_, beyond.prediction) < excess_over_noise(data_, result_.explained.prediction)) {
       take(refiner_.settled(beyond.model));

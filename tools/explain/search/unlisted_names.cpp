@@ -94,8 +94,8 @@ bool UnlistedStage::replace_misfit(const Located& left) {
 
 /// True where what was found leaves more than the noise, of a plant that terms of unknown law are known for.
 bool UnlistedStage::wants_another_start() const {
-  return is_hydraulic_axis(result_.explained.model.base) &&
-         excess_over_noise(data_, result_.explained.prediction) > policy().visible && !options_.watch.interrupted();
+  return is_hydraulic_axis(result_.explained.model.base) && excess_over_noise(data_, result_.explained) > policy().visible &&
+         !options_.watch.interrupted();
 }
 
 /// The other hypothesis where names were given up: the same names with terms of unknown law beside them. A signal without a
@@ -118,9 +118,9 @@ void UnlistedStage::start_from_if_better(Found names) {
   restore(std::move(names));
   add_beside(Names::given);
   name_terms();
-  const double left = excess_over_noise(data_, before.explained.prediction);
+  const double left = excess_over_noise(data_, before.explained);
   const bool is_better = result_.kept.size() > given &&
-                         excess_over_noise(data_, result_.explained.prediction) < policy().clearly_less * left &&
+                         excess_over_noise(data_, result_.explained) < policy().clearly_less * left &&
                          held_out_rows_agree(result_.explained, before.explained);
   if (!is_better) {
     restore(std::move(before));
@@ -248,7 +248,7 @@ void UnlistedStage::drop_light_names() {
 void UnlistedStage::drop_names_that_explain_little() {
   const bool names_alone = !result_.kept.empty() && !has_unlisted();
   if (names_alone && left_by_listed() > policy().little_explained &&
-      excess_over_noise(data_, result_.explained.prediction) > policy().near_noise) {
+      excess_over_noise(data_, result_.explained) > policy().near_noise) {
     take_out_names(words::leaves_far_above_noise(left_by_listed()));
   }
 }

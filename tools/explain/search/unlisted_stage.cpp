@@ -68,15 +68,15 @@ bool UnlistedStage::is_worth_a_table() const { return data_.knows_unlisted() && 
 /// True if a model leaves less than `share` of what the explained one leaves beyond noise. Noise itself cannot be explained:
 /// near it the whole error hardly falls.
 bool UnlistedStage::leaves_clearly_less(const Assessed& model, double share) const {
-  const double left = excess_over_noise(data_, result_.explained.prediction);
-  return left > policy().immaterial && excess_over_noise(data_, model.prediction) < share * left &&
+  const double left = excess_over_noise(data_, result_.explained);
+  return left > policy().immaterial && excess_over_noise(data_, model) < share * left &&
          held_out_rows_agree(model, result_.explained);
 }
 
 /// True if a model leaves no more than the explained one beyond what chance decides, or nothing beyond noise.
 bool UnlistedStage::leaves_as_little(const Assessed& model) const {
-  return reaches_noise(data_, model) || policy().hardly_less * excess_over_noise(data_, model.prediction) <=
-                                            excess_over_noise(data_, result_.explained.prediction);
+  return reaches_noise(data_, model) ||
+         policy().hardly_less * excess_over_noise(data_, model) <= excess_over_noise(data_, result_.explained);
 }
 
 /// The share of what the listed effects leave that a term of unknown law has to stay below.
@@ -145,7 +145,7 @@ void UnlistedStage::look_instead() {
 /// True if a term of unknown law leaves clearly less than the listed effects do. Where these leave less than the noise, the
 /// held-out error hardly falls, whatever is added: the evidence decides, and held-out data must agree.
 bool UnlistedStage::is_better(const UnlistedSearch& found) const {
-  const bool is_near_noise = excess_over_noise(data_, result_.explained.prediction) <= policy().visible;
+  const bool is_near_noise = excess_over_noise(data_, result_.explained) <= policy().visible;
   if (is_near_noise && result_.kept.empty() && found.best && is_supported(found.trials[*found.best])) {
     return true;
   }
@@ -277,7 +277,7 @@ bool UnlistedStage::add_listed_beside(const Located& left, std::optional<std::si
   if (!found.kept) {
     return false;
   }
-  const bool is_enough = term ? excess_over_noise(data_, found.model.prediction) < policy().immaterial
+  const bool is_enough = term ? excess_over_noise(data_, found.model) < policy().immaterial
                               : leaves_clearly_less(found.model, policy().clearly_less);
   const std::string harm = harm_of(data_, found.model.prediction, result_.calibrated.prediction);
   if (!is_enough || !harm.empty()) {
@@ -345,7 +345,7 @@ void UnlistedStage::take_out(Trial trial, std::string why) {
 void UnlistedStage::add_beside(Names names) {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
          static_cast<int>(result_.kept.size()) < options_.most_effects &&
-         excess_over_noise(data_, result_.explained.prediction) > policy().immaterial && !options_.watch.interrupted()) {
+         excess_over_noise(data_, result_.explained) > policy().immaterial && !options_.watch.interrupted()) {
     const Located& left = locate_explained();
     const std::optional<std::size_t> term = term_of_rest(left);
     if ((has_unlisted() && add_listed_beside(left, term)) || (names == Names::open && replace_misfit(left))) {

@@ -17,6 +17,22 @@ constexpr double kTemperStands = 0.2;
 /// A fit that ran out of iterations goes on where its last pass left less than this share of the error.
 constexpr double kStillFalling = 0.95;
 
+/// Error of a step over what half of it changes, at first order: a slip starts within a step.
+constexpr double kErrorOfSteps = 2.0;
+
+/// What the steps of `coarse` change of a prediction under fine ones, by channel and over the noise; empty where nothing is
+/// left beyond the noise.
+std::vector<double> change_by_longer_steps(const Dataset& data, const Evaluator& coarse, unsigned threads,
+                                           const Assessed& assessed) {
+  const Fitted& model = assessed.model;
+  Prediction other;
+  if (!assessed.good() || excess_over_noise(data, assessed.prediction) <= policy().immaterial ||
+      !coarse.predict(model.base, model.free, model.u, threads, other)) {
+    return {};
+  }
+  return difference_over_noise(coarse.data(), at_thinned_rows(assessed.prediction, data, coarse.data()), other);
+}
+
 }  // namespace
 
 double left_by(const Evaluator& evaluator, const Fitted& model, unsigned threads) {
@@ -67,8 +83,46 @@ Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned thr
   return assess(fine, threads, fitted);
 }
 
+bool leaves_what_steps_do(const Dataset& data, const Evaluator& coarse, unsigned threads, const Assessed& assessed) {
+  const std::vector<double> by_longer = change_by_longer_steps(data, coarse, threads, assessed);
+  for (std::size_t c = 0; c < by_longer.size(); ++c) {
+    const double left = data.used[c] ? excess_over_noise(data, assessed.prediction, c) : 0.0;
+    if (left > policy().immaterial && by_longer[c] > kLostToSteps * left) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void measure_step_error(const Dataset& data, const Evaluator& coarse, unsigned threads, Assessed& assessed) {
+  const std::vector<double> by_longer = change_by_longer_steps(data, coarse, threads, assessed);
+  if (by_longer.empty() || std::ranges::max(by_longer) <= policy().immaterial) {
+    return;
+  }
+  const Fitted& model = assessed.model;
+  Prediction other;
+  if (Evaluator(data, Resolution::finest).predict(model.base, model.free, model.u, threads, other)) {
+    assessed.step_error = difference_over_noise(data, assessed.prediction, other);
+  }
+}
+
+double excess_over_noise(const Dataset& data, const Assessed& assessed) {
+  if (assessed.step_error.empty()) {
+    return excess_over_noise(data, assessed.prediction);
+  }
+  double largest = 0.0;
+  for (std::size_t c = 0; c < data.channels.size(); ++c) {
+    if (data.used[c]) {
+      const double left = excess_over_noise(data, assessed.prediction, c);
+      const double of_steps = kErrorOfSteps * assessed.step_error[c];
+      largest = std::max(largest, std::sqrt(std::max(0.0, left * left - of_steps * of_steps)));
+    }
+  }
+  return largest;
+}
+
 bool reaches_noise(const Dataset& data, const Assessed& assessed) {
-  return excess_over_noise(data, assessed.prediction) <= (assessed.model.chaotic ? policy().chaotic : policy().immaterial);
+  return excess_over_noise(data, assessed) <= (assessed.model.chaotic ? policy().chaotic : policy().immaterial);
 }
 
 Moved farthest_from_declared(const Fitted& model) {

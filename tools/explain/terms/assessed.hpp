@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tools/explain/fit/fit.hpp"
 #include "tools/explain/fit/goodness.hpp"
@@ -15,6 +16,8 @@ struct Assessed {
   Prediction prediction;
   Goodness goodness;
   Zeros zeros{};  ///< of the records under this model
+  /// By channel, over the noise: rms of what half the step changes. Empty where it is not what the model leaves.
+  std::vector<double> step_error{};
 
   bool good() const { return !prediction.empty(); }
 };
@@ -43,6 +46,20 @@ Assessed assess(const Evaluator& fine, unsigned threads, const Fitted& fitted);
 /// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper converges, assessed
 /// under fine steps on every row. Not good() if the start or the end can't be simulated.
 Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned threads, Fitted fitted, const Effort& effort);
+
+/// Share of what a model leaves of a channel that long steps may change.
+inline constexpr double kLostToSteps = 0.5;
+/// True if twice the step changes a channel by more than that share of what a model leaves there: a fit under such steps
+/// ended elsewhere. `coarse` takes them.
+bool leaves_what_steps_do(const Dataset& data, const Evaluator& coarse, unsigned threads, const Assessed& assessed);
+
+/// Measures the step error of a model that leaves something beyond the noise, if twice the step changes its prediction by
+/// more than is immaterial. `coarse` takes that step.
+void measure_step_error(const Dataset& data, const Evaluator& coarse, unsigned threads, Assessed& assessed);
+
+/// What a model leaves beyond the noise (goodness.hpp) and beyond the error of its own steps, in the channel where that is
+/// largest. A slip starts at the end of a step, so the error is of first order: half the step changes half of it.
+double excess_over_noise(const Dataset& data, const Assessed& assessed);
 
 /// True if every channel's residual is noise but for a part that the sensor could not show.
 bool reaches_noise(const Dataset& data, const Assessed& assessed);

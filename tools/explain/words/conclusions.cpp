@@ -98,9 +98,12 @@ std::string faults_of_records(const std::vector<std::string>& faults) {
   return fmt::format("The records have a fault: {}.", listed(faults));
 }
 
-std::string error_falls(bool of_one, const HeldOutError& error, bool is_explained) {
+std::string error_falls(bool of_one, const HeldOutError& error, Rest rest) {
+  constexpr std::array<std::string_view, 3> kRest{"The rest is close to the limit of the sensors.",
+                                                  "The rest is close to the limit of the sensors and of the model's steps.",
+                                                  "A part of it remains unexplained."};
   return fmt::format("With {}, the error on held-out data falls {}. {}", of_one ? "it" : "them", fall_of(error),
-                     is_explained ? "The rest is close to the limit of the sensors." : "A part of it remains unexplained.");
+                     kRest.at(static_cast<std::size_t>(rest)));
 }
 
 std::string black_box_is_better() {

@@ -38,7 +38,9 @@ std::string best_so_far(const std::string& candidate, double share_of_error);
 std::string best_in_screening(const std::string& candidate);
 std::string missing_effects(const std::vector<std::string>& effects);
 std::string faults_of_records(const std::vector<std::string>& faults);
-std::string error_falls(bool of_one, const HeldOutError& error, bool is_explained);
+/// What an explained model leaves.
+enum class Rest { of_sensors, of_sensors_and_steps, unexplained };
+std::string error_falls(bool of_one, const HeldOutError& error, Rest rest);
 std::string black_box_is_better();
 
 /// What a term of unknown law is not.
