@@ -145,10 +145,6 @@ Fitted Refiner::start_of_screened(const Evaluator& evaluator, const Fitted& scre
   return best;
 }
 
-Assessed Refiner::settled(const Fitted& fitted, const Effort& effort) const {
-  return with_step_error(refined(fine_, fine_, threads_, fitted, effort));
-}
-
 Assessed Refiner::with_step_error(Assessed assessed) const {
   if (is_ranked_coarsely()) {
     measure_step_error(data_, coarse_, threads_, assessed);

@@ -60,7 +60,9 @@ class Refiner {
   Screened with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
                            std::span<const double> frozen) const;
   /// Fitted under fine steps, as the report says it.
-  Assessed settled(const Fitted& fitted, const Effort& effort = kFinal) const;
+  Assessed settled(const Fitted& fitted, const Effort& effort = kFinal) const {
+    return with_step_error(refined(fine_, fine_, threads_, fitted, effort));
+  }
 
   /// A model that leaves something, but less beyond the noise than the ripples of its error are high, may sit in one: it is
   /// fitted along differences that are wider than a ripple, and then along narrow derivatives, from where those ended. The
