@@ -110,7 +110,7 @@ Assessed Refiner::ranked(const Fitted& fitted, const Effort& effort) const {
     }
   }
   Assessed ended = refined(coarse_, fine_, threads_, std::move(start), rest);
-  if (is_ranked_coarsely() && leaves_what_steps_do(data_, coarse_, threads_, ended)) {
+  if (is_ranked_coarsely() && leaves_what_steps_do(data_, ended)) {
     Assessed closer = refined(fine_, fine_, threads_, ended.model, rest);
     ended = better_of(std::move(ended), std::move(closer));
   }

@@ -20,17 +20,12 @@ constexpr double kStillFalling = 0.95;
 /// Error of a step over what half of it changes, at first order: a slip starts within a step.
 constexpr double kErrorOfSteps = 2.0;
 
-/// What the steps of `coarse` change of a prediction under fine ones, by channel and over the noise; empty where nothing is
-/// left beyond the noise.
-std::vector<double> change_by_longer_steps(const Dataset& data, const Evaluator& coarse, unsigned threads,
-                                           const Assessed& assessed) {
-  const Fitted& model = assessed.model;
-  Prediction other;
-  if (!assessed.good() || excess_over_noise(data, assessed.prediction) <= policy().immaterial ||
-      !coarse.predict(model.base, model.free, model.u, threads, other)) {
-    return {};
+/// Knows then what the steps of `other`, longer ones, change of a prediction.
+void compare_with_longer(const Dataset& data, const Evaluator& other, const Prediction& by_other, Assessed& assessed) {
+  if (assessed.good()) {
+    assessed.by_longer =
+        difference_over_noise(other.data(), at_thinned_rows(assessed.prediction, data, other.data()), by_other);
   }
-  return difference_over_noise(coarse.data(), at_thinned_rows(assessed.prediction, data, coarse.data()), other);
 }
 
 }  // namespace
@@ -80,14 +75,20 @@ Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned thr
       break;
     }
   }
-  return assess(fine, threads, fitted);
+  Assessed assessed = assess(fine, threads, fitted);
+  if (&evaluator != &fine) {
+    compare_with_longer(fine.data(), evaluator, prediction, assessed);
+  }
+  return assessed;
 }
 
-bool leaves_what_steps_do(const Dataset& data, const Evaluator& coarse, unsigned threads, const Assessed& assessed) {
-  const std::vector<double> by_longer = change_by_longer_steps(data, coarse, threads, assessed);
-  for (std::size_t c = 0; c < by_longer.size(); ++c) {
-    const double left = data.used[c] ? excess_over_noise(data, assessed.prediction, c) : 0.0;
-    if (left > policy().immaterial && by_longer[c] > kLostToSteps * left) {
+bool leaves_what_steps_do(const Dataset& data, const Assessed& assessed) {
+  for (std::size_t c = 0; c < assessed.by_longer.size(); ++c) {
+    if (!data.used[c] || assessed.by_longer[c] <= kLostToSteps * policy().immaterial) {
+      continue;
+    }
+    const double left = excess_over_noise(data, assessed.prediction, c);
+    if (left > policy().immaterial && assessed.by_longer[c] > kLostToSteps * left) {
       return true;
     }
   }
@@ -95,13 +96,15 @@ bool leaves_what_steps_do(const Dataset& data, const Evaluator& coarse, unsigned
 }
 
 void measure_step_error(const Dataset& data, const Evaluator& coarse, unsigned threads, Assessed& assessed) {
-  const std::vector<double> by_longer = change_by_longer_steps(data, coarse, threads, assessed);
-  if (by_longer.empty() || std::ranges::max(by_longer) <= policy().immaterial) {
-    return;
-  }
   const Fitted& model = assessed.model;
   Prediction other;
-  if (Evaluator(data, Resolution::finest).predict(model.base, model.free, model.u, threads, other)) {
+  const bool is_new =
+      assessed.good() && assessed.by_longer.empty() && excess_over_noise(data, assessed.prediction) > policy().immaterial;
+  if (is_new && coarse.predict(model.base, model.free, model.u, threads, other)) {
+    compare_with_longer(data, coarse, other, assessed);
+  }
+  if (leaves_what_steps_do(data, assessed) &&
+      Evaluator(data, Resolution::finest).predict(model.base, model.free, model.u, threads, other)) {
     assessed.step_error = difference_over_noise(data, assessed.prediction, other);
   }
 }

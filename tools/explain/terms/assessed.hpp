@@ -15,9 +15,9 @@ struct Assessed {
   Fitted model;
   Prediction prediction;
   Goodness goodness;
-  Zeros zeros{};  ///< of the records under this model
-  /// By channel, over the noise: rms of what half the step changes. Empty where it is not what the model leaves.
-  std::vector<double> step_error{};
+  Zeros zeros{};                     ///< of the records under this model
+  std::vector<double> by_longer{};   ///< rms of what longer steps change, over the noise, by channel; empty: not known
+  std::vector<double> step_error{};  ///< the same of half the step; empty: not what the model leaves
 
   bool good() const { return !prediction.empty(); }
 };
@@ -44,17 +44,17 @@ double left_by(const Evaluator& evaluator, const Fitted& model, unsigned threads
 Assessed assess(const Evaluator& fine, unsigned threads, const Fitted& fitted);
 
 /// Joint fit of everything that is free on `evaluator`, tempered by its own residuals until the temper converges, assessed
-/// under fine steps on every row. Not good() if the start or the end can't be simulated.
+/// under fine steps on every row, with what the steps of `evaluator` change. Not good() if the start or the end can't be
+/// simulated.
 Assessed refined(const Evaluator& evaluator, const Evaluator& fine, unsigned threads, Fitted fitted, const Effort& effort);
 
 /// Share of what a model leaves of a channel that long steps may change.
 inline constexpr double kLostToSteps = 0.5;
-/// True if twice the step changes a channel by more than that share of what a model leaves there: a fit under such steps
-/// ended elsewhere. `coarse` takes them.
-bool leaves_what_steps_do(const Dataset& data, const Evaluator& coarse, unsigned threads, const Assessed& assessed);
+/// True if longer steps change a channel by more than that share of what a model leaves there beyond the noise: a fit under
+/// such steps ended elsewhere.
+bool leaves_what_steps_do(const Dataset& data, const Assessed& assessed);
 
-/// Measures the step error of a model that leaves something beyond the noise, if twice the step changes its prediction by
-/// more than is immaterial. `coarse` takes that step.
+/// Measures the step error of a model that leaves what longer steps do. `coarse` takes twice the step.
 void measure_step_error(const Dataset& data, const Evaluator& coarse, unsigned threads, Assessed& assessed);
 
 /// What a model leaves beyond the noise (goodness.hpp) and beyond the error of its own steps, in the channel where that is
