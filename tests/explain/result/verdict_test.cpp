@@ -23,11 +23,12 @@ Trial tried(const Candidate& candidate) {
   return trial;
 }
 
-std::string sentence_with(const std::vector<Candidate>& kept) {
+std::string sentence_with(const std::vector<Candidate>& kept, const std::vector<double>& step_error = {}) {
   SearchResult found;
   found.declared = leaving(8.0);
   found.calibrated = leaving(4.0);
   found.explained = leaving(1.0);
+  found.explained.step_error = step_error;
   for (const Candidate& candidate : kept) {
     found.kept.push_back({tried(candidate), {}});
   }
@@ -49,6 +50,12 @@ TEST(Verdict, AFaultOfTheRecordIsNotSaidOfTheModel) {
       "The declared model is missing leakage (laminar) at flow. The records have a fault: sensor scale (engine) at "
       "sensor.engine. With them, the error on held-out data falls from 8.0 to 1.00 times the noise.",
       sentence_with({kScale, kLeakage}).c_str());
+}
+
+TEST(Verdict, WhatTheStepsLeaveIsNotSaidOfTheSensorsAlone) {
+  CHECK(sentence_with({kLeakage}).ends_with("The rest is close to the limit of the sensors."));
+  CHECK(
+      sentence_with({kLeakage}, {3.0}).ends_with("The rest is close to the limit of the sensors and of the model's steps."));
 }
 
 TEST(Verdict, AnInterruptedSearchNamesWhatPromisedMostByThen) {

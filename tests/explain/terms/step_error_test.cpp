@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CppUTest/TestHarness.h>
 
-#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 #include "model/effects/actuator/piston_friction.hpp"
@@ -24,9 +24,11 @@ using explain::Resolution;
 constexpr std::size_t kRowsInRow = 8;
 
 /// A seal that sticks: LuGre, with a break-away force a third above the sliding one.
-ModelFile sticking() { return test::with_effect<model::PistonFriction>({5800.0, 1.37, 5.4e-3, 5.1e8}, 1); }
+constexpr std::initializer_list<double> kSeal{5800.0, 1.37, 5.4e-3, 5.1e8};
+ModelFile sticking() { return test::with_effect<model::PistonFriction>(kSeal, 1); }
 
-/// What a model reads under slow strokes, 20 s at 500 Hz, by `finer` times as many steps as it takes.
+/// What a model reads under slow strokes, 20 s at 500 Hz, simulated by rows of which a row of the record has
+/// `rows_in_row`.
 Record strokes_of(const ModelFile& model, std::size_t rows_in_row) {
   Record fast;
   fast.name = "strokes.csv";
@@ -143,8 +145,8 @@ TEST(StepError, ARankIsNotOfWhatLongStepsMake) {
       start.free = explain::effect_parameters(start.base, candidate, scales);
     }
   }
-  LONGS_EQUAL(4, start.free.size());
-  for (const double value : {5800.0, 1.37, 5.4e-3, 5.1e8}) {
+  LONGS_EQUAL(kSeal.size(), start.free.size());
+  for (const double value : kSeal) {
     start.u.push_back(start.free[start.u.size()].coordinate(value));
   }
   const Assessed of_long = explain::refined(strokes.coarse, strokes.fine, 2, start, explain::kRanking);

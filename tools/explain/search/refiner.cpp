@@ -110,7 +110,7 @@ Assessed Refiner::ranked(const Fitted& fitted, const Effort& effort) const {
     }
   }
   Assessed ended = refined(coarse_, fine_, threads_, std::move(start), rest);
-  if (is_ranked_coarsely() && leaves_what_steps_do(data_, ended)) {
+  if (leaves_what_steps_do(data_, ended)) {
     Assessed closer = refined(fine_, fine_, threads_, ended.model, rest);
     ended = better_of(std::move(ended), std::move(closer));
   }
@@ -146,7 +146,7 @@ Fitted Refiner::start_of_screened(const Evaluator& evaluator, const Fitted& scre
 }
 
 Assessed Refiner::with_step_error(Assessed assessed) const {
-  if (is_ranked_coarsely()) {
+  if (coarse_.resolution() != fine_.resolution()) {
     measure_step_error(data_, coarse_, threads_, assessed);
   }
   return assessed;

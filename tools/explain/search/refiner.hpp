@@ -94,7 +94,6 @@ class Refiner {
  private:
   Fitted start_of_screened(const Evaluator& evaluator, const Fitted& screened, std::span<const double> frozen) const;
   std::optional<Evaluator> rough_about(const Fitted& model) const;
-  bool is_ranked_coarsely() const { return coarse_.resolution() != fine_.resolution(); }
   Assessed with_step_error(Assessed assessed) const;
   bool is_done(const Assessed& winner) const;
   Screened with_samples_at(const Evaluator& evaluator, Screened held, double rows, double passed) const;
