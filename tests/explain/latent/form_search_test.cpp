@@ -193,6 +193,30 @@ TEST(FormSearch, ACurveInFrontOfAFilterIsFoundThatNothingBehindTheFilterShows) {
   CHECK(best.score.left < explain::policy().left_by_single);
 }
 
+// The smoothed signal contains what the problem's parameters move too: here as much of the command as of the torque. A
+// regression on the readings moves them beside a form. A gain explains nothing of a curve that is even.
+TEST(FormSearch, AnEvenCurveIsFoundInTheReadingsWhereHalfOfTheSignalIsOfAParameter) {
+  ModelFile truth = declared();
+  add_effect<model::Term<model::Site::engine_torque>>(std::get<SimplexParameters>(truth.parameters), [](auto& term) {
+    term.argument = static_cast<int>(Argument::error);
+    term.table.points = 9;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const double x = 0.25 * (static_cast<double>(i) - 4.0);
+      term.table.x[i] = 3e-3 * x;
+      term.table.y[i] = 600.0 * (1.0 - std::cos(std::numbers::pi * x));
+    }
+  });
+  constexpr LatentPlace kEngine{explain::Port::engine, 0};
+  AtPlace engine(record_of(truth), kEngine);
+  Eigen::VectorXd& signal = engine.input.signal.front();
+  const Eigen::VectorXd command = engine.regression().quantities().front().col(static_cast<Eigen::Index>(Argument::command));
+  signal += signal.norm() / command.norm() * command;
+  const ScoredForm best = explain::search_forms(engine.regression(), kEngine, 1, 2).at(0);
+  CHECK(best.form.argument == Argument::error);
+  CHECK(best.form.memory.kind == Memory::none || best.form.memory.kind == Memory::saturation);
+  CHECK(best.score.left < 1.1);
+}
+
 // A quantum that is off by a hundredth is off by half a quantum at the ends of the range.
 TEST(FormSearch, AFineQuantumOfASignalIsFound) {
   static constexpr double kQuantum = 1.5e-4;  // m, a fiftieth of the range

@@ -362,16 +362,16 @@ std::optional<Form> with_curve(const FormRegression& regression, Form form, bool
   return form.points.size() >= kFewestPoints ? std::optional(std::move(form)) : std::nullopt;
 }
 
-std::vector<Form> behind_rough_curves(const FormRegression& regression, const std::vector<Form>& remembering) {
+std::vector<Form> with_rough_curves(const FormRegression& regression, const std::vector<Form>& plain_or_remembering) {
   std::vector<Form> forms;
-  std::map<Argument, std::vector<double>> points;
-  for (Form form : remembering) {
-    if (form.is_filter() && !form.factor) {
-      const auto [own, is_new] = points.try_emplace(form.argument);
+  std::map<std::pair<Argument, std::optional<Argument>>, std::vector<double>> points;
+  for (Form form : plain_or_remembering) {
+    if (form.memory.kind == Memory::none || (form.is_filter() && !form.factor)) {
+      const auto [own, is_new] = points.try_emplace({form.argument, form.factor});
       if (is_new) {
         own->second = spread_points(sorted_values(regression, form), kRoughPoints);
       }
-      form.curve_first = true;
+      form.curve_first = form.memory.kind != Memory::none;
       form.points = own->second;
       forms.push_back(std::move(form));
     }

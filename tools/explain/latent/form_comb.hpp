@@ -44,9 +44,9 @@ std::vector<Form> with_kinks(const FormRegression& regression, const Form& plain
 /// has no width.
 std::optional<Form> with_curve(const FormRegression& regression, Form form, bool curve_first);
 
-/// Of forms with memories, those of one argument adjacent, the filters of one quantity: each behind a curve of few points,
-/// by which it is screened.
-std::vector<Form> behind_rough_curves(const FormRegression& regression, const std::vector<Form>& remembering);
+/// Forms with a curve of few points, by which they are screened: those without a memory, and behind the curve the filters of
+/// one quantity. No other memory is among the result.
+std::vector<Form> with_rough_curves(const FormRegression& regression, const std::vector<Form>& plain_or_remembering);
 
 /// Memories of what a curve makes of its argument, over the comb of their parameter: those of which the response to a sum of
 /// curves is not the sum of responses. `curve` is without memory, `values` are those at its points.

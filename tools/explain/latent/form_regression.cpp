@@ -7,6 +7,7 @@
 
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/latent/row_products.hpp"
+#include "tools/explain/policy/policy.hpp"
 
 namespace hotfire::explain {
 
@@ -83,6 +84,10 @@ FormRegression::FormRegression(const LatentProblem& problem, const LatentPlace& 
 double FormRegression::left_without() const {
   const Eigen::LLT<Eigen::MatrixXd> factor(nuisance_);
   return (square_ - nuisance_right_.dot(factor.solve(nuisance_right_))) / count_;
+}
+
+bool FormRegression::is_explained_by(double left) const {
+  return left < policy().left_by_single && left - 1.0 < policy().little_explained * (left_without() - 1.0);
 }
 
 std::vector<FormScore> FormRegression::score(std::span<const Form> forms, unsigned threads) const {

@@ -40,6 +40,9 @@ class FormRegression {
 
   /// What is left without any form, as `FormScore::left` counts it.
   double left_without() const;
+  /// True if a form that leaves `left` leaves no more than one signal at the place does, and little of what is beyond the
+  /// noise without any form. Of a small effect alone, everything leaves little.
+  bool is_explained_by(double left) const;
 
  private:
   void score_some(std::span<const Form> forms, std::span<FormScore> scores) const;

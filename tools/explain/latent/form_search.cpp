@@ -33,12 +33,10 @@ constexpr int kResponsesOfOne = 2;
 constexpr std::size_t kBehindCurve = 6;
 /// A memory explains clearly more than its argument where it leaves less than this share of what that leaves.
 constexpr double kClearlyLess = 0.9;
-/// Forms over which curves are laid, of those with a memory and of those without.
+/// Forms with a memory over which curves are laid.
 constexpr std::size_t kCurved = 6;
 /// Curves without a memory whose output is given one that is not linear.
 constexpr std::size_t kFollowed = 3;
-/// Arguments without a memory whose kinks and powers are tried.
-constexpr std::size_t kKinked = 3;
 /// Steps in which a memory's parameter is refined.
 constexpr int kFormRefinements = 6;
 /// Memories that are tuned in the screening, and steps of that.
@@ -245,7 +243,7 @@ std::vector<Form> screened_by_response(const FormRegression& regression, const s
 /// them.
 std::vector<ScoredForm> with_curves_first(const FormRegression& regression, const std::vector<Form>& remembering,
                                           unsigned threads) {
-  std::vector<Form> rough = behind_rough_curves(regression, remembering);
+  std::vector<Form> rough = with_rough_curves(regression, remembering);
   std::vector<Form> fine;
   for (const Form& form : best_responses(regression, std::move(rough), kBehindCurve, threads)) {
     if (auto curved = with_curve(regression, form, true)) {
@@ -255,14 +253,26 @@ std::vector<ScoredForm> with_curves_first(const FormRegression& regression, cons
   return scored(regression, std::move(fine), threads);
 }
 
+/// The forms without a memory over which a rough curve explains most of the readings, with that curve. A gain says nothing
+/// of a curve that is even, and the smoothed signal contains what the problem's parameters move too.
+std::vector<Form> screened_under_curves(const FormRegression& regression, const std::vector<Form>& plain, unsigned threads) {
+  std::vector<ScoredForm> curved = scored(regression, with_rough_curves(regression, plain), threads);
+  std::vector<Form> best;
+  std::ranges::transform(best_of_each(std::move(curved), kScreenedStill), std::back_inserter(best), &ScoredForm::form);
+  return best;
+}
+
 /// The forms that go on: by the signal, then by the response those that are not among them.
 std::vector<Form> screened(const FormRegression& regression, const std::vector<Form>& plain,
                            const std::vector<Form>& remembering, unsigned threads) {
   const SignalCorrelation correlation(regression);
   const std::vector<ScoredForm> moving = scored_by_signal(correlation, remembering, threads);
   std::vector<Form> best = screened_by_signal(correlation, scored_by_signal(correlation, plain, threads), moving, threads);
-  for (Form& form : screened_by_response(regression, moving, threads)) {
-    const auto same = std::ranges::find_if(best, [&](const Form& other) { return is_alike(form, other); });
+  std::vector<Form> by_response = screened_by_response(regression, moving, threads);
+  std::ranges::move(screened_under_curves(regression, plain, threads), std::back_inserter(by_response));
+  for (Form& form : by_response) {
+    const auto same = std::ranges::find_if(
+        best, [&](const Form& other) { return is_of_same(form, other) && form.memory.kind == other.memory.kind; });
     if (same == best.end()) {
       best.push_back(std::move(form));
     } else if (form.memory.kind == model::Memory::hold) {
@@ -305,33 +315,32 @@ std::vector<ScoredForm> search_forms(const FormRegression& regression, const Lat
   }
   const std::vector<Form> likely = screened(regression, plain, forms, threads);
 
-  // A curve costs a regressor a point: it is laid for what a gain explains best and for what the signal is most a function
-  // of.
+  // A curve costs a regressor a point: it is laid over what explains most by a gain, by a rough curve or by the signal.
   std::vector<ScoredForm> laid = scored(regression, likely, threads);
   std::vector<ScoredForm> by_gain = laid;
+  std::erase_if(by_gain, [](const ScoredForm& scored) { return scored.form.has_curve(); });
   keep_best(by_gain, kCurved);
   std::vector<Form> shaped;
-  std::size_t still = 0;
   std::size_t moving = 0;
   for (const Form& form : likely) {
     const bool is_still = form.memory.kind == model::Memory::none;
-    std::size_t& count = is_still ? still : moving;
     const bool is_best = std::ranges::any_of(by_gain, [&](const ScoredForm& other) { return is_alike(other.form, form); });
-    if (count++ < kCurved || is_best) {
+    if (is_still || moving++ < kCurved || is_best) {
       for (const bool curve_first : {false, true}) {
         if (auto curve = with_curve(regression, form, curve_first)) {
           shaped.push_back(std::move(*curve));
         }
       }
     }
-    if (is_still && count <= kKinked) {
-      std::ranges::move(with_kinks(regression, form), std::back_inserter(shaped));
-      std::ranges::move(with_powers(regression, form), std::back_inserter(shaped));
+    if (is_still) {
+      const Form own = at_place(place, form.argument, form.factor);
+      std::ranges::move(with_kinks(regression, own), std::back_inserter(shaped));
+      std::ranges::move(with_powers(regression, own), std::back_inserter(shaped));
     }
   }
   std::ranges::move(scored(regression, std::move(shaped), threads), std::back_inserter(laid));
   std::ranges::move(behind_best_curves(regression, laid, threads), std::back_inserter(laid));
-  if (std::ranges::none_of(laid, [](const ScoredForm& f) { return f.score.left < policy().left_by_single; })) {
+  if (std::ranges::none_of(laid, [&](const ScoredForm& f) { return regression.is_explained_by(f.score.left); })) {
     std::ranges::move(with_curves_first(regression, forms, threads), std::back_inserter(laid));
   }
   // Gains, curves and powers are ranked apart. In the linear regression, a curve or a power follows a large effect that is

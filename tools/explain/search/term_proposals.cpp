@@ -149,7 +149,7 @@ FormsOfPlace forms_of_place(const LatentProblem& problem, const Place& place, un
       least = std::min(least, form.score.left);
       found.forms.push_back(std::move(form));
     }
-    if (least < policy().left_by_single) {
+    if (found.regression->is_explained_by(least)) {
       break;
     }
     // A motion looks like an oscillation that it tunes itself: only what no other form explains is one.
