@@ -79,15 +79,12 @@ FormRegression::FormRegression(const LatentProblem& problem, const LatentPlace& 
     nuisance_(problem.own[e], problem.own[e]) += own_normal;
     nuisance_right_(problem.own[e]) += own_right;
   }
-}
-
-double FormRegression::left_without() const {
   const Eigen::LLT<Eigen::MatrixXd> factor(nuisance_);
-  return (square_ - nuisance_right_.dot(factor.solve(nuisance_right_))) / count_;
+  left_without_ = (square_ - nuisance_right_.dot(factor.solve(nuisance_right_))) / count_;
 }
 
 bool FormRegression::is_explained_by(double left) const {
-  return left < policy().left_by_single && left - 1.0 < policy().little_explained * (left_without() - 1.0);
+  return left < policy().left_by_single && left - 1.0 < policy().little_explained * (left_without_ - 1.0);
 }
 
 std::vector<FormScore> FormRegression::score(std::span<const Form> forms, unsigned threads) const {

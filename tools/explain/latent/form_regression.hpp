@@ -39,7 +39,7 @@ class FormRegression {
   std::vector<FormScore> score(std::span<const Form> forms, unsigned threads) const;
 
   /// What is left without any form, as `FormScore::left` counts it.
-  double left_without() const;
+  double left_without() const { return left_without_; }
   /// True if a form that leaves `left` leaves no more than one signal at the place does, and little of what is beyond the
   /// noise without any form. Of a small effect alone, everything leaves little.
   bool is_explained_by(double left) const;
@@ -57,6 +57,7 @@ class FormRegression {
   Eigen::VectorXd nuisance_right_;
   double square_ = 0.0;  ///< of what is left
   double count_ = 0.0;
+  double left_without_ = 0.0;
 };
 
 }  // namespace hotfire::explain
