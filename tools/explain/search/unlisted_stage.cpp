@@ -18,6 +18,9 @@ namespace hotfire::explain {
 
 namespace {
 
+/// Names that together have to explain half of the error. The first of two effects of equal size explains 0.3 of it.
+constexpr std::size_t kNames = 2;
+
 /// True if names are static laws of the opening that a term of unknown law is a curve over.
 bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names) {
   const auto is_of_opening = [](const Candidate& candidate) {
@@ -35,7 +38,8 @@ bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names)
 }  // namespace
 
 void UnlistedStage::replace_names_that_explain_little() {
-  if (left_by_listed() <= policy().little_explained || !is_worth_a_table() || options_.watch.interrupted()) {
+  if (result_.kept.size() < kNames || left_by_listed() <= policy().little_explained || !is_worth_a_table() ||
+      options_.watch.interrupted()) {
     return;
   }
   look_instead();
