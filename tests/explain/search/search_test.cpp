@@ -27,9 +27,9 @@ explain::SearchResult found_in(const Record& record, int most_effects = 4, doubl
 }
 
 /// Checks that a search in records of `truth` finds these effects and no others, and leaves noise.
-void check_found(const ModelFile& truth, std::vector<std::string> wanted) {
+void check_found(const ModelFile& truth, std::vector<std::string> wanted, const ModelFile& declared = test::declared()) {
   auto data = test::data_of(truth);
-  const auto found = explain::search(data, test::declared(), {2, 4, {}});
+  const auto found = explain::search(data, declared, {2, 4, {}});
   std::vector<std::string> names;
   std::ranges::transform(found.kept, std::back_inserter(names), [](const auto& kept) { return kept.trial.candidate.name; });
   std::ranges::sort(names);
@@ -85,6 +85,13 @@ TEST(Search, OfTwoEffectsOfOneSensorTheListedOneGetsItsName) {
     term.time = 0.014;
   });
   check_found(truth, {"sensor_nonlinearity", "term_piston_reading"});
+}
+
+// The declared leakage, at 12 tolerances, would explain it as well.
+TEST(Search, AnEffectForWhichADeclaredParameterCompensatesBeyondItsTolerancesIsFound) {
+  ModelFile declared = test::declared();
+  declared.tolerance["actuator.leakage"] = 0.1;
+  check_found(test::with_effect<model::Leakage>({5e-12}), {"leakage"}, declared);
 }
 
 // The reference axis has 2 ms: closer rows cost time and separate nothing, and there are no others to leave out.

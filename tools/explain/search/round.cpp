@@ -24,6 +24,14 @@ bool is_before(const Trial& one, const Trial& other) {
 
 }  // namespace
 
+void refuse(std::span<Trial> of_round, std::string_view why) {
+  const auto best = std::ranges::find(of_round, "kept", &Trial::decision);
+  if (best != of_round.end()) {
+    best->decision = "dropped";
+    best->reason = words::leaves(best->held_out_ratio) + std::string(why);
+  }
+}
+
 Round::Round(int number, const Dataset& data, const Refiner& refiner, const Assessed& current,
              std::vector<Screened> screened, const Watch& watch)
     : number_(number),

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/explain/experiment/next_experiment.hpp"
@@ -19,6 +21,9 @@ struct RoundResult {
   bool settled = false;        ///< `model` was fitted under fine steps
   std::optional<Rival> rival;  ///< of the best
 };
+
+/// The best effect of a round is not kept, for a reason that follows its held-out error.
+void refuse(std::span<Trial> of_round, std::string_view why);
 
 /// One round of a search: of the candidates screened beside a current model the best are fitted jointly with everything
 /// else, and the best of those is kept if it lowers the BIC and the held-out error clearly.

@@ -106,21 +106,25 @@ class Search {
   /// One round, of the effects at the sites where one signal explains what is missing, or of all where none does. False if
   /// no candidate is supported.
   bool add_effect(int round, const Located& where) {
-    const Fitted& current = result_.explained.model;
+    const Assessed beside = without_compensation(result_.explained);
     std::vector<std::string> found;
     for (const Kept& kept : result_.kept) {
       found.push_back(kept.trial.candidate.site);
     }
-    std::vector<Candidate> candidates = candidates_beside(current.base, data_);
+    std::vector<Candidate> candidates = candidates_beside(beside.model.base, data_);
     std::erase_if(candidates, [&](const Candidate& c) { return goes_in_and_out(c) || where.refutes(c.site, found); });
     if (candidates.empty()) {
       return false;
     }
-    const Evaluator evaluator = refiner_.for_screening(current);
-    const Screening screening(evaluator, current, scales_, options_.threads);
+    const Evaluator evaluator = refiner_.for_screening(beside.model);
+    const Screening screening(evaluator, beside.model, scales_, options_.threads);
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
-    Round fits(round, data_, refiner_, result_.explained, std::move(screened), options_.watch);
+    Round fits(round, data_, refiner_, beside, std::move(screened), options_.watch);
     RoundResult best = fits.run();
+    if (best.kept && compensates(data_, result_.explained) && !is_complete(data_, best.model)) {
+      refuse(best.trials, words::text(words::Reason::more_than_compensation));
+      best.kept.reset();
+    }
     result_.trials.insert(result_.trials.end(), best.trials.begin(), best.trials.end());
     if (!best.kept) {
       return false;
@@ -134,6 +138,11 @@ class Search {
     is_settled_ = best.settled;
     polish_earlier(round);
     return true;
+  }
+
+  /// A model, with its declared values if they compensate: beside values that do, a missing effect explains nothing.
+  Assessed without_compensation(const Assessed& model) const {
+    return compensates(data_, model) ? assess(fine_, options_.threads, with_declared_values(model.model)) : model;
   }
 
   /// Takes out what leaves more of a record or of a band than the calibrated model does. It judges all that was found

@@ -67,7 +67,7 @@ void UnlistedStage::name_terms() {
       Assessed settled = refiner_.settled(found.model.model);
       result_.explained = settled.good() ? std::move(settled) : std::move(found.model);
     } else {
-      refuse(first, words::text(words::Reason::leaves_more));
+      refuse(std::span(result_.trials).subspan(first), words::text(words::Reason::leaves_more));
     }
   }
 }

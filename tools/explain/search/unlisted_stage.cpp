@@ -260,16 +260,6 @@ RoundResult UnlistedStage::round_of(const std::vector<Candidate>& candidates, co
   return found;
 }
 
-/// The best effect of a round whose trials begin at `first` is not kept, for a reason that follows its held-out error.
-void UnlistedStage::refuse(std::size_t first, std::string_view why) {
-  const auto of_round = std::span(result_.trials).subspan(first);
-  const auto best = std::ranges::find(of_round, "kept", &Trial::decision);
-  if (best != of_round.end()) {
-    best->decision = "dropped";
-    best->reason = words::leaves(best->held_out_ratio) + std::string(why);
-  }
-}
-
 /// A listed effect beside what was found, where it leaves clearly less. Where most of the rest acts at the site of a term,
 /// any listed effect may imitate the rest of that term: it has to leave only noise, or to explain clearly more together with
 /// another law of the term: `term` is its index among the kept effects. Returns whether there is one.
@@ -287,9 +277,9 @@ bool UnlistedStage::add_listed_beside(const Located& left, std::optional<std::si
   if (!is_enough || !harm.empty()) {
     const bool is_revised = term && revise_term(*term, found, left);
     if (!is_revised) {
-      refuse(first, !harm.empty()
-                        ? "; " + words::refused(harm)
-                        : std::string(words::text(term ? words::Reason::rest_of_term : words::Reason::not_clearly_less)));
+      refuse(std::span(result_.trials).subspan(first),
+             !harm.empty() ? "; " + words::refused(harm)
+                           : std::string(words::text(term ? words::Reason::rest_of_term : words::Reason::not_clearly_less)));
     }
     return is_revised;
   }

@@ -71,7 +71,6 @@ class UnlistedStage {
   std::optional<std::size_t> term_of_rest(const Located& left) const;
   void add_beside(Names names);
   RoundResult round_of(const std::vector<Candidate>& candidates, const Assessed& beside, const std::string& what);
-  void refuse(std::size_t first, std::string_view why);
   void take_out(Trial trial, std::string why);
   std::vector<std::string> sites_of_terms() const;
   bool add_listed_beside(const Located& left, std::optional<std::size_t> term);

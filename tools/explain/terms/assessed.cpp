@@ -147,8 +147,12 @@ bool is_complete(const Dataset& data, const Assessed& assessed) {
   return reaches_noise(data, assessed) && is_within_tolerances(assessed.model);
 }
 
+bool compensates(const Dataset& data, const Assessed& assessed) {
+  return reaches_noise(data, assessed) && !is_within_tolerances(assessed.model);
+}
+
 bool is_more_credible(const Dataset& data, const Assessed& model, const Assessed& than) {
-  return reaches_noise(data, than) && !is_within_tolerances(than.model) && is_complete(data, model);
+  return compensates(data, than) && is_complete(data, model);
 }
 
 Fitted without_effect(const Fitted& model, const Candidate& candidate) {

@@ -78,8 +78,11 @@ bool is_within_tolerances(const Fitted& model);
 /// True if a model reaches the noise within its tolerances: there is nothing to search for.
 bool is_complete(const Dataset& data, const Assessed& assessed);
 
-/// True if a model is complete and another one reaches the noise beyond its tolerances only: effects that need such values
-/// of the declared parameters imitate what is missing.
+/// True if a model reaches the noise beyond its tolerances only: such values of the declared parameters, and effects that
+/// need them, imitate what is missing.
+bool compensates(const Dataset& data, const Assessed& assessed);
+
+/// True if a model is complete and another one compensates.
 bool is_more_credible(const Dataset& data, const Assessed& model, const Assessed& than);
 
 /// Takes the free parameters of which `unwanted` is true out of a model.

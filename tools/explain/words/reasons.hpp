@@ -22,13 +22,14 @@ enum class Reason {
   not_clearly_less,
   rest_of_term,
   leaves_more,
+  more_than_compensation,
   other_hypothesis,
   saves_signal,
   interrupted_refined,
   interrupted_screened,
   interrupted_before
 };
-inline constexpr std::size_t kReasons = 17;
+inline constexpr std::size_t kReasons = 18;
 std::string_view text(Reason reason) noexcept;
 
 /// How a law compares with another one of the same effect, whose label follows.
