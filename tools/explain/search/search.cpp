@@ -15,6 +15,7 @@
 #include "tools/explain/search/declared_effects.hpp"
 #include "tools/explain/search/finalists.hpp"
 #include "tools/explain/search/refiner.hpp"
+#include "tools/explain/search/rivals.hpp"
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/unlisted_stage.hpp"
 #include "tools/explain/search/watch.hpp"
@@ -48,7 +49,8 @@ class Search {
         scales_(scales_of(model.parameters, data)),
         refiner_(data, is_ranked_coarsely(model) ? rough_ : coarse_, coarse_, fine_, scales_, options.threads,
                  options.watch),
-        unlisted_(data, refiner_, coarse_, scales_, options, result_) {}
+        rivals_(data, refiner_, options.watch, result_),
+        unlisted_(data, refiner_, coarse_, scales_, options, rivals_, result_) {}
 
   /// The declared model within its tolerances.
   const Assessed& calibrate() {
@@ -84,9 +86,7 @@ class Search {
     }
     if (!result_.kept.empty() && !options_.watch.interrupted()) {
       settle();
-      for (const Rival& rival : earlier_rivals_) {
-        compare_with_earlier_rival(rival);
-      }
+      rivals_.compare_again();
     }
     if (options_.most_effects > 0) {
       unlisted_.finish();
@@ -129,9 +129,7 @@ class Search {
     if (!best.kept) {
       return false;
     }
-    if (result_.rival) {
-      earlier_rivals_.push_back(std::move(*result_.rival));
-    }
+    rivals_.set_aside();
     result_.kept.push_back(std::move(*best.kept));
     result_.explained = std::move(best.model);
     result_.rival = std::move(best.rival);
@@ -221,7 +219,7 @@ class Search {
       Candidate law = kept.trial.candidate;
       Assessed simple = refiner_.by_simplest_law(result_.explained, law);
       if (label(law) != label(kept.trial.candidate)) {
-        give_law(kept.trial.candidate, {law, std::move(simple)}, round, words::LawChange::simpler);
+        give_law(result_, kept.trial.candidate, {law, std::move(simple)}, round, words::LawChange::simpler);
       }
     }
     // Of effects that explain most of the error, a ripple may be as high as what they leave.
@@ -258,70 +256,9 @@ class Search {
       compare(trial, richer.model, result_.explained, richer.model.goodness.fitted);
       if (is_supported(trial)) {
         richer.model = refiner_.settled(richer.model.model);
-        give_law(candidate, std::move(richer), round, words::LawChange::richer);
+        give_law(result_, candidate, std::move(richer), round, words::LawChange::richer);
       }
     }
-  }
-
-  /// Whether what explained the records as well as an effect that was kept before still does with the later ones: it may be
-  /// separated from it now, either way.
-  void compare_with_earlier_rival(const Rival& rival) {
-    const auto kept =
-        std::ranges::find_if(result_.kept, [&](const Kept& k) { return k.trial.candidate.effect == rival.kept.effect; });
-    const bool is_in = std::ranges::any_of(result_.kept, [&](const Kept& k) {
-      return rival.other.effect == rival.kept.effect ? label(k.trial.candidate) == label(rival.other)
-                                                     : k.trial.candidate.effect == rival.other.effect;
-    });
-    if (kept == result_.kept.end() || is_in || options_.watch.interrupted()) {
-      return;
-    }
-    Candidate& candidate = kept->trial.candidate;
-    options_.watch.progress(
-        {Work::settling, fmt::format("is {} still as good as {}", label(rival.other), label(candidate))});
-    Assessed with = refiner_.in_place_of(result_.explained.model, candidate, rival.other, rival.model);
-    if (!with.good()) {
-      return;
-    }
-    const int round = result_.trials.back().round;
-    Trial trial{round, rival.other, true, 0.0, 1.0, 0.0, "dropped", ""};
-    compare(trial, with, result_.explained, with.goodness.fitted);
-    if (is_supported(trial)) {
-      give_law(candidate, {rival.other, std::move(with)}, round, words::LawChange::rival_better);
-      for (Trial& alternative : kept->alternatives) {
-        if (label(alternative.candidate) == label(rival.other)) {
-          std::swap(kept->trial, alternative);
-          kept->trial.decision = "kept";
-          alternative.decision = "dropped";
-          alternative.candidate = rival.kept;
-          break;
-        }
-      }
-      // What tied with the last effect was fitted beside the one that is out now.
-      result_.rival.reset();
-      return;
-    }
-    if (trial.delta_criterion < policy().strong_evidence) {
-      trial.decision = "tied";
-      trial.reason = words::text(words::LawChange::rival_tied, label(candidate));
-      if (!result_.rival) {
-        result_.rival = Rival{candidate, rival.other, std::move(with.model)};
-      }
-    } else {
-      trial.reason = words::text(words::LawChange::rival_separated, label(candidate));
-    }
-    result_.trials.push_back(std::move(trial));
-  }
-
-  /// Gives an effect that was kept another law, and says why.
-  void give_law(Candidate& candidate, OfLaw other, int round, words::LawChange why) {
-    if (!other.model.good()) {
-      return;
-    }
-    Trial trial{round, other.candidate, true, 0.0, 1.0, 0.0, "kept", words::text(why, label(candidate))};
-    compare(trial, other.model, result_.explained, other.model.goodness.fitted);
-    result_.trials.push_back(std::move(trial));
-    candidate = other.candidate;
-    result_.explained = std::move(other.model);
   }
 
   /// Takes out every effect without which the model is as good, or reaches the noise, where the search would have ended:
@@ -372,8 +309,8 @@ class Search {
   Scales scales_;
   Refiner refiner_;
   SearchResult result_;
-  std::vector<Rival> earlier_rivals_;  ///< of effects that were kept before the last
-  bool is_settled_ = true;             ///< what was found was fitted with fine steps
+  bool is_settled_ = true;  ///< what was found was fitted with fine steps
+  Rivals rivals_;
   UnlistedStage unlisted_;
 };
 

@@ -63,6 +63,7 @@ void UnlistedStage::name_terms() {
     if (found.kept && leaves_as_little(found.model)) {
       take_out(result_.kept[i].trial, words::has_a_law(label(found.kept->trial.candidate)));
       result_.kept[i] = std::move(*found.kept);
+      rivals_.set_aside();
       result_.rival = std::move(found.rival);
       Assessed settled = refiner_.settled(found.model.model);
       result_.explained = settled.good() ? std::move(settled) : std::move(found.model);

@@ -60,6 +60,7 @@ void UnlistedStage::finish() {
     start_from_name_beside_a_signal(names);
     drop_light_names();
     drop_names_that_explain_little();
+    rivals_.compare_again();
   }
   if (!options_.watch.interrupted() && !reaches_noise(data_, result_.explained)) {
     result_.located = locate_explained();
@@ -197,7 +198,7 @@ void UnlistedStage::take_instead_if_better() {
 }
 
 void UnlistedStage::keep(const UnlistedSearch& found, std::size_t first_trial) {
-  result_.rival.reset();
+  rivals_.set_aside();
   Trial& best = result_.trials[first_trial + *found.best];
   best.decision = "kept";
   Kept kept{best, {}};
@@ -283,6 +284,7 @@ bool UnlistedStage::add_listed_beside(const Located& left, std::optional<std::si
     }
     return is_revised;
   }
+  rivals_.set_aside();
   result_.kept.push_back(std::move(*found.kept));
   result_.rival = std::move(found.rival);
   result_.explained = std::move(found.model);

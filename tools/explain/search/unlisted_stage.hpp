@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/explain/search/rivals.hpp"
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/search/unlisted_search.hpp"
@@ -18,8 +19,14 @@ class UnlistedStage {
  public:
   /// Works on `result`; all are to outlive it.
   UnlistedStage(const Dataset& data, const Refiner& refiner, const Evaluator& coarse, const Scales& scales,
-                const SearchOptions& options, SearchResult& result)
-      : data_(data), refiner_(refiner), coarse_(coarse), scales_(scales), options_(options), result_(result) {}
+                const SearchOptions& options, Rivals& rivals, SearchResult& result)
+      : data_(data),
+        refiner_(refiner),
+        coarse_(coarse),
+        scales_(scales),
+        options_(options),
+        rivals_(rivals),
+        result_(result) {}
 
   /// Ends a search early: where the names so far explain little and one term of unknown law leaves only noise, it takes
   /// their place.
@@ -27,8 +34,8 @@ class UnlistedStage {
 
   /// The end of a search: names that the located place refutes are taken out; a term of unknown law takes the place of the
   /// names or comes beside them where it leaves clearly less; names that were given up are tried again with terms beside
-  /// them; so is the name without which an unknown signal costs most; names without weight are dropped; what is left is
-  /// located.
+  /// them; so is the name without which an unknown signal costs most; names without weight are dropped; what explained the
+  /// records as well as a name is compared with it again; what is left is located.
   void finish();
 
   /// Where the term acts that the explained model is missing; nowhere for a mass, which has one place only.
@@ -93,6 +100,7 @@ class UnlistedStage {
   const Evaluator& coarse_;
   const Scales& scales_;
   const SearchOptions& options_;
+  Rivals& rivals_;
   SearchResult& result_;
   std::optional<Located> located_;         ///< about the calibrated model, once it was asked for
   Located beside_explained_;               ///< about the explained model
