@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tools/explain/experiment/next_experiment.hpp"
+#include "tools/explain/refine/screening.hpp"
 #include "tools/explain/result/result.hpp"
-#include "tools/explain/search/screening.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/record/record.hpp"
 #include "tools/report/report_page.hpp"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 
 namespace hotfire::explain {
 

@@ -50,8 +50,9 @@ room(tools/explain inference "confidence intervals, identifiability, the veto, a
 room(tools/explain latent "an unknown signal at each place: where the missing term acts" fit data words policy)
 room(tools/explain terms "candidates: listed effects, and terms of unknown law with their tables" inference fit data words policy)
 room(tools/explain experiment "the next experiment that separates two candidates" terms inference fit data words policy)
-room(tools/explain search "screening, joint fits and the decision about each term" latent experiment terms inference fit data words policy)
-room(tools/explain result "the result of a search as types: verdict, effects, estimates, residual, curves" search latent experiment terms inference fit data words policy)
+room(tools/explain refine "a term screened, and fitted with everything else" terms inference fit data words policy)
+room(tools/explain search "rounds, terms of unknown law, and the decision about each" refine latent experiment terms inference fit data words policy)
+room(tools/explain result "the result of a search as types: verdict, effects, estimates, residual, curves" search refine latent experiment terms inference fit data words policy)
 room(tools/explain report "the result as JSON" result inference fit data words policy)
 
 room(tools/files text "TOML with line and column, CSV lines, units, error messages")

@@ -4,7 +4,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include "tests/explain/latent/missing_effect.hpp"
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/terms/assessed.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include "tests/explain/oscillator.hpp"
 #include "tools/explain/data/start_state.hpp"
 #include "tools/explain/fit/scales.hpp"
-#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/refine/finalists.hpp"
 
 namespace {
 

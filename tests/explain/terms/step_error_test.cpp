@@ -8,7 +8,7 @@
 #include "model/effects/actuator/piston_friction.hpp"
 #include "tests/explain/coloured_noise.hpp"
 #include "tests/explain/latent/missing_effect.hpp"
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/terms/assessed.hpp"
 
 namespace {

@@ -13,7 +13,7 @@
 #include "tools/cli/shared/candump_options.hpp"
 #include "tools/cli/shared/commands.hpp"
 #include "tools/cli/shared/print_json.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 
 namespace hotfire {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/refine/finalists.hpp"
 
 namespace hotfire::explain {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 
 namespace hotfire::explain {
 

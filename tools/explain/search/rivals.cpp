@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 
 namespace hotfire::explain {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/search/search.hpp"
 #include "tools/explain/words/reasons.hpp"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/finalists.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/finalists.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/explain/experiment/next_experiment.hpp"
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/terms/trial.hpp"
 
 namespace hotfire::explain {

@@ -12,13 +12,13 @@
 #include "tools/explain/inference/channel_check.hpp"
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
+#include "tools/explain/refine/finalists.hpp"
+#include "tools/explain/refine/refiner.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/explain/search/declared_effects.hpp"
-#include "tools/explain/search/finalists.hpp"
-#include "tools/explain/search/refiner.hpp"
 #include "tools/explain/search/rivals.hpp"
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/unlisted_stage.hpp"
-#include "tools/explain/search/watch.hpp"
 #include "tools/explain/words/reasons.hpp"
 #include "tools/explain/words/refusals.hpp"
 #include "tools/files/text/error.hpp"
@@ -103,8 +103,9 @@ class Search {
   }
 
  private:
-  /// One round, of the effects at the sites where one signal explains what is missing, or of all where none does. False if
-  /// no candidate is supported.
+  /// One round, of the effects at the sites where one signal explains what is missing, or of all where none does. The linear
+  /// flow that carries a signal is wrong about friction that sticks: where those sites have no effect and far more than
+  /// noise is left, an effect elsewhere is kept if it explains everything. False if no candidate is kept.
   bool add_effect(int round, const Located& where) {
     const Assessed beside = without_compensation(result_.explained);
     std::vector<std::string> found;
@@ -112,8 +113,22 @@ class Search {
       found.push_back(kept.trial.candidate.site);
     }
     std::vector<Candidate> candidates = candidates_beside(beside.model.base, data_);
-    std::erase_if(candidates, [&](const Candidate& c) { return goes_in_and_out(c) || where.refutes(c.site, found); });
-    if (candidates.empty()) {
+    std::erase_if(candidates, [&](const Candidate& c) { return goes_in_and_out(c); });
+    const auto refuted = std::ranges::stable_partition(
+        candidates, [&](const Candidate& candidate) { return !where.refutes(candidate.site, found); });
+    const std::vector<Candidate> elsewhere(refuted.begin(), refuted.end());
+    candidates.erase(refuted.begin(), refuted.end());
+    const auto why =
+        compensates(data_, result_.explained) ? std::optional(words::Reason::more_than_compensation) : std::nullopt;
+    return add_one_of(candidates, round, beside, why) ||
+           (excess_over_noise(data_, beside) > policy().near_noise &&
+            add_one_of(elsewhere, round, beside, words::Reason::more_than_signal));
+  }
+
+  /// One round of some candidates. `refused`: why one that leaves more than noise is not kept; none: it is.
+  bool add_one_of(const std::vector<Candidate>& candidates, int round, const Assessed& beside,
+                  std::optional<words::Reason> refused) {
+    if (candidates.empty() || options_.watch.interrupted()) {
       return false;
     }
     const Evaluator evaluator = refiner_.for_screening(beside.model);
@@ -121,8 +136,8 @@ class Search {
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     Round fits(round, data_, refiner_, beside, std::move(screened), options_.watch);
     RoundResult best = fits.run();
-    if (best.kept && compensates(data_, result_.explained) && !is_complete(data_, best.model)) {
-      refuse(best.trials, words::text(words::Reason::more_than_compensation));
+    if (best.kept && refused && !is_complete(data_, best.model)) {
+      refuse(best.trials, words::text(*refused));
       best.kept.reset();
     }
     result_.trials.insert(result_.trials.end(), best.trials.begin(), best.trials.end());
@@ -283,14 +298,17 @@ class Search {
         compare(trial, rest, result_.explained, rest.goodness.fitted);
       }
       trial.seconds = stopwatch.seconds();
-      if (rest.good() && (is_as_good(trial) || is_complete(data_, rest))) {
+      const bool may_go = rest.good() && (is_as_good(trial) || is_complete(data_, rest));
+      if (Assessed settled = may_go ? refiner_.settled(rest.model) : Assessed{}; settled.good()) {
+        rest = std::move(settled);
+      }
+      if (may_go && !is_more_credible(data_, result_.explained, rest)) {
         result_.trials.push_back(trial);
         if (i == newest) {
           result_.rival.reset();
         }
         result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(i));
         result_.explained = std::move(rest);
-        take(refiner_.settled(result_.explained.model));
         if (result_.kept.empty()) {
           result_.calibrated = result_.explained;
           unlisted_.forget();

@@ -7,7 +7,7 @@
 #include "tools/explain/experiment/next_experiment.hpp"
 #include "tools/explain/inference/profile.hpp"
 #include "tools/explain/latent/locate.hpp"
-#include "tools/explain/search/screening.hpp"
+#include "tools/explain/refine/screening.hpp"
 #include "tools/explain/terms/assessed.hpp"
 #include "tools/explain/terms/trial.hpp"
 

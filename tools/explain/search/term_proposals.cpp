@@ -13,7 +13,7 @@
 
 #include "tools/explain/latent/oscillation_search.hpp"
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/explain/terms/assessed.hpp"
 #include "tools/explain/terms/visit_term.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "tools/explain/latent/form_search.hpp"
 #include "tools/explain/latent/locate.hpp"
-#include "tools/explain/search/screening.hpp"
+#include "tools/explain/refine/screening.hpp"
 
 namespace hotfire::explain {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/explain/latent/locate.hpp"
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/terms/trial.hpp"
 
 namespace hotfire::explain {

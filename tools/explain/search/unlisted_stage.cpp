@@ -8,8 +8,8 @@
 
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/finalists.hpp"
-#include "tools/explain/search/screening.hpp"
+#include "tools/explain/refine/finalists.hpp"
+#include "tools/explain/refine/screening.hpp"
 #include "tools/explain/terms/unlisted.hpp"
 #include "tools/explain/words/conclusions.hpp"
 #include "tools/explain/words/reasons.hpp"

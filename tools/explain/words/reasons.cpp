@@ -20,6 +20,7 @@ std::string_view text(Reason reason) noexcept {
       ", more than noise at the site of a term of unknown law",
       ", more than the term of unknown law",
       ", more than the calibration beyond its tolerances",
+      ", more than a signal at another site",
       "; another hypothesis is kept",
       "saves an unknown signal most",
       "fitted jointly before the search was interrupted; other candidates were not",

@@ -23,13 +23,14 @@ enum class Reason {
   rest_of_term,
   leaves_more,
   more_than_compensation,
+  more_than_signal,
   other_hypothesis,
   saves_signal,
   interrupted_refined,
   interrupted_screened,
   interrupted_before
 };
-inline constexpr std::size_t kReasons = 18;
+inline constexpr std::size_t kReasons = 19;
 std::string_view text(Reason reason) noexcept;
 
 /// How a law compares with another one of the same effect, whose label follows.

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "tools/explain/refine/watch.hpp"
 #include "tools/explain/search/search.hpp"
-#include "tools/explain/search/watch.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/study/tally/judge.hpp"
 

@@ -10,7 +10,7 @@
 #include <iterator>
 
 #include "tools/explain/explain.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/study/tally/judge.hpp"
 
 namespace hotfire::study {

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "tools/explain/explain.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/files/text/error.hpp"
 #include "tools/simulate/simulate.hpp"
 #include "tools/simulate/simulate_vehicle.hpp"

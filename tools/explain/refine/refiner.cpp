@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 
 #include <fmt/format.h>
 
@@ -7,16 +7,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "tools/explain/inference/uncertainty.hpp"
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/refine/finalists.hpp"
 #include "tools/explain/terms/trial.hpp"
-#include "tools/explain/terms/visit_term.hpp"
 
 namespace hotfire::explain {
 
@@ -26,6 +23,11 @@ namespace {
 /// so many times what another leaves: what little a linear move misses is for the fit.
 constexpr std::array kSharesOfMove{1.0, 0.5, 0.25, 0.0};
 constexpr double kMovedTooFar = 2.0;
+
+/// Shares of what a known model leaves that the first pass of a fit from elsewhere stays below, or that fit is given up: one
+/// that leaves a tenth more is in a worse minimum, and one over a ripple that leaves as much stays in it.
+constexpr double kWorseMinimum = 1.1;
+constexpr double kOutOfRipple = 0.99;
 
 /// True if rough steps serve: what two models leave of every channel differs by a share of it that steps may change. They
 /// are shifted by that change, and what is left of it is the square of a share. A channel that is met to its noise counts
@@ -41,50 +43,6 @@ bool are_alike(const Evaluator& evaluator, const Eigen::VectorXd& left, const Ei
   return true;
 }
 
-/// How many rows the period of a hold may be off from where the regression has it.
-constexpr int kPeriodOff = 4;
-/// The periods near that one that are fitted, of those that leave least as proposed.
-constexpr std::size_t kPeriodsFitted = 3;
-/// How many rows the samples may be off: at a period that is not fitted, and at one that is.
-constexpr int kInstantsOff = 2;
-constexpr int kSamplesOff = 2;
-/// Turns in which samples and all else are fitted under fine steps.
-constexpr int kTurns = 3;
-/// Where beside a row they are tried: a logger that is in step with them reads before or after the sample.
-constexpr double kBesideRow = 0.02;
-constexpr double kTurn = 2.0 * std::numbers::pi;
-
-/// The shortest row of the data.
-double shortest_row(const Dataset& data) { return std::ranges::min(data.experiments, {}, &Experiment::period).period; }
-
-/// When a held term samples, in rows.
-struct Samples {
-  double rows = 2.0;    ///< of a period
-  double passed = 0.0;  ///< of it at the start of a record
-};
-
-Samples samples_of(const Screened& held, double row) {
-  Samples samples;
-  visit_term(held.fitted.base, held.candidate, [&](const auto& term) {
-    samples.rows = std::max(2.0, std::round(term.time / row));
-    samples.passed = samples.rows * term.phase / kTurn;
-  });
-  return samples;
-}
-
-void set_samples(Screened& held, const Samples& samples, double row) {
-  visit_term(held.fitted.base, held.candidate, [&](auto& term) {
-    term.time = samples.rows * row;
-    term.phase = std::remainder(kTurn * samples.passed / samples.rows, kTurn);
-  });
-}
-
-void keep_better(Screened tried, Screened& best) {
-  if (tried.criterion < best.criterion) {
-    best = std::move(tried);
-  }
-}
-
 }  // namespace
 
 std::optional<Evaluator> Refiner::rough_about(const Fitted& model) const {
@@ -98,12 +56,17 @@ std::optional<Evaluator> Refiner::rough_about(const Fitted& model) const {
   return rough_.shifted(by_rough, by_coarse);
 }
 
-Assessed Refiner::ranked(const Fitted& fitted, const Effort& effort) const {
+Assessed Refiner::ranked(const Fitted& fitted, const Effort& effort, const std::optional<ToBeat>& known) const {
   Effort rest = effort;
   Fitted start = fitted;
   const auto rough = effort.passes > 1 ? rough_about(fitted) : std::nullopt;
-  if (rough) {
-    Assessed near = refined(*rough, *rough, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
+  if (rough || known) {
+    const Evaluator& first = rough ? *rough : coarse_;
+    Assessed near = refined(first, first, threads_, fitted, {effort.iterations, 1, effort.tolerance, effort.slopes});
+    if (known &&
+        !(near.good() && Goodness::combined(near.goodness.fitted) < known->share * left_by(first, known->model, threads_))) {
+      return {};
+    }
     if (near.good()) {
       start = std::move(near.model);
       --rest.passes;
@@ -156,7 +119,7 @@ Assessed Refiner::from_declared_values(Assessed fitted) const {
   if (watch_.interrupted()) {
     return fitted;
   }
-  Assessed afresh = ranked(with_declared_values(fitted.model), kRanking);
+  Assessed afresh = ranked(with_declared_values(fitted.model), kRanking, ToBeat{fitted.model, kWorseMinimum});
   return better_of(std::move(fitted), std::move(afresh));
 }
 
@@ -281,98 +244,12 @@ Screened Refiner::shortly(const Evaluator& evaluator, Screened proposal, std::sp
   return proposal;
 }
 
-Screened Refiner::with_samples_at(const Evaluator& evaluator, Screened held, double rows, double passed) const {
-  set_samples(held, {rows, passed}, shortest_row(data_));
-  held.criterion = left_by(evaluator, held.fitted, threads_);
-  return held;
-}
-
-/// A held term with its samples at the best of the instants up to `off` rows from where they are.
-Screened Refiner::at_best_instant(const Evaluator& evaluator, const Screened& held, int off) const {
-  const Samples own = samples_of(held, shortest_row(data_));
-  Screened best = held;
-  for (int early = -off; early <= off && !watch_.interrupted(); ++early) {
-    for (const double part : {-kBesideRow, kBesideRow, 0.5}) {
-      keep_better(with_samples_at(evaluator, held, own.rows, std::round(own.passed) + early + part), best);
-    }
-  }
-  return best;
-}
-
-std::vector<Refiner::OfPeriod> Refiner::over_periods(const Evaluator& evaluator, const Screened& held) const {
-  const Samples proposed = samples_of(held, shortest_row(data_));
-  std::vector<OfPeriod> periods;
-  for (int longer = -kPeriodOff; longer <= kPeriodOff && !watch_.interrupted(); ++longer) {
-    const double rows = proposed.rows + longer;
-    if (rows >= 2.0) {
-      Screened moved = with_samples_at(evaluator, held, rows, proposed.passed * rows / proposed.rows);
-      Screened best = at_best_instant(evaluator, moved, held.replaces ? static_cast<int>(rows) / 2 : kInstantsOff);
-      const double least = best.criterion;
-      periods.push_back({std::move(held.replaces ? best : moved), least});
-    }
-  }
-  std::ranges::stable_sort(periods, {}, &OfPeriod::least);
-  return periods;
-}
-
-Screened Refiner::with_samples(const Evaluator& evaluator, std::vector<OfPeriod> periods,
-                               std::span<const double> frozen) const {
-  periods.resize(std::min(periods.size(), kPeriodsFitted));
-  std::optional<Screened> best;
-  for (OfPeriod& period : periods) {
-    if (best && watch_.interrupted()) {
-      break;
-    }
-    // From the samples as proposed: a fit from those that suit a gain that is too small moves the declared parameters.
-    Screened fitted = at_best_instant(evaluator, shortly(evaluator, std::move(period.proposed), frozen), kSamplesOff);
-    if (!best || fitted.criterion < best->criterion) {
-      best = std::move(fitted);
-    }
-  }
-  return watch_.interrupted() ? std::move(*best) : shortly(evaluator, std::move(*best), frozen);
-}
-
-Assessed Refiner::of_held(const Screened& screened, std::span<const double> frozen, const Effort& effort) const {
-  Assessed best;
-  Screened held = screened;
-  for (int turn = 0; turn < kTurns && !watch_.interrupted(); ++turn) {
-    const Samples before = samples_of(held, shortest_row(data_));
-    held.criterion = left_by(fine_, held.fitted, threads_);
-    held = at_best_instant(fine_, held, kSamplesOff);
-    const bool is_same = samples_of(held, shortest_row(data_)).passed == before.passed;
-    if (turn > 0 && is_same) {
-      break;
-    }
-    Assessed fitted = turn == 0 ? of_screened(held.fitted, frozen, effort) : ranked(held.fitted, effort);
-    best = best.good() ? better_of(std::move(best), std::move(fitted)) : std::move(fitted);
-    if (!best.good()) {
-      break;
-    }
-    held.fitted = best.model;
-  }
-  return best;
-}
-
-Screened Refiner::with_samples_of(const Evaluator& evaluator, const Screened& other, Screened held,
-                                  std::span<const double> frozen) const {
-  const double row = shortest_row(data_);
-  const auto of_own_fit = [&](Screened fitted) {
-    fitted.criterion = left_by(evaluator, fitted.fitted, threads_);
-    return shortly(evaluator, std::move(fitted), frozen);
-  };
-  Screened moved = held;
-  set_samples(moved, samples_of(other, row), row);
-  held = of_own_fit(std::move(held));
-  keep_better(of_own_fit(std::move(moved)), held);
-  return held;
-}
-
 Assessed Refiner::over_ripples(Assessed fitted, double height) const {
   const double left = excess_over_noise(data_, fitted);
   if (left < policy().nothing_left || left >= height || watch_.interrupted()) {
     return fitted;
   }
-  Assessed beyond = ranked(fitted.model, kOverRipples);
+  Assessed beyond = ranked(fitted.model, kOverRipples, ToBeat{fitted.model, kOutOfRipple});
   if (beyond.good()) {
     beyond = ranked(beyond.model, kRanking);
   }
@@ -391,7 +268,9 @@ Assessed Refiner::from_other_values(const Assessed& winner, const Candidate& can
   const Evaluator evaluator = for_screening(anchor);
   const Screening screening(evaluator, anchor, scales_, threads_);
   const Screened again = screening.restart(candidate, own, watch_);
-  return again.good ? of_screened(again.fitted, anchor.u) : Assessed{};
+  return again.good
+             ? ranked(start_of_screened(coarse_, again.fitted, anchor.u), kRanking, ToBeat{winner.model, kWorseMinimum})
+             : Assessed{};
 }
 
 }  // namespace hotfire::explain

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/search/finalists.hpp"
+#include "tools/explain/refine/finalists.hpp"
 
 #include <CppUTest/TestHarness.h>
 

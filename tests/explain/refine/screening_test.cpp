@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/search/screening.hpp"
+#include "tools/explain/refine/screening.hpp"
 
 #include <CppUTest/TestHarness.h>
 

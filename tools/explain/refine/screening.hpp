@@ -8,7 +8,7 @@
 
 #include "tools/explain/fit/fit.hpp"
 #include "tools/explain/fit/goodness.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/explain/terms/candidates.hpp"
 
 namespace hotfire::explain {

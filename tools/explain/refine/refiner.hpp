@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/screening.hpp"
+#include "tools/explain/refine/screening.hpp"
 #include "tools/explain/terms/assessed.hpp"
 
 namespace hotfire::explain {
@@ -30,8 +30,15 @@ class Refiner {
   /// the shift is small against what the model leaves.
   Evaluator for_screening(const Fitted& current) const { return rough_about(current).value_or(coarse_); }
 
-  /// Fitted as its rank needs it, the way to near the end under rough steps where they serve.
-  Assessed ranked(const Fitted& fitted, const Effort& effort) const;
+  /// A model that is fitted already, and the share of what it leaves that the first pass of a fit from elsewhere has to stay
+  /// below.
+  struct ToBeat {
+    const Fitted& model;
+    double share = 1.0;
+  };
+  /// Fitted as its rank needs it, the way to near the end under rough steps where they serve. Not good() if the first pass
+  /// does not come near to what is to be beaten.
+  Assessed ranked(const Fitted& fitted, const Effort& effort, const std::optional<ToBeat>& known = std::nullopt) const;
   /// A screened candidate, ranked. Screening moves what was free before along its derivatives from `frozen`, which may carry
   /// it too far: where another place on that way, or a table that is nothing yet, leaves less than half as much, the fit
   /// starts at the least of them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/search/refiner.hpp"
+#include "tools/explain/refine/refiner.hpp"
 
 #include <CppUTest/TestHarness.h>
 

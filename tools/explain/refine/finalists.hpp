@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tools/explain/search/screening.hpp"
+#include "tools/explain/refine/screening.hpp"
 #include "tools/explain/terms/assessed.hpp"
 #include "tools/explain/terms/trial.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/explain/search/screening.hpp"
+#include "tools/explain/refine/screening.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "tools/explain/data/spectrum.hpp"
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/policy/policy.hpp"
-#include "tools/explain/search/watch.hpp"
+#include "tools/explain/refine/watch.hpp"
 #include "tools/explain/terms/periodic.hpp"
 #include "tools/explain/terms/trial.hpp"
 #include "tools/explain/terms/unlisted.hpp"
