@@ -10,7 +10,6 @@
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/refine/finalists.hpp"
 #include "tools/explain/refine/watch.hpp"
-#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -47,7 +46,7 @@ Round::Round(int number, const Dataset& data, const Refiner& refiner, const Asse
   }
 }
 
-RoundResult Round::run() {
+RoundResult Round::run(std::optional<words::Reason> unless_complete) {
   fit_finalists();
   rank();
   if (watch_.interrupted()) {
@@ -74,7 +73,9 @@ RoundResult Round::run() {
     trials_[i].reason = reason_of(trials_[i], best_ ? &trials_[*best_] : nullptr);
   }
   result.trials = trials_;
-  if (kept) {
+  if (kept && unless_complete && !is_complete(data_, result.model)) {
+    refuse(result.trials, words::text(*unless_complete));
+  } else if (kept) {
     result.kept = Kept{trials_[*best_], trials_};
     std::vector<Trial>& others = result.kept->alternatives;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(*best_));

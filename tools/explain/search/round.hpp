@@ -10,6 +10,7 @@
 #include "tools/explain/experiment/next_experiment.hpp"
 #include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/terms/trial.hpp"
+#include "tools/explain/words/reasons.hpp"
 
 namespace hotfire::explain {
 
@@ -33,8 +34,9 @@ class Round {
   Round(int number, const Dataset& data, const Refiner& refiner, const Assessed& current, std::vector<Screened> screened,
         const Watch& watch);
 
-  /// Runs the round. If it was interrupted it keeps none, and its trials say how far it came.
-  RoundResult run();
+  /// Runs the round. If it was interrupted it keeps none, and its trials say how far it came. `unless_complete`: why an
+  /// effect that leaves more than noise is not kept; none: it is.
+  RoundResult run(std::optional<words::Reason> unless_complete = std::nullopt);
 
  private:
   bool clears_up(const Assessed& with) const;

@@ -125,9 +125,9 @@ class Search {
             add_one_of(elsewhere, round, beside, words::Reason::more_than_signal));
   }
 
-  /// One round of some candidates. `refused`: why one that leaves more than noise is not kept; none: it is.
+  /// One round of some candidates. `unless_complete`: as of Round::run.
   bool add_one_of(const std::vector<Candidate>& candidates, int round, const Assessed& beside,
-                  std::optional<words::Reason> refused) {
+                  std::optional<words::Reason> unless_complete) {
     if (candidates.empty() || options_.watch.interrupted()) {
       return false;
     }
@@ -135,11 +135,7 @@ class Search {
     const Screening screening(evaluator, beside.model, scales_, options_.threads);
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
     Round fits(round, data_, refiner_, beside, std::move(screened), options_.watch);
-    RoundResult best = fits.run();
-    if (best.kept && refused && !is_complete(data_, best.model)) {
-      refuse(best.trials, words::text(*refused));
-      best.kept.reset();
-    }
+    RoundResult best = fits.run(unless_complete);
     result_.trials.insert(result_.trials.end(), best.trials.begin(), best.trials.end());
     if (!best.kept) {
       return false;
