@@ -114,10 +114,11 @@ class Search {
     }
     std::vector<Candidate> candidates = candidates_beside(beside.model.base, data_);
     std::erase_if(candidates, [&](const Candidate& c) { return goes_in_and_out(c); });
-    const auto refuted = std::ranges::stable_partition(
-        candidates, [&](const Candidate& candidate) { return !where.refutes(candidate.site, found); });
-    const std::vector<Candidate> elsewhere(refuted.begin(), refuted.end());
-    candidates.erase(refuted.begin(), refuted.end());
+    const auto refuted = std::stable_partition(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
+      return !where.refutes(candidate.site, found);
+    });
+    const std::vector<Candidate> elsewhere(refuted, candidates.end());
+    candidates.erase(refuted, candidates.end());
     const auto why =
         compensates(data_, result_.explained) ? std::optional(words::Reason::more_than_compensation) : std::nullopt;
     return add_one_of(candidates, round, beside, why) ||
