@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/explain/terms/candidates.hpp"
 #include "tools/files/model/model_file.hpp"
 #include "tools/files/record/record.hpp"
 
@@ -77,6 +78,16 @@ inline ModelFile declared_oscillator(double stiffness) {
   model.parameters = declared;
   model.tolerance = {{"mass.inertia", 0.05}, {"mass.damping", 0.3}, {"mass.stiffness", 0.05}};
   return model;
+}
+
+/// A declared model at its declared values, as a fit of `data` starts.
+inline explain::Fitted start_of(const ModelFile& declared, const explain::Dataset& data) {
+  explain::Fitted start;
+  start.base = declared.parameters;
+  start.free = explain::declared_parameters(start.base, declared.tolerance);
+  start.u.assign(start.free.size(), 0.0);
+  start.temper.assign(data.channels.size(), 1.0);
+  return start;
 }
 
 }  // namespace hotfire::test

@@ -17,16 +17,7 @@ using explain::Resolution;
 struct TwoLaws {
   explicit TwoLaws(double cubic)
       : declared(test::declared_oscillator(97.0)), data(explain::make_dataset(declared, {test::oscillator(cubic, 1e-3)})) {
-    result.calibrated = refiner.ranked(calibrated(), explain::kRanking);
-  }
-
-  explain::Fitted calibrated() const {
-    explain::Fitted start;
-    start.base = declared.parameters;
-    start.free = explain::declared_parameters(start.base, declared.tolerance);
-    start.u.assign(start.free.size(), 0.0);
-    start.temper.assign(data.channels.size(), 1.0);
-    return start;
+    result.calibrated = refiner.ranked(test::start_of(declared, data), explain::kRanking);
   }
 
   explain::Candidate candidate(const std::string& name) const {

@@ -22,12 +22,7 @@ explain::RoundResult round_of(double detents, std::optional<explain::words::Reas
   const explain::Scales scales = explain::scales_of(declared.parameters, data);
   const explain::Watch watch;
   const explain::Refiner refiner(data, fine, fine, fine, scales, 1, watch);
-  explain::Fitted start;
-  start.base = declared.parameters;
-  start.free = explain::declared_parameters(start.base, declared.tolerance);
-  start.u.assign(start.free.size(), 0.0);
-  start.temper.assign(data.channels.size(), 1.0);
-  const explain::Assessed calibrated = refiner.ranked(start, explain::kRanking);
+  const explain::Assessed calibrated = refiner.ranked(test::start_of(declared, data), explain::kRanking);
   std::vector<explain::Candidate> candidates = explain::all_candidates(declared.parameters, data);
   std::erase_if(candidates, [&](const explain::Candidate& candidate) { return candidate.name != "cubic_stiffness"; });
   const Evaluator rough = refiner.for_screening(calibrated.model);
