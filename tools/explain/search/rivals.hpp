@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "tools/explain/refine/refiner.hpp"
@@ -26,6 +27,11 @@ class Rivals {
   /// Compares those that were set aside with the effects that are kept now. A better one takes the place of its effect, and
   /// one that is still as good is the search's rival.
   void compare_again();
+
+  /// Those that were set aside, of what is kept now.
+  const std::vector<Rival>& aside() const { return aside_; }
+  /// Goes back to those of other effects that are kept again.
+  void restore(std::vector<Rival> aside) { aside_ = std::move(aside); }
 
  private:
   void compare_again(const Rival& rival);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,8 @@
 #include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/refine/watch.hpp"
 #include "tools/explain/search/declared_effects.hpp"
+#include "tools/explain/search/harmful_effects.hpp"
+#include "tools/explain/search/name_beside_signal.hpp"
 #include "tools/explain/search/rivals.hpp"
 #include "tools/explain/search/round.hpp"
 #include "tools/explain/search/unlisted_stage.hpp"
@@ -76,13 +79,14 @@ class Search {
 
   SearchResult run() {
     result_.explained = result_.calibrated;
-    for (int count = 0; count < options_.most_effects && !options_.watch.interrupted(); ++count) {
-      const int round = result_.next_round();
-      if (is_complete(data_, result_.explained) || !add_effect(round, unlisted_.locate_explained())) {
-        break;
-      }
-      take_out_superfluous(round);
-      unlisted_.replace_names_that_explain_little();
+    bool goes_on = options_.most_effects > 0 && add_round();
+    const UnlistedStage::Found first = unlisted_.found();
+    goes_on = goes_on && options_.most_effects > 1 && add_round();
+    if (options_.most_effects > 0 && unlisted_.wants_another_start()) {
+      goes_on = start_from_name(first, goes_on);
+    }
+    for (int count = 2; count < options_.most_effects && goes_on; ++count) {
+      goes_on = add_round();
     }
     if (!result_.kept.empty() && !options_.watch.interrupted()) {
       settle();
@@ -90,9 +94,9 @@ class Search {
     }
     if (options_.most_effects > 0) {
       unlisted_.finish();
-      if (take_out_harmful()) {
+      if (take_out_harmful(data_, refiner_, options_.watch, result_)) {
         unlisted_.finish();
-        take_out_harmful();
+        take_out_harmful(data_, refiner_, options_.watch, result_);
       }
     }
     result_.not_supported =
@@ -103,6 +107,83 @@ class Search {
   }
 
  private:
+  /// One round, and what it makes superfluous. Returns whether it added an effect: another may be missing then.
+  bool add_round() {
+    const int round = result_.next_round();
+    if (options_.watch.interrupted() || is_complete(data_, result_.explained) ||
+        !add_effect(round, unlisted_.locate_explained())) {
+      return false;
+    }
+    take_out_superfluous(round);
+    unlisted_.replace_names_that_explain_little();
+    return true;
+  }
+
+  /// Where two listed effects leave more than noise, more are missing or one that is not listed. What explains most alone
+  /// may imitate all of them. The search starts again from the name without which an unknown signal costs most: with another
+  /// listed effect, then with terms of unknown law beside it. Where there is no such name and one signal explains the
+  /// records, one term of unknown law is tried. What leaves only noise, or clearly less than the first rounds, is kept.
+  /// `first`: what the first round has found. `goes_on`: whether the first rounds have left a way on. Returns whether what
+  /// is kept has.
+  bool start_from_name(const UnlistedStage::Found& first, bool goes_on) {
+    options_.watch.progress({Work::locating, "comparing listed effects beside an unknown signal"});
+    const auto name = name_that_saves_most(coarse_.data(), result_.calibrated.model, screened_beside_calibrated(),
+                                           unlisted_.share_of_signal(), options_.threads, options_.watch);
+    if (!name || options_.watch.interrupted()) {
+      return !unlisted_.replace_name_beside_single_signal() && goes_on;
+    }
+    UnlistedStage::Found names = unlisted_.found();
+    bool was_settled = is_settled_;
+    const bool is_first = first.kept.size() == 1 && first.kept.front().trial.candidate.name == name->candidate.name;
+    if (is_first) {
+      unlisted_.restore(first);
+    } else {
+      unlisted_.start_from(*name);
+      UnlistedStage::Found alone = unlisted_.found();
+      const bool has_second = add_round();
+      if (is_complete(data_, result_.explained) || leaves_clearly_less(result_.explained, names.explained)) {
+        names = unlisted_.found();
+        was_settled = is_settled_;
+        goes_on = has_second;
+      }
+      if (!is_complete(data_, result_.explained)) {
+        unlisted_.restore(std::move(alone));
+      }
+    }
+    if (is_complete(data_, result_.explained) || unlisted_.add_terms_to_names() ||
+        leaves_clearly_less(result_.explained, names.explained)) {
+      goes_on = false;
+    } else {
+      unlisted_.give_up_terms(std::move(names));
+      is_settled_ = was_settled;
+    }
+    unlisted_.file_hypothesis();
+    return goes_on;
+  }
+
+  /// True if a model leaves clearly less beyond the noise than another.
+  bool leaves_clearly_less(const Assessed& model, const Assessed& than) const {
+    return excess_over_noise(data_, model) < policy().clearly_less * excess_over_noise(data_, than) &&
+           held_out_rows_agree(model, than);
+  }
+
+  /// All laws beside the calibrated model, screened: those of the first round, and the others.
+  std::vector<Screened> screened_beside_calibrated() const {
+    std::vector<Candidate> others = candidates_beside(result_.calibrated.model.base, data_);
+    std::erase_if(others, [&](const Candidate& candidate) {
+      return std::ranges::any_of(first_screened_, [&](const Screened& s) { return label(s.candidate) == label(candidate); });
+    });
+    std::vector<Screened> all = first_screened_;
+    if (!others.empty()) {
+      const Evaluator evaluator = refiner_.for_screening(result_.calibrated.model);
+      const Screening screening(evaluator, result_.calibrated.model, scales_, options_.threads);
+      std::vector<Screened> more = screening.run(others, "beside an unknown signal", options_.watch);
+      std::ranges::move(more, std::back_inserter(all));
+    }
+    std::ranges::sort(all, {}, &Screened::criterion);
+    return all;
+  }
+
   /// One round, of the effects at the sites where one signal explains what is missing, or of all where none does. The linear
   /// flow that carries a signal is wrong about friction that sticks: where those sites have no effect and far more than
   /// noise is left, an effect elsewhere is kept if it explains everything. False if no candidate is kept.
@@ -135,6 +216,9 @@ class Search {
     const Evaluator evaluator = refiner_.for_screening(beside.model);
     const Screening screening(evaluator, beside.model, scales_, options_.threads);
     auto screened = screening.run(candidates, fmt::format("round {}", round), options_.watch);
+    if (result_.kept.empty()) {
+      first_screened_.insert(first_screened_.end(), screened.begin(), screened.end());
+    }
     Round fits(round, data_, refiner_, beside, std::move(screened), options_.watch);
     RoundResult best = fits.run(unless_complete);
     result_.trials.insert(result_.trials.end(), best.trials.begin(), best.trials.end());
@@ -153,54 +237,6 @@ class Search {
   /// A model, with its declared values if they compensate: beside values that do, a missing effect explains nothing.
   Assessed without_compensation(const Assessed& model) const {
     return compensates(data_, model) ? assess(fine_, options_.threads, with_declared_values(model.model)) : model;
-  }
-
-  /// Takes out what leaves more of a record or of a band than the calibrated model does. It judges all that was found
-  /// together: of two effects that act on one record, each alone may leave more of it. Of the effects without which nothing
-  /// is worse, the one is taken out that leaves the least error; without such an effect it is the last.
-  /// Returns whether any was taken out.
-  bool take_out_harmful() {
-    bool any = false;
-    while (!result_.kept.empty() && !options_.watch.interrupted()) {
-      const std::string harm = harm_of(data_, result_.explained.prediction, result_.calibrated.prediction);
-      if (harm.empty()) {
-        break;
-      }
-      any = true;
-      options_.watch.progress({Work::settling, "what was found is worse than the calibrated model: " + harm});
-      auto [out, rest] = without_harm();
-      const Kept taken = std::move(result_.kept[out]);
-      result_.kept.erase(result_.kept.begin() + static_cast<std::ptrdiff_t>(out));
-      Trial trial{result_.next_round(), taken.trial.candidate, true, 0.0, 1.0, 0.0, "taken out", words::refused(harm)};
-      if (!rest.good()) {
-        rest = result_.calibrated;
-        result_.kept.clear();
-      }
-      compare(trial, rest, result_.explained, rest.goodness.fitted);
-      result_.trials.push_back(std::move(trial));
-      result_.rival.reset();
-      result_.explained = std::move(rest);
-    }
-    return any;
-  }
-
-  /// The effect to take out, by its place, and the model without it.
-  std::pair<std::size_t, Assessed> without_harm() {
-    if (result_.kept.size() == 1) {
-      return {0, result_.calibrated};
-    }
-    std::optional<std::pair<std::size_t, Assessed>> best;
-    for (std::size_t i = 0; i < result_.kept.size(); ++i) {
-      Assessed rest = refiner_.without(result_.explained.model, result_.kept[i].trial.candidate);
-      const bool is_last = i + 1 == result_.kept.size();
-      const bool is_harmless = rest.good() && harm_of(data_, rest.prediction, result_.calibrated.prediction).empty();
-      const bool leaves_least =
-          !best || Goodness::combined(rest.goodness.held_out) < Goodness::combined(best->second.goodness.held_out);
-      if (is_harmless ? leaves_least : is_last && !best) {
-        best = {i, std::move(rest)};
-      }
-    }
-    return std::move(*best);
   }
 
   /// True for an effect that was taken out twice: adding it again would go round in a circle.
@@ -324,7 +360,8 @@ class Search {
   Scales scales_;
   Refiner refiner_;
   SearchResult result_;
-  bool is_settled_ = true;  ///< what was found was fitted with fine steps
+  std::vector<Screened> first_screened_;  ///< of the first round
+  bool is_settled_ = true;                ///< what was found was fitted with fine steps
   Rivals rivals_;
   UnlistedStage unlisted_;
 };

@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/refine/finalists.hpp"
@@ -93,10 +92,9 @@ bool UnlistedStage::replace_misfit(const Located& left) {
   return false;
 }
 
-/// True where what was found leaves more than the noise, of a plant that terms of unknown law are known for.
 bool UnlistedStage::wants_another_start() const {
-  return is_hydraulic_axis(result_.explained.model.base) && excess_over_noise(data_, result_.explained) > policy().visible &&
-         !options_.watch.interrupted();
+  return is_worth_a_table() && is_hydraulic_axis(result_.explained.model.base) &&
+         excess_over_noise(data_, result_.explained) > policy().visible && !options_.watch.interrupted();
 }
 
 /// The other hypothesis where names were given up: the same names with terms of unknown law beside them. A signal without a
@@ -106,86 +104,58 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
     return std::ranges::any_of(result_.kept,
                                [&](const Kept& kept) { return label(kept.trial.candidate) == label(name.trial.candidate); });
   };
-  if (!std::ranges::all_of(names.kept, is_kept) && wants_another_start()) {
-    start_from_if_better(names);
+  if (std::ranges::all_of(names.kept, is_kept) || !wants_another_start()) {
+    return;
   }
-}
-
-/// Searches for terms of unknown law beside `names`. Keeps them and the terms where they leave clearly less than what was
-/// found.
-void UnlistedStage::start_from_if_better(Found names) {
-  Found before{result_.kept, result_.explained, result_.rival};
-  const std::size_t given = names.kept.size();
-  restore(std::move(names));
+  Found before = found();
+  restore(names);
   add_beside(Names::given);
   name_terms();
-  const double left = excess_over_noise(data_, before.explained);
-  const bool is_better = result_.kept.size() > given &&
-                         excess_over_noise(data_, result_.explained) < policy().clearly_less * left &&
-                         held_out_rows_agree(result_.explained, before.explained);
-  if (!is_better) {
-    restore(std::move(before));
+  Found other = found();
+  restore(std::move(before));
+  if (other.kept.size() > names.kept.size()) {
+    take_if_better(std::move(other));
   }
   file_hypothesis();
 }
 
-/// The name without which an unknown signal costs most, by its best law, fitted alone; none where it saves less than a
-/// tenth.
-///
-/// A signal beside the calibrated model represents everything that is missing, and its prior makes that unlikely. Beside a
-/// right name it has less to represent. A wrong name imitates what the signal represents anyway.
-std::optional<Screened> UnlistedStage::name_that_saves_most() const {
-  const Fitted& around = result_.calibrated.model;
-  const Evaluator evaluator = refiner_.for_screening(around);
-  const Screening screening(evaluator, around, scales_, options_.threads);
-  std::vector<Screened> names;
-  for (Screened& law : screening.run(candidates_beside(around.base, data_), "beside an unknown signal", options_.watch)) {
-    const bool is_known =
-        std::ranges::any_of(names, [&](const Screened& name) { return name.candidate.name == law.candidate.name; });
-    if (!is_known) {
-      names.push_back(std::move(law));
-    }
+/// Keeps another hypothesis where it leaves clearly less than what was found.
+void UnlistedStage::take_if_better(Found other) {
+  const double left = excess_over_noise(data_, result_.explained);
+  if (excess_over_noise(data_, other.explained) < policy().clearly_less * left &&
+      held_out_rows_agree(other.explained, result_.explained)) {
+    restore(std::move(other));
   }
-  const double alone = cost_of_signal(coarse_.data(), around, options_.threads);
-  parallel_for(names.size(), options_.threads, [&](std::size_t i) {
-    names[i].criterion = options_.watch.interrupted() ? alone : cost_of_signal(coarse_.data(), names[i].fitted, 1);
-  });
-  const auto best = std::ranges::min_element(names, {}, &Screened::criterion);
-  const bool saves = best != names.end() && best->criterion < (1.0 - policy().open_share) * alone;
-  return saves ? std::optional(std::move(*best)) : std::nullopt;
 }
 
-/// The other hypothesis where what was found leaves more than the noise: the name without which an unknown signal costs
-/// most, with terms of unknown law beside it. What explains most alone, from which the search starts, may imitate both.
-/// Tried once, since it is beside the calibrated model.
-void UnlistedStage::start_from_name_beside_a_signal(const Found& names) {
-  if (started_from_name_ || !wants_another_start()) {
+double UnlistedStage::share_of_signal() { return located().is_single ? policy().clearly_less : 1.0 - policy().open_share; }
+
+void UnlistedStage::start_from(const Screened& name) {
+  Assessed fitted = refiner_.of_screened(name.fitted, result_.calibrated.model.u);
+  if (!fitted.good()) {
     return;
   }
-  started_from_name_ = true;
-  options_.watch.progress({Work::locating, "comparing listed effects beside an unknown signal"});
-  const std::optional<Screened> name = name_that_saves_most();
-  const auto is_only_name = [&](const std::vector<Kept>& kept) {
-    const auto is_listed = [&](const Kept& k) { return !is_unlisted(k); };
-    const auto is_it = [&](const Kept& k) { return k.trial.candidate.name == name->candidate.name; };
-    return std::ranges::count_if(kept, is_listed) == 1 && std::ranges::any_of(kept, is_it);
-  };
-  if (!name || is_only_name(names.kept) || is_only_name(result_.kept)) {
-    return;
-  }
-  Assessed fitted = refiner_.of_screened(name->fitted, result_.calibrated.model.u);
-  if (!fitted.good() || options_.watch.interrupted()) {
-    return;
-  }
-  Trial trial{result_.next_round(), name->candidate, true, 0.0, 1.0, name->seconds, "kept", ""};
+  Trial trial{result_.next_round(), name.candidate, true, 0.0, 1.0, name.seconds, "kept", ""};
   compare(trial, fitted, result_.calibrated, fitted.goodness.fitted);
   trial.reason = words::text(words::Reason::saves_signal);
   result_.trials.push_back(trial);
-  start_from_if_better({{Kept{std::move(trial), {}}}, std::move(fitted), std::nullopt});
+  restore({{Kept{std::move(trial), {}}}, std::move(fitted), std::nullopt, {}});
 }
 
-/// Brings the decisions of all trials in line with the effects that are kept: those of the other hypothesis are dropped, and
-/// an effect that was taken out and came back is filed once more.
+bool UnlistedStage::add_terms_to_names() {
+  add_beside(Names::given);
+  name_terms();
+  drop_light_names();
+  return is_complete(data_, result_.explained);
+}
+
+void UnlistedStage::give_up_terms(Found before) {
+  if (has_unlisted()) {
+    of_names_ = found();
+  }
+  restore(std::move(before));
+}
+
 void UnlistedStage::file_hypothesis() {
   const int round = result_.trials.back().round;
   const auto last_of = [&](const std::string& name) {

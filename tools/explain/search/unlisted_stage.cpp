@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
@@ -48,16 +49,34 @@ void UnlistedStage::replace_names_that_explain_little() {
   }
 }
 
+bool UnlistedStage::replace_name_beside_single_signal() {
+  if (!located().is_single) {
+    return false;
+  }
+  look_instead();
+  if (!instead_->best || !is_complete(data_, instead_->model)) {
+    return false;
+  }
+  take_instead_if_better();
+  return is_complete(data_, result_.explained);
+}
+
 void UnlistedStage::finish() {
   if (is_worth_a_table() && !options_.watch.interrupted()) {
-    const Found names{result_.kept, result_.explained, result_.rival};
-    refuse_misplaced_names();
-    look_instead();
-    take_instead_if_better();
+    const Found names = found();
+    // A term beside the name without which a signal costs most is there only where a term alone explains less.
+    if (!has_unlisted()) {
+      refuse_misplaced_names();
+      look_instead();
+      take_instead_if_better();
+    }
     add_beside(Names::open);
     name_terms();
     return_to_names_if_better(names);
-    start_from_name_beside_a_signal(names);
+    if (of_names_ && wants_another_start()) {
+      take_if_better(*std::exchange(of_names_, {}));
+      file_hypothesis();
+    }
     drop_light_names();
     drop_names_that_explain_little();
     rivals_.compare_again();
@@ -122,6 +141,7 @@ void UnlistedStage::restore(Found found) {
   result_.kept = std::move(found.kept);
   result_.explained = std::move(found.explained);
   result_.rival = std::move(found.rival);
+  rivals_.restore(std::move(found.aside));
 }
 
 UnlistedTask UnlistedStage::task_beside(const Assessed& model, const Located& located) const {

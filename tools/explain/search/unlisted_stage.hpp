@@ -28,13 +28,44 @@ class UnlistedStage {
         rivals_(rivals),
         result_(result) {}
 
+  /// What a search has found so far.
+  struct Found {
+    std::vector<Kept> kept;
+    Assessed explained;
+    std::optional<Rival> rival;
+    std::vector<Rival> aside;
+  };
+  Found found() const { return {result_.kept, result_.explained, result_.rival, rivals_.aside()}; }
+  void restore(Found found);
+
+  /// True where what was found leaves more than the noise, of a plant that terms of unknown law are known for.
+  bool wants_another_start() const;
+
   /// Ends a search early: where the names so far explain little and one term of unknown law leaves only noise, it takes
   /// their place.
   void replace_names_that_explain_little();
+  /// Ends a search after its first rounds: where one signal explains the records and one term of unknown law leaves only
+  /// noise, it takes the place of the names. Returns whether it does.
+  bool replace_name_beside_single_signal();
+
+  /// Share of its cost beside the calibrated model that an unknown signal may cost beside a name that the search starts
+  /// again from. Where one signal explains the records, a term of unknown law may be all that is missing.
+  double share_of_signal();
+  /// Starts again with one name beside the calibrated model. Nothing changes if it cannot be fitted.
+  void start_from(const Screened& name);
+  /// Terms of unknown law beside the names that were found, or listed laws in their place; names that the terms make
+  /// needless are dropped. Returns whether only noise is left.
+  bool add_terms_to_names();
+  /// Goes back to what was found before. What the terms left is compared at the end of the search with what it has found
+  /// then.
+  void give_up_terms(Found before);
+  /// Brings the decisions of all trials in line with the effects that are kept: those of the other hypothesis are dropped,
+  /// and an effect that was taken out and came back is filed once more.
+  void file_hypothesis();
 
   /// The end of a search: names that the located place refutes are taken out; a term of unknown law takes the place of the
   /// names or comes beside them where it leaves clearly less; names that were given up are tried again with terms beside
-  /// them; so is the name without which an unknown signal costs most; names without weight are dropped; what explained the
+  /// them; terms that were given up are compared; names without weight are dropped; what explained the
   /// records as well as a name is compared with it again; what is left is located.
   void finish();
 
@@ -48,17 +79,9 @@ class UnlistedStage {
   }
 
  private:
-  /// What a search has found so far.
-  struct Found {
-    std::vector<Kept> kept;
-    Assessed explained;
-    std::optional<Rival> rival;
-  };
-
   /// Whether a term may replace a name that was found.
   enum class Names { open, given };
 
-  void restore(Found found);
   bool is_worth_a_table() const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
   bool leaves_as_little(const Assessed& model) const;
@@ -85,12 +108,8 @@ class UnlistedStage {
   bool revise_term(std::size_t term, const RoundResult& listed, const Located& left);
   bool replace_misfit(const Located& left);
   void name_terms();
-  bool wants_another_start() const;
   void return_to_names_if_better(const Found& names);
-  void start_from_name_beside_a_signal(const Found& names);
-  std::optional<Screened> name_that_saves_most() const;
-  void start_from_if_better(Found names);
-  void file_hypothesis();
+  void take_if_better(Found other);
   void drop_light_names();
   void drop_names_that_explain_little();
   void keep(const UnlistedSearch& found, std::size_t first_trial);
@@ -107,7 +126,7 @@ class UnlistedStage {
   std::vector<double> beside_values_;      ///< of that model's free parameters; none: not asked for yet
   std::optional<UnlistedSearch> instead_;  ///< beside the calibrated model, once it was searched for
   std::size_t instead_trials_ = 0;         ///< where its trials are among all
-  bool started_from_name_ = false;         ///< that saves an unknown signal most: tried
+  std::optional<Found> of_names_;          ///< terms beside names that leave more than noise, for the end of the search
 };
 
 }  // namespace hotfire::explain
