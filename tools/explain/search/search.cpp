@@ -141,7 +141,7 @@ class Search {
       unlisted_.start_from(*name);
       UnlistedStage::Found alone = unlisted_.found();
       const bool has_second = add_round();
-      if (is_complete(data_, result_.explained) || leaves_clearly_less(result_.explained, names.explained)) {
+      if (is_complete(data_, result_.explained) || unlisted_.is_clearly_better(result_.explained, names.explained)) {
         names = unlisted_.found();
         was_settled = is_settled_;
         goes_on = has_second;
@@ -151,7 +151,7 @@ class Search {
       }
     }
     if (is_complete(data_, result_.explained) || unlisted_.add_terms_to_names() ||
-        leaves_clearly_less(result_.explained, names.explained)) {
+        unlisted_.is_clearly_better(result_.explained, names.explained)) {
       goes_on = false;
     } else {
       unlisted_.give_up_terms(std::move(names));
@@ -159,12 +159,6 @@ class Search {
     }
     unlisted_.file_hypothesis();
     return goes_on;
-  }
-
-  /// True if a model leaves clearly less beyond the noise than another.
-  bool leaves_clearly_less(const Assessed& model, const Assessed& than) const {
-    return excess_over_noise(data_, model) < policy().clearly_less * excess_over_noise(data_, than) &&
-           held_out_rows_agree(model, than);
   }
 
   /// All laws beside the calibrated model, screened: those of the first round, and the others.

@@ -119,11 +119,14 @@ void UnlistedStage::return_to_names_if_better(const Found& names) {
   file_hypothesis();
 }
 
-/// Keeps another hypothesis where it leaves clearly less than what was found.
+bool UnlistedStage::is_clearly_better(const Assessed& model, const Assessed& than) const {
+  return excess_over_noise(data_, model) < policy().clearly_less * excess_over_noise(data_, than) &&
+         held_out_rows_agree(model, than);
+}
+
+/// Keeps another hypothesis where it is clearly better than what was found.
 void UnlistedStage::take_if_better(Found other) {
-  const double left = excess_over_noise(data_, result_.explained);
-  if (excess_over_noise(data_, other.explained) < policy().clearly_less * left &&
-      held_out_rows_agree(other.explained, result_.explained)) {
+  if (is_clearly_better(other.explained, result_.explained)) {
     restore(std::move(other));
   }
 }

@@ -38,6 +38,8 @@ class UnlistedStage {
   Found found() const { return {result_.kept, result_.explained, result_.rival, rivals_.aside()}; }
   void restore(Found found);
 
+  /// True if a model leaves clearly less beyond the noise than another, and held-out rows agree.
+  bool is_clearly_better(const Assessed& model, const Assessed& than) const;
   /// True where what was found leaves more than the noise, of a plant that terms of unknown law are known for.
   bool wants_another_start() const;
 
@@ -65,8 +67,8 @@ class UnlistedStage {
 
   /// The end of a search: names that the located place refutes are taken out; a term of unknown law takes the place of the
   /// names or comes beside them where it leaves clearly less; names that were given up are tried again with terms beside
-  /// them; terms that were given up are compared; names without weight are dropped; what explained the
-  /// records as well as a name is compared with it again; what is left is located.
+  /// them; terms that were given up are compared; names without weight are dropped; what explained the records as well as a
+  /// name is compared with it again; what is left is located.
   void finish();
 
   /// Where the term acts that the explained model is missing; nowhere for a mass, which has one place only.
