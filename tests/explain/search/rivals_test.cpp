@@ -57,7 +57,7 @@ struct TwoLaws {
   explain::Watch watch;
   explain::Refiner refiner{data, fine, fine, fine, scales, 1, watch};
   explain::SearchResult result;
-  explain::Rivals rivals{data, refiner, watch, result};
+  explain::Rivals rivals{refiner, watch, result};
 };
 
 }  // namespace

@@ -19,8 +19,8 @@ void give_law(SearchResult& result, Candidate& candidate, OfLaw other, int round
 class Rivals {
  public:
   /// Works on `result`; all are to outlive it.
-  Rivals(const Dataset& data, const Refiner& refiner, const Watch& watch, SearchResult& result)
-      : data_(data), refiner_(refiner), watch_(watch), result_(result) {}
+  Rivals(const Refiner& refiner, const Watch& watch, SearchResult& result)
+      : refiner_(refiner), watch_(watch), result_(result) {}
 
   /// A later effect is kept: the rival of the last one is to be compared again.
   void set_aside();
@@ -36,7 +36,6 @@ class Rivals {
  private:
   void compare_again(const Rival& rival);
 
-  const Dataset& data_;
   const Refiner& refiner_;
   const Watch& watch_;
   SearchResult& result_;

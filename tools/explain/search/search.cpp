@@ -52,7 +52,7 @@ class Search {
         scales_(scales_of(model.parameters, data)),
         refiner_(data, is_ranked_coarsely(model) ? rough_ : coarse_, coarse_, fine_, scales_, options.threads,
                  options.watch),
-        rivals_(data, refiner_, options.watch, result_),
+        rivals_(refiner_, options.watch, result_),
         unlisted_(data, refiner_, coarse_, scales_, options, rivals_, result_) {}
 
   /// The declared model within its tolerances.
