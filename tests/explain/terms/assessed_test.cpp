@@ -96,6 +96,24 @@ TEST(Assessed, AtTheNoiseAModelWithinItsTolerancesIsMoreCredibleThanOneBeyond) {
   CHECK_FALSE(is_more_credible(data, far, beyond));
 }
 
+TEST(Assessed, AModelWhoseEffectIsAsFarFromItsTypicalValuesIsNotMoreCredibleThanACompensation) {
+  const Dataset data = hotfire::test::data_of(hotfire::test::declared());
+  const Evaluator evaluator(data, Resolution::fine);
+  Assessed without;
+  without.model = hotfire::test::about_declared();
+  CHECK(evaluator.predict(without.model.base, without.model.free, without.model.u, 1, without.prediction));
+  Assessed with = without;
+  without.model.u[0] = 6.0;
+  // An effect's parameter has a prior, and no declared value.
+  with.model.free.push_back(with.model.free[0]);
+  with.model.free.back().scale = FreeParameter::Scale::logarithmic;
+  // 5.8 squared and log 2 of one more parameter are less than 6 squared; 6.1 squared is not.
+  with.model.u.push_back(5.8);
+  CHECK_TRUE(is_more_credible(data, with, without));
+  with.model.u.back() = 6.1;
+  CHECK_FALSE(is_more_credible(data, with, without));
+}
+
 TEST(Assessed, ADeclaredValueMovedByTolerancesKeepsItsSignAndComesBackFromItsCoordinate) {
   const Fitted model;
   const auto free = declared_parameters(model.base, {{"actuator.piston_damping", 0.3}});

@@ -321,6 +321,9 @@ class Search {
       options_.watch.progress({Work::deciding, fmt::format("round {}: is {} still needed", round, label(trial.candidate))});
       const Stopwatch stopwatch;
       Assessed rest = refiner_.without(result_.explained.model, trial.candidate);
+      if (result_.kept.size() == 1) {
+        rest = better_of(std::move(rest), result_.calibrated);  // an earlier round may have led it out of a local minimum
+      }
       if (rest.good()) {
         compare(trial, rest, result_.explained, rest.goodness.fitted);
       }

@@ -152,7 +152,9 @@ bool compensates(const Dataset& data, const Assessed& assessed) {
 }
 
 bool is_more_credible(const Dataset& data, const Assessed& model, const Assessed& than) {
-  return compensates(data, than) && is_complete(data, model);
+  return compensates(data, than) && is_complete(data, model) &&
+         criterion_change(model, than, model.goodness.fitted) <
+             prior_cost(than.model.free, than.model.u) - prior_cost(model.model.free, model.model.u);
 }
 
 Fitted without_effect(const Fitted& model, const Candidate& candidate) {

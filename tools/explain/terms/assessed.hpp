@@ -82,7 +82,9 @@ bool is_complete(const Dataset& data, const Assessed& assessed);
 /// need them, imitate what is missing.
 bool compensates(const Dataset& data, const Assessed& assessed);
 
-/// True if a model is complete and another one compensates.
+/// True if a model is complete, another one compensates, and the posterior odds are for the model: BIC with the squared
+/// distances of all parameters from their priors. Friction that never slips is a spring: it reaches the noise beside a
+/// stiffness as declared, with more parameters than the stiffness that compensates, and far from its typical level.
 bool is_more_credible(const Dataset& data, const Assessed& model, const Assessed& than);
 
 /// Takes the free parameters of which `unwanted` is true out of a model.
