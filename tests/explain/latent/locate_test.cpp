@@ -76,13 +76,28 @@ TEST(Locate, ASignalCostsLessBesideARightEffectAndAsMuchBesideAWrongOne) {
   const auto cost_beside = [&](const ModelFile& model) {
     explain::Fitted about = about_declared();
     about.base = model.parameters;
-    return explain::cost_of_signal(data, about, 2);
+    return explain::cost_of_signal(data, about, {}, 2).cost;
   };
   const double alone = cost_beside(declared());
   CHECK(cost_beside(right) < 0.5 * alone);
   CHECK(cost_beside(with_effect<model::TorqueOffset>({3e3})) > 0.95 * alone);
   // Of both there is only noise left, which the readings' own quantum makes smaller than declared.
   CHECK(cost_beside(truth) < 0.05 * alone);
+}
+
+TEST(Locate, ASignalCostsTheSameFromThePriorsBesideAnotherModelAsFromAllPriors) {
+  ModelFile truth = with_effect<model::RateLimit>({0.02});
+  add_effect<model::Leakage>(std::get<SimplexParameters>(truth.parameters),
+                             [](auto& leakage) { leakage.coefficient = 6e-11; });
+  const explain::Dataset data = data_of(truth);
+  const explain::SignalCost alone = explain::cost_of_signal(data, about_declared(), {}, 2);
+  // Beside the limit the signal is smaller than alone, beside the offset it is the same.
+  for (const ModelFile& model : {with_effect<model::RateLimit>({0.02}), with_effect<model::TorqueOffset>({3e3})}) {
+    explain::Fitted about = about_declared();
+    about.base = model.parameters;
+    const double of_all = explain::cost_of_signal(data, about, {}, 2).cost;
+    DOUBLES_EQUAL(of_all, explain::cost_of_signal(data, about, alone.priors, 2).cost, 0.01 * alone.cost);
+  }
 }
 
 TEST(Locate, AnInvisibleMissingTermIsNoPlace) {

@@ -4,6 +4,7 @@
 #include <CppUTest/TestHarness.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -24,6 +25,14 @@ explain::SearchResult found_in(const Record& record, int most_effects = 4, doubl
   const ModelFile model = declared_oscillator(declared_stiffness);
   auto data = explain::make_dataset(model, {record});
   return explain::search(data, model, {2, most_effects, {}});
+}
+
+/// Takes the first rows out of a record.
+void cut_start(Record& record, std::size_t rows) {
+  record.rows -= rows;
+  for (Channel& channel : record.channels) {
+    channel.values.erase(channel.values.begin(), channel.values.begin() + static_cast<std::ptrdiff_t>(rows));
+  }
 }
 
 /// Checks that a search in records of `truth` finds these effects and no others, and leaves noise.
@@ -48,17 +57,31 @@ TEST(Search, NothingIsFoundInARecordOfAnAxisThatMovedBeforeIt) {
   const ModelFile model = test::declared();
   Record record = test::record_under(
       model, [](double t) { return t < 1.0 ? 0.0 : 0.02 + 5e-3 * std::sin(3.0 * std::max(0.0, t - 4.0)); });
-  constexpr std::size_t kCut = 690;
-  record.rows -= kCut;
-  for (Channel& channel : record.channels) {
-    channel.values.erase(channel.values.begin(), channel.values.begin() + kCut);
-  }
+  cut_start(record, 690);
   auto data = explain::make_dataset(model, {record});
   LONGS_EQUAL(0, data.experiments.front().first_scored);
   const auto found = explain::search(data, model, {2, 4, {}});
   CHECK(data.experiments.front().first_scored > 900);
   CHECK(found.kept.empty());
   CHECK(explain::reaches_noise(data, found.explained));
+}
+
+// Steps under friction that holds, 0.8 s after one of them: what the friction leaves at every rest hides what the start
+// leaves.
+TEST(SearchAtLength, FrictionThatIsFoundShowsThatARecordStartsInMotion) {
+  constexpr int kDahl = static_cast<int>(model::GimbalFriction::Law::dahl);
+  Record record = test::record_under(test::with_effect<model::GimbalFriction>({1.15e4, 9.2e6}, kDahl), [](double t) {
+    const double level = 0.01 - 0.002 * std::floor(t / 4.0);
+    return t < 1.0 ? 0.0 : (std::fmod(t, 4.0) < 2.0 ? level : -level);
+  });
+  cut_start(record, 1400);
+  const ModelFile model = test::declared();
+  auto data = explain::make_dataset(model, {record});
+  explain::search(data, model, {2, 0, {}});
+  LONGS_EQUAL(0, data.experiments.front().first_scored);
+  const auto found = explain::search(data, model, {2, 1, {}});
+  CHECK(data.experiments.front().first_scored > 900);
+  STRCMP_EQUAL("gimbal_friction", found.kept.front().trial.candidate.name.c_str());
 }
 
 // A reading that is held for eight rows is late by half of that on average.

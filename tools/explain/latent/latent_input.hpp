@@ -74,6 +74,13 @@ LatentInput input_of(const LatentProblem& problem, const LatentPlace& place, con
 /// Kalman filter, Annals of Statistics 19].
 LatentInput most_likely_input(const LatentProblem& problem, const LatentPlace& place);
 
+/// The most likely size of a signal at `place`, to a factor of four, from a prior that was likely beside another model: size
+/// by size, as long as the next one is more likely. Seven evaluations of the filter become three.
+LatentInput input_downhill(const LatentProblem& problem, const LatentPlace& place, const LatentPrior& from);
+
+/// Takes the size of a likely signal to a factor of 1.6, as `most_likely_input` does.
+void refine(const LatentProblem& problem, const LatentPlace& place, LatentInput& input);
+
 /// The same with signal and what is left, by a fixed-interval smoother [Bryson and Frazier 1963].
 void smooth(const LatentProblem& problem, const LatentPlace& place, LatentInput& input);
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -152,22 +151,33 @@ Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
   return located;
 }
 
-double cost_of_signal(const Dataset& data, const Fitted& around, unsigned threads) {
+SignalCost cost_of_signal(const Dataset& data, const Fitted& around, const std::vector<LatentPrior>& near,
+                          unsigned threads) {
   const Dataset thin = thinned_to_rows(data, kMostRowsCompared);
   const LatentProblem problem = latent_problem(data, thin, around, threads);
+  SignalCost signal;
   if (problem.flows.empty()) {
-    return std::numeric_limits<double>::infinity();
+    return signal;
   }
   double values = 0.0;
   for (const Eigen::MatrixXd& left : problem.left) {
     values += static_cast<double>(left.array().isFinite().count());
   }
-  const double of_noise = -0.5 * values * (1.0 + std::log(2.0 * std::numbers::pi));
-  double most = -std::numeric_limits<double>::infinity();
-  for (const auto& [place, sites] : places_of(problem.data)) {
-    most = std::max(most, most_likely_input(problem, place).log_likelihood);
+  const auto places = places_of(problem.data);
+  std::vector<LatentInput> inputs(places.size());
+  parallel_for(places.size(), threads, [&](std::size_t i) {
+    inputs[i] =
+        near.empty() ? most_likely_input(problem, places[i].first) : input_downhill(problem, places[i].first, near[i]);
+  });
+  const auto best = std::ranges::max_element(inputs, {}, &LatentInput::log_likelihood);
+  if (!near.empty()) {
+    refine(problem, places[static_cast<std::size_t>(best - inputs.begin())].first, *best);
   }
-  return of_noise - most;
+  signal.cost = -0.5 * values * (1.0 + std::log(2.0 * std::numbers::pi)) - best->log_likelihood;
+  for (const LatentInput& input : inputs) {
+    signal.priors.push_back(input.prior);
+  }
+  return signal;
 }
 
 }  // namespace hotfire::explain

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -50,9 +51,16 @@ struct Located {
 /// about a kilobyte a row.
 Located locate(const Dataset& data, const Fitted& around, unsigned threads);
 
-/// How much less likely the records are beside a model with one unknown signal, at the place where it is most likely, than
-/// noise alone would be, in log likelihood. A small or slow signal costs little. Infinite if the model cannot be simulated.
-/// Records of more than 4,000 rows together are thinned to as many.
-double cost_of_signal(const Dataset& data, const Fitted& around, unsigned threads);
+/// What one unknown signal costs beside a model.
+struct SignalCost {
+  /// How much less likely the records are than noise alone would be, with the signal at the place where it is most likely,
+  /// in log likelihood. A small or slow signal costs little. Infinite if the model cannot be simulated.
+  double cost = std::numeric_limits<double>::infinity();
+  std::vector<LatentPrior> priors;  ///< the most likely signal of each place
+};
+
+/// The cost of an unknown signal. Records of more than 4,000 rows together are thinned to as many. `near`: the priors beside
+/// another model, from which those beside this one are found in a third of the time; empty if there are none.
+SignalCost cost_of_signal(const Dataset& data, const Fitted& around, const std::vector<LatentPrior>& near, unsigned threads);
 
 }  // namespace hotfire::explain

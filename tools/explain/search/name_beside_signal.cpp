@@ -19,12 +19,12 @@ std::optional<Screened> name_that_saves_most(const Dataset& rows, const Fitted& 
       names.push_back(law);
     }
   }
-  const double alone = cost_of_signal(rows, around, threads);
+  const SignalCost alone = cost_of_signal(rows, around, {}, threads);
   parallel_for(names.size(), threads, [&](std::size_t i) {
-    names[i].criterion = watch.interrupted() ? alone : cost_of_signal(rows, names[i].fitted, 1);
+    names[i].criterion = watch.interrupted() ? alone.cost : cost_of_signal(rows, names[i].fitted, alone.priors, 1).cost;
   });
   const auto best = std::ranges::min_element(names, {}, &Screened::criterion);
-  const bool saves = best != names.end() && best->criterion < share * alone;
+  const bool saves = best != names.end() && best->criterion < share * alone.cost;
   return saves ? std::optional(std::move(*best)) : std::nullopt;
 }
 

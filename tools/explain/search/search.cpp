@@ -77,13 +77,20 @@ class Search {
     return result_.calibrated;
   }
 
-  SearchResult run() {
+  /// The first two rounds. What they explain may show how the records start.
+  const Assessed& run_first_rounds() {
     result_.explained = result_.calibrated;
-    bool goes_on = options_.most_effects > 0 && add_round();
-    const UnlistedStage::Found first = unlisted_.found();
-    goes_on = goes_on && options_.most_effects > 1 && add_round();
+    goes_on_ = options_.most_effects > 0 && add_round();
+    of_first_round_ = unlisted_.found();
+    goes_on_ = goes_on_ && options_.most_effects > 1 && add_round();
+    return result_.explained;
+  }
+
+  /// The search from there.
+  SearchResult run() {
+    bool goes_on = goes_on_;
     if (options_.most_effects > 0 && unlisted_.wants_another_start()) {
-      goes_on = start_from_name(first, goes_on);
+      goes_on = start_from_name(of_first_round_, goes_on);
     }
     for (int count = 2; count < options_.most_effects && goes_on; ++count) {
       goes_on = add_round();
@@ -359,6 +366,8 @@ class Search {
   SearchResult result_;
   std::vector<Screened> first_screened_;  ///< of the first round
   bool is_settled_ = true;                ///< what was found was fitted with fine steps
+  UnlistedStage::Found of_first_round_;
+  bool goes_on_ = false;  ///< the first two rounds have left a way on
   Rivals rivals_;
   UnlistedStage unlisted_;
 };
@@ -372,15 +381,15 @@ Dataset rows_for_ranks(const Dataset& data, const ModelFile& model) {
 }
 
 SearchResult search(Dataset& data, const ModelFile& model, const SearchOptions& options) {
-  {
-    Search first(data, model, options);
-    if (!forget_moving_starts(model.parameters, first.calibrate().prediction, data)) {
-      return first.run();
+  // A missing effect may hide how a record starts: friction keeps what it held before the record. Each restart takes the
+  // start of a record out, and no start twice.
+  while (true) {
+    Search attempt(data, model, options);
+    if (!forget_moving_starts(model.parameters, attempt.calibrate().prediction, data) &&
+        !forget_moving_starts(model.parameters, attempt.run_first_rounds().prediction, data)) {
+      return attempt.run();
     }
   }
-  Search again(data, model, options);
-  again.calibrate();
-  return again.run();
 }
 
 }  // namespace hotfire::explain
