@@ -83,6 +83,10 @@ class Search {
     goes_on_ = options_.most_effects > 0 && add_round();
     of_first_round_ = unlisted_.found();
     goes_on_ = goes_on_ && options_.most_effects > 1 && add_round();
+    // Where no single signal explains the records, no single term does: first the names are compared.
+    if (!result_.kept.empty() && unlisted_.has_single_signal()) {
+      unlisted_.replace_names_that_explain_little();
+    }
     return result_.explained;
   }
 
@@ -94,6 +98,7 @@ class Search {
     }
     for (int count = 2; count < options_.most_effects && goes_on; ++count) {
       goes_on = add_round();
+      unlisted_.replace_names_that_explain_little();
     }
     if (!result_.kept.empty() && !options_.watch.interrupted()) {
       settle();
@@ -122,7 +127,6 @@ class Search {
       return false;
     }
     take_out_superfluous(round);
-    unlisted_.replace_names_that_explain_little();
     return true;
   }
 
@@ -137,6 +141,7 @@ class Search {
     const auto name = name_that_saves_most(coarse_.data(), result_.calibrated.model, screened_beside_calibrated(),
                                            unlisted_.share_of_signal(), options_.threads, options_.watch);
     if (!name || options_.watch.interrupted()) {
+      unlisted_.replace_names_that_explain_little();
       return !unlisted_.replace_name_beside_single_signal() && goes_on;
     }
     UnlistedStage::Found names = unlisted_.found();

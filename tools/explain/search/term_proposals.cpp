@@ -23,6 +23,9 @@ namespace {
 
 /// Rows over all records that forms are regressed on: of two minutes at 200 Hz.
 constexpr double kMostRows = 25e3;
+/// The same where no single signal explains the records: what else is missing is worse than noise, and several places are
+/// open. Half of the rows take half of the time.
+constexpr double kMostRowsOfOpen = 12.5e3;
 /// Forms of one place that are proposed.
 constexpr std::size_t kFormsOfPlace = 9;
 /// How far a parameter of a memory may go from where the regression puts it, as a factor.
@@ -273,7 +276,7 @@ std::optional<Screened> without_memory(const Fitted& fitted, const Candidate& te
 
 std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around, const Located& located, unsigned threads,
                                       const Watch& watch) {
-  const Dataset thin = thinned_to_rows(data, kMostRows);
+  const Dataset thin = thinned_to_rows(data, located.is_single ? kMostRows : kMostRowsOfOpen);
   const LatentProblem problem = latent_problem(data, thin, around, threads);
   if (problem.flows.empty()) {
     return {};

@@ -43,6 +43,8 @@ class UnlistedStage {
   /// True where what was found leaves more than the noise, of a plant that terms of unknown law are known for.
   bool wants_another_start() const;
 
+  /// True if one signal beside the calibrated model explains the records.
+  bool has_single_signal() { return located().is_single; }
   /// Ends a search early: where the names so far explain little and one term of unknown law leaves only noise, it takes
   /// their place.
   void replace_names_that_explain_little();
