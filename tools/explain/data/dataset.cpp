@@ -215,6 +215,11 @@ Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
   return data;
 }
 
+void forget_start(Experiment& experiment, std::size_t rows) {
+  experiment.first_scored = rows;
+  share_out(experiment);
+}
+
 bool forget_moving_starts(const ModelParameters& model, const std::vector<std::vector<std::vector<double>>>& predicted,
                           Dataset& data) {
   const auto* axis = std::get_if<SimplexParameters>(&model);
@@ -233,8 +238,7 @@ bool forget_moving_starts(const ModelParameters& model, const std::vector<std::v
     }
     if (moves) {
       any = true;
-      experiment.first_scored = memory;
-      share_out(experiment);
+      forget_start(experiment, memory);
     }
   }
   return any;

@@ -82,6 +82,9 @@ struct Dataset {
 Dataset make_dataset(const ModelFile& model, const std::vector<Record>& records,
                      const std::vector<Exclusion>& exclusions = {});
 
+/// Takes the first rows of a record out of the comparison.
+void forget_start(Experiment& experiment, std::size_t rows);
+
 /// Takes the first rows of a record of a hydraulic axis out of the comparison if the residual of the calibrated model decays
 /// there (`dies_out_at_start`): the axis moved before. A record with excluded rows at its start is left as it is.
 /// `predicted` is by record, channel and row. Returns whether there is such a record.

@@ -14,6 +14,7 @@
 #include "tools/explain/inference/veto.hpp"
 #include "tools/explain/policy/policy.hpp"
 #include "tools/explain/refine/finalists.hpp"
+#include "tools/explain/refine/held_start.hpp"
 #include "tools/explain/refine/refiner.hpp"
 #include "tools/explain/refine/watch.hpp"
 #include "tools/explain/search/declared_effects.hpp"
@@ -33,8 +34,7 @@ namespace {
 /// Rows no closer than this separate candidates [time constants of the servo]: 2 ms of the reference axis. The fastest that
 /// an axis does in its sensors is tens of hertz.
 constexpr double kRankingPeriod = 0.034;
-/// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by, and what its rows
-/// were thinned by.
+/// A lightly damped mass measured to a thousandth shows what half as many steps shift its resonance by.
 bool is_ranked_coarsely(const ModelFile& model) { return is_hydraulic_axis(model.parameters); }
 
 /// The state of one search.
@@ -77,7 +77,7 @@ class Search {
     return result_.calibrated;
   }
 
-  /// The first two rounds. What they explain may show how the records start.
+  /// The first two rounds; `run` does the rest.
   const Assessed& run_first_rounds() {
     result_.explained = result_.calibrated;
     goes_on_ = options_.most_effects > 0 && add_round();
@@ -90,14 +90,12 @@ class Search {
     return result_.explained;
   }
 
-  /// The search from there.
   SearchResult run() {
-    bool goes_on = goes_on_;
     if (options_.most_effects > 0 && unlisted_.wants_another_start()) {
-      goes_on = start_from_name(of_first_round_, goes_on);
+      start_from_name();
     }
-    for (int count = 2; count < options_.most_effects && goes_on; ++count) {
-      goes_on = add_round();
+    for (int count = 2; count < options_.most_effects && goes_on_; ++count) {
+      goes_on_ = add_round();
       unlisted_.replace_names_that_explain_little();
     }
     if (!result_.kept.empty() && !options_.watch.interrupted()) {
@@ -119,7 +117,7 @@ class Search {
   }
 
  private:
-  /// One round, and what it makes superfluous. Returns whether it added an effect: another may be missing then.
+  /// One round, and what it makes superfluous. Returns whether it added an effect.
   bool add_round() {
     const int round = result_.next_round();
     if (options_.watch.interrupted() || is_complete(data_, result_.explained) ||
@@ -132,23 +130,23 @@ class Search {
 
   /// Where two listed effects leave more than noise, more are missing or one that is not listed. What explains most alone
   /// may imitate all of them. The search starts again from the name without which an unknown signal costs most: with another
-  /// listed effect, then with terms of unknown law beside it. Where there is no such name and one signal explains the
-  /// records, one term of unknown law is tried. What leaves only noise, or clearly less than the first rounds, is kept.
-  /// `first`: what the first round has found. `goes_on`: whether the first rounds have left a way on. Returns whether what
-  /// is kept has.
-  bool start_from_name(const UnlistedStage::Found& first, bool goes_on) {
+  /// listed effect, then with terms of unknown law beside it. Without such a name one term of unknown law is tried. What
+  /// leaves only noise, or clearly less than the first rounds, is kept.
+  void start_from_name() {
     options_.watch.progress({Work::locating, "comparing listed effects beside an unknown signal"});
     const auto name = name_that_saves_most(coarse_.data(), result_.calibrated.model, screened_beside_calibrated(),
                                            unlisted_.share_of_signal(), options_.threads, options_.watch);
     if (!name || options_.watch.interrupted()) {
       unlisted_.replace_names_that_explain_little();
-      return !unlisted_.replace_name_beside_single_signal() && goes_on;
+      goes_on_ = !unlisted_.replace_name_beside_single_signal() && goes_on_;
+      return;
     }
     UnlistedStage::Found names = unlisted_.found();
     bool was_settled = is_settled_;
-    const bool is_first = first.kept.size() == 1 && first.kept.front().trial.candidate.name == name->candidate.name;
+    const std::vector<Kept>& first = of_first_round_.kept;
+    const bool is_first = first.size() == 1 && first.front().trial.candidate.name == name->candidate.name;
     if (is_first) {
-      unlisted_.restore(first);
+      unlisted_.restore(of_first_round_);
     } else {
       unlisted_.start_from(*name);
       UnlistedStage::Found alone = unlisted_.found();
@@ -156,7 +154,7 @@ class Search {
       if (is_complete(data_, result_.explained) || unlisted_.is_clearly_better(result_.explained, names.explained)) {
         names = unlisted_.found();
         was_settled = is_settled_;
-        goes_on = has_second;
+        goes_on_ = has_second;
       }
       if (!is_complete(data_, result_.explained)) {
         unlisted_.restore(std::move(alone));
@@ -164,13 +162,12 @@ class Search {
     }
     if (is_complete(data_, result_.explained) || unlisted_.add_terms_to_names() ||
         unlisted_.is_clearly_better(result_.explained, names.explained)) {
-      goes_on = false;
+      goes_on_ = false;
     } else {
       unlisted_.give_up_terms(std::move(names));
       is_settled_ = was_settled;
     }
     unlisted_.file_hypothesis();
-    return goes_on;
   }
 
   /// All laws beside the calibrated model, screened: those of the first round, and the others.
@@ -386,12 +383,15 @@ Dataset rows_for_ranks(const Dataset& data, const ModelFile& model) {
 }
 
 SearchResult search(Dataset& data, const ModelFile& model, const SearchOptions& options) {
-  // A missing effect may hide how a record starts: friction keeps what it held before the record. Each restart takes the
-  // start of a record out, and no start twice.
+  // A missing effect may hide how a record starts, and remember it. Each restart takes more rows out at a start.
   while (true) {
     Search attempt(data, model, options);
-    if (!forget_moving_starts(model.parameters, attempt.calibrate().prediction, data) &&
-        !forget_moving_starts(model.parameters, attempt.run_first_rounds().prediction, data)) {
+    if (forget_moving_starts(model.parameters, attempt.calibrate().prediction, data)) {
+      continue;
+    }
+    const Assessed& found = attempt.run_first_rounds();
+    if (!forget_moving_starts(model.parameters, found.prediction, data) &&
+        !forget_held_starts(found.model, options.threads, data)) {
       return attempt.run();
     }
   }
