@@ -20,6 +20,15 @@ Assessed leaving(const std::vector<double>& errors) {
   return assessed;
 }
 
+/// The declared model with what it predicts of records.
+Assessed declared_about(const Dataset& data) {
+  Assessed declared;
+  declared.model = hotfire::test::about_declared();
+  CHECK(Evaluator(data, Resolution::fine)
+            .predict(declared.model.base, declared.model.free, declared.model.u, 1, declared.prediction));
+  return declared;
+}
+
 }  // namespace
 
 TEST_GROUP(Assessed){};
@@ -78,10 +87,7 @@ TEST(Assessed, ADeclaredParameterSixTolerancesOffReplacesSomethingAndAnEffectsOw
 
 TEST(Assessed, AtTheNoiseAModelWithinItsTolerancesIsMoreCredibleThanOneBeyond) {
   const Dataset data = hotfire::test::data_of(hotfire::test::declared());
-  const Evaluator evaluator(data, Resolution::fine);
-  Assessed within;
-  within.model = hotfire::test::about_declared();
-  CHECK(evaluator.predict(within.model.base, within.model.free, within.model.u, 1, within.prediction));
+  const Assessed within = declared_about(data);
   Assessed beyond = within;
   beyond.model.u[0] = 6.0;
   CHECK_TRUE(is_more_credible(data, within, beyond));
@@ -98,10 +104,7 @@ TEST(Assessed, AtTheNoiseAModelWithinItsTolerancesIsMoreCredibleThanOneBeyond) {
 
 TEST(Assessed, AModelWhoseEffectIsAsFarFromItsTypicalValuesIsNotMoreCredibleThanACompensation) {
   const Dataset data = hotfire::test::data_of(hotfire::test::declared());
-  const Evaluator evaluator(data, Resolution::fine);
-  Assessed without;
-  without.model = hotfire::test::about_declared();
-  CHECK(evaluator.predict(without.model.base, without.model.free, without.model.u, 1, without.prediction));
+  Assessed without = declared_about(data);
   Assessed with = without;
   without.model.u[0] = 6.0;
   // An effect's parameter has a prior, and no declared value.
