@@ -23,7 +23,8 @@ inline namespace registers_of_two {
 ///
 /// The number itself, lane 0, has the bits of a run in double, and every choice is made by it: a branch, a whole part, a
 /// piece of a table. A difference is then one along the branches of the number, as a derivative is, however close a choice
-/// was.
+/// was. A change that leaves the domain of a function on its branch goes along the tangent at the number: one to a divisor
+/// of zero, or to a negative number under a root.
 template <int N>
 class Perturbed {
  public:
@@ -48,7 +49,11 @@ class Perturbed {
   friend Perturbed operator+(const Perturbed& x, const Perturbed& y) noexcept { return Perturbed(x.lanes_ + y.lanes_); }
   friend Perturbed operator-(const Perturbed& x, const Perturbed& y) noexcept { return Perturbed(x.lanes_ - y.lanes_); }
   friend Perturbed operator*(const Perturbed& x, const Perturbed& y) noexcept { return Perturbed(x.lanes_ * y.lanes_); }
-  friend Perturbed operator/(const Perturbed& x, const Perturbed& y) noexcept { return Perturbed(x.lanes_ / y.lanes_); }
+  friend Perturbed operator/(const Perturbed& x, const Perturbed& y) noexcept {
+    return Perturbed(x.lanes_ / y.lanes_).or_along_tangent([&](int lane, double quotient) {
+      return (x.lanes_[lane] - quotient * y.lanes_[lane]) / y.value();
+    });
+  }
   friend Perturbed operator-(const Perturbed& x) noexcept { return Perturbed(-x.lanes_); }
 
   friend bool operator<(const Perturbed& x, const Perturbed& y) noexcept { return x.value() < y.value(); }
@@ -60,9 +65,12 @@ class Perturbed {
 
   friend Perturbed abs(const Perturbed& x) noexcept { return x.value() < 0.0 ? -x : x; }
   friend Perturbed floor(const Perturbed& x) noexcept { return Perturbed(std::floor(x.value())); }
-  friend Perturbed sqrt(const Perturbed& x) noexcept { return Perturbed(sqrt(x.lanes_)); }
+  friend Perturbed sqrt(const Perturbed& x) noexcept {
+    return Perturbed(sqrt(x.lanes_)).or_along_tangent([&](int lane, double root) {
+      return 0.5 * (x.lanes_[lane] - x.value()) / root;
+    });
+  }
   friend Perturbed exp(const Perturbed& x) noexcept { return Perturbed(exp(x.lanes_)); }
-  /// A change that leaves the domain goes along the tangent at the number.
   friend Perturbed log(const Perturbed& x) noexcept {
     const double at = x.value();
     return x.by_lane([at](double lane) { return lane > 0.0 ? std::log(lane) : std::log(at) + lane / at - 1.0; });
@@ -77,7 +85,9 @@ class Perturbed {
     return x.by_lane([](double lane) { return std::expm1(lane); });
   }
   friend Perturbed pow(const Perturbed& x, const Perturbed& y) noexcept {
-    return Perturbed(Lanes<N>::by_lane([&](int lane) { return std::pow(x.lanes_[lane], y.lanes_[lane]); }));
+    const auto powers = Lanes<N>::by_lane([&](int lane) { return std::pow(x.lanes_[lane], y.lanes_[lane]); });
+    return Perturbed(powers).or_along_tangent(
+        [&](int lane, double power) { return y.value() * power * (x.lanes_[lane] / x.value() - 1.0); });
   }
   /// e^-x.
   Perturbed faded() const noexcept { return Perturbed(fading_exponential(lanes_)); }
@@ -88,6 +98,18 @@ class Perturbed {
   template <class F>
   Perturbed by_lane(F&& f) const noexcept {
     return Perturbed(Lanes<N>::by_lane([&](int lane) { return f(lanes_[lane]); }));
+  }
+
+  /// This result, with `change(lane, number)` added to the number where a change has no finite result.
+  template <class Change>
+  Perturbed or_along_tangent(Change&& change) const noexcept {
+    if (everywhere(lanes_ - lanes_ < Lanes<N>(1.0))) {
+      return *this;
+    }
+    const double number = value();
+    return Perturbed(Lanes<N>::by_lane([&](int lane) {
+      return std::isfinite(lanes_[lane]) || !std::isfinite(number) ? lanes_[lane] : number + change(lane, number);
+    }));
   }
 
   Lanes<N> lanes_;

@@ -19,7 +19,7 @@ constexpr explain::LatentPlace kPistonSensor{std::nullopt, 0};
 struct WithWaves {
   explicit WithWaves(double size)
       : data(explain::make_dataset(declared(), {record_with_waves(size)})),
-        problem(explain::latent_problem(data, data, about_declared(), 2)),
+        problem(explain::latent_problem(data, data, about_declared(), explain::Resolution::coarse, 2)),
         input(smoothed_input(problem)),
         regression(problem, kPistonSensor, input, explain::FormRegression::Arguments::simulated) {}
 

@@ -44,7 +44,7 @@ struct AtPlace {
   AtPlace(const Record& record, const LatentPlace& where, double period = 0.0)
       : place(where),
         data(explain::thinned(explain::make_dataset(declared(), {record}), period)),
-        problem(explain::latent_problem(data, data, about_declared(), 2)),
+        problem(explain::latent_problem(data, data, about_declared(), explain::Resolution::coarse, 2)),
         input(explain::most_likely_input(problem, place)) {
     explain::smooth(problem, place, input);
   }

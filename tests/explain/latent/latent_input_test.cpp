@@ -66,7 +66,7 @@ struct Smoothed {
   explicit Smoothed(const Record& record)
       : model(declared()),
         data(explain::make_dataset(model, {record})),
-        problem(explain::latent_problem(data, data, about(model), 1)),
+        problem(explain::latent_problem(data, data, about(model), explain::Resolution::coarse, 1)),
         input(explain::most_likely_input(problem, kEngine)) {
     explain::smooth(problem, kEngine, input);
   }
@@ -135,7 +135,9 @@ TEST(LatentInput, TheSignalOfASensorIsAsFastAsItIsAndThatOfAPortIsSlow) {
     }
     const ModelFile model = declared();
     const Dataset data = explain::make_dataset(model, {record});
-    return explain::most_likely_input(explain::latent_problem(data, data, Smoothed::about(model), 1), place).prior;
+    return explain::most_likely_input(
+               explain::latent_problem(data, data, Smoothed::about(model), explain::Resolution::coarse, 1), place)
+        .prior;
   };
   const double fast = most_likely(37.0, kPistonSensor).correlation_time;
   CHECK(fast < 1.0);
@@ -158,7 +160,7 @@ TEST(LatentInput, WhatAnEffectRepresentsOfTheSignalIsGivenBack) {
   fitted.base = test::declared().parameters;
   const std::size_t effect = test::add_effect<Scale>(std::get<SimplexParameters>(fitted.base), set_error(0.03));
   const auto smoothed = [&] {
-    const LatentProblem problem = explain::latent_problem(data, data, fitted, 1);
+    const LatentProblem problem = explain::latent_problem(data, data, fitted, explain::Resolution::coarse, 1);
     LatentInput input = explain::most_likely_input(problem, Smoothed::kEngine);
     explain::smooth(problem, Smoothed::kEngine, input);
     return input;
@@ -180,7 +182,8 @@ TEST(LatentInput, WhatAModelLeavesOfThinnedRecordsIsWhatItLeavesOfTheRecords) {
   const Dataset logged = explain::make_dataset(test::declared(), {test::record_of(truth, 3.0)});
   const Dataset thin = explain::thinned(logged, 4.0 * logged.experiments[0].period);
   const auto mean_square = [&](const Dataset& of_rows) {
-    const LatentProblem problem = explain::latent_problem(of_rows, thin, Smoothed::about(truth), 1);
+    const LatentProblem problem =
+        explain::latent_problem(of_rows, thin, Smoothed::about(truth), explain::Resolution::coarse, 1);
     const Eigen::ArrayXd left = problem.left[0].col(0).array();
     const Eigen::ArrayXd square = left.isNaN().select(0.0, left.square());
     return square.sum() / static_cast<double>(left.size() - left.isNaN().count());
@@ -196,7 +199,9 @@ TEST(LatentInput, HeldOutRowsAreNotLookedAt) {
   const auto likelihood = [&] {
     Fitted about;
     about.base = model.parameters;
-    return explain::most_likely_input(explain::latent_problem(data, data, about, 1), {Port::spring, 0}).log_likelihood;
+    return explain::most_likely_input(explain::latent_problem(data, data, about, explain::Resolution::coarse, 1),
+                                      {Port::spring, 0})
+        .log_likelihood;
   };
   const double before = likelihood();
   for (std::size_t row = data.experiments[0].held_out[0].first; row < data.experiments[0].held_out[0].last; ++row) {
@@ -210,7 +215,7 @@ TEST(LatentInput, TheFlowOfARowIsThatOfTheSimulation) {
   const Dataset data = explain::make_dataset(model, {record_of()});
   const auto& parameters = std::get<SimplexParameters>(model.parameters);
   const explain::FlowScales scales = explain::flow_scales(parameters);
-  const auto flows = explain::linear_flow(data, parameters, scales, 1);
+  const auto flows = explain::linear_flow(data, parameters, scales, explain::Resolution::coarse, 1);
   LONGS_EQUAL(1, flows.size());
   LONGS_EQUAL(data.experiments[0].rows() - 1, flows[0].rows.size());
   // A hundred rows under a constant torque, by the flow and by the model's own torque.
@@ -235,7 +240,7 @@ TEST(LatentInput, TheFlowOfARowIsThatOfTheSimulation) {
 TEST(LatentInput, ASealThatBreaksAwayLeavesEveryPlaceALikelihood) {
   const std::initializer_list<double> seal{7000.0, 1.3, 0.006, 5e8};
   const auto problem_of = [](const Dataset& data, const ModelFile& model) {
-    return explain::latent_problem(data, data, Smoothed::about(model), 1);
+    return explain::latent_problem(data, data, Smoothed::about(model), explain::Resolution::coarse, 1);
   };
   const auto rows_that_forget = [](const LatentProblem& problem) {
     return std::ranges::count_if(problem.flows[0].rows, [](const explain::RowFlow& row) { return row.forgets.any(); });

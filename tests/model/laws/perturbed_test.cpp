@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/numerics/perturbed.hpp"
 
+#include "model/effects/valve/valve_hysteresis.hpp"
 #include "model/numerics/memory.hpp"
 
 #include <CppUTest/TestHarness.h>
@@ -61,6 +62,34 @@ TEST(Perturbed, APowerHasFiniteChangesWhereTheyChangeItsSign) {
     for (int change = 0; change < Number::kChanges; ++change) {
       CHECK_TRUE(std::abs(power.changed(change)) < 1e-9);  // as small as it is at a sign
     }
+  }
+}
+
+// A command that rests but for rounding has changes that rest entirely.
+TEST(Perturbed, AChangeThatLeavesTheDomainGoesAlongTheTangent) {
+  const Number ratio = number_of(3e-17, {0.0, 4e-17, 6e-17}) / number_of(1e-17, {0.0, 0.0, 2e-17});
+  DOUBLES_EQUAL(3.0 + (0.0 - 3e-17) / 1e-17 - 3.0 * (0.0 - 1e-17) / 1e-17, ratio.changed(0), 1e-12);
+  DOUBLES_EQUAL(3.0 + (4e-17 - 3e-17) / 1e-17 - 3.0 * (0.0 - 1e-17) / 1e-17, ratio.changed(1), 1e-12);
+  DOUBLES_EQUAL(3.0, ratio.changed(2), 1e-12);
+  const Number root = sqrt(number_of(4e-6, {-1e-6, 9e-6, 0.0}));
+  DOUBLES_EQUAL(2e-3 - 5e-6 / (2.0 * 2e-3), root.changed(0), 1e-12);
+  DOUBLES_EQUAL(3e-3, root.changed(1), 1e-12);
+  DOUBLES_EQUAL(0.0, root.changed(2), 1e-12);
+  const Number power = pow(number_of(4e-6, {-1e-6, 9e-6, 0.0}), Number(0.5));
+  DOUBLES_EQUAL(root.changed(0), power.changed(0), 1e-12);
+  DOUBLES_EQUAL(root.changed(1), power.changed(1), 1e-12);
+  CHECK_FALSE(
+      std::isfinite((Number(1.0) / number_of(0.0, {1.0, 0.0, 2.0})).value()));  // a number that is not finite stays so
+}
+
+TEST(Perturbed, APlayOfACommandThatRestsButForRoundingHasFiniteChanges) {
+  ValveHysteresis::Params<Number> play;
+  play.half_width = Number(0.02);
+  ValveHysteresis::State<Number> state;
+  ValveHysteresis::come_from(state, Number(0.1));
+  const Number value = ValveHysteresis::step(play, state, {Number(0.1), 1e-3, {}, number_of(1e-17, {0.0, 1e-17, -1e-17})});
+  for (int change = 0; change < Number::kChanges; ++change) {
+    DOUBLES_EQUAL(0.1, value.changed(change), 1e-15);
   }
 }
 

@@ -191,14 +191,18 @@ int steps_of(const ModelParameters& base, const Experiment& experiment, Resoluti
       std::visit([&]<class Parameters>(
                      const Parameters& own) { return steps_in_row<PlantOf<Parameters, double>>(own, experiment.period); },
                  base);
+  return steps_at(resolution, fine);
+}
+
+}  // namespace
+
+int steps_at(Resolution resolution, int fine) {
   if (resolution == Resolution::finest) {
     return 2 * fine;
   }
   const int times_longer = resolution == Resolution::fine ? 1 : resolution == Resolution::coarse ? 2 : 4;
   return (fine + times_longer - 1) / times_longer;
 }
-
-}  // namespace
 
 Prediction at_thinned_rows(const Prediction& full, const Dataset& data, const Dataset& thin) {
   Prediction result(full.size());

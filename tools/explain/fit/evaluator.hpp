@@ -33,6 +33,9 @@ struct Stretch {
 /// `fine`, to know the error of those.
 enum class Resolution { finest, fine, coarse, rough };
 
+/// Steps in place of as many `fine` ones.
+int steps_at(Resolution resolution, int fine);
+
 /// Puts the coordinates `u` into parameters.
 ModelParameters with_values(const ModelParameters& base, std::span<const FreeParameter> free, std::span<const double> u);
 

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "tools/explain/fit/parallel.hpp"
 #include "tools/explain/latent/row_products.hpp"
@@ -14,40 +15,54 @@ namespace hotfire::explain {
 namespace {
 
 /// Regressors that run along the flow together: their states stay in the processor's registers and first cache.
-constexpr Eigen::Index kBatch = 24;
+constexpr Eigen::Index kBatch = 32;
 static_assert(static_cast<Eigen::Index>(model::kUnlistedPoints) + 1 <= kBatch);  // a form fits into a batch
 
 /// Every form's regressors by experiment, a row each and a column a row of the record, each over its largest value: its
 /// coefficient is then what it adds there over the port's scale.
 struct Regressors {
-  std::vector<Eigen::Matrix<double, kBatch, Eigen::Dynamic>> added;
+  std::vector<Eigen::Matrix<float, kBatch, Eigen::Dynamic>> added;
   Eigen::VectorXd largest;
 };
+
+/// Added to every regressor: a state that dies out would end in numbers that a processor takes a hundred times as long for.
+/// It is as far below a regressor as its square is above such numbers.
+constexpr float kFloor = 1e-15F;
 
 template <class AddedBy>
 Regressors scaled_regressors(std::span<const Form> forms, const std::vector<Eigen::MatrixXd>& quantities,
                              AddedBy&& added_by) {
   Regressors all{{}, Eigen::VectorXd::Zero(kBatch)};
+  std::vector<std::vector<Eigen::MatrixXd>> columns(quantities.size());
   for (std::size_t e = 0; e < quantities.size(); ++e) {
-    auto& added = all.added.emplace_back(decltype(all.added)::value_type::Zero(kBatch, quantities[e].rows()));
     Eigen::Index first = 0;
     for (const Form& form : forms) {
-      added.middleRows(first, form.size()) = added_by(form, e).transpose();
-      first += form.size();
-    }
-    if (added.cols() > 0) {
-      all.largest = all.largest.cwiseMax(added.cwiseAbs().rowwise().maxCoeff());
+      const Eigen::MatrixXd& own = columns[e].emplace_back(added_by(form, e));
+      if (own.rows() > 0) {
+        auto largest = all.largest.segment(first, own.cols());
+        largest = largest.cwiseMax(own.cwiseAbs().colwise().maxCoeff().transpose());
+      }
+      first += own.cols();
     }
   }
   for (double& size : all.largest) {
     size = size > 0.0 && std::isfinite(size) ? size : 1.0;
   }
-  const Eigen::Matrix<double, kBatch, 1> scale = all.largest.cwiseInverse();
-  for (auto& added : all.added) {
-    added.array().colwise() *= scale.array();
+  const Eigen::VectorXd scale = all.largest.cwiseInverse();
+  for (std::size_t e = 0; e < quantities.size(); ++e) {
+    auto& added = all.added.emplace_back(decltype(all.added)::value_type::Constant(kBatch, quantities[e].rows(), kFloor));
+    Eigen::Index first = 0;
+    for (const Eigen::MatrixXd& own : columns[e]) {
+      for (Eigen::Index column = 0; column < own.cols(); ++column, ++first) {
+        added.row(first) += (scale(first) * own.col(column)).cast<float>().transpose();
+      }
+    }
   }
   return all;
 }
+
+/// A number of the flow in single precision: nothing where it is far below what rounding leaves.
+float single(double value) { return std::abs(value) < 1e-30 ? 0.0F : static_cast<float>(value); }
 
 }  // namespace
 
@@ -79,8 +94,29 @@ FormRegression::FormRegression(const LatentProblem& problem, const LatentPlace& 
     nuisance_(problem.own[e], problem.own[e]) += own_normal;
     nuisance_right_(problem.own[e]) += own_right;
   }
+  for (std::size_t e = 0; e < quantities_.size(); ++e) {
+    records_.push_back(record(e));
+  }
   const Eigen::LLT<Eigen::MatrixXd> factor(nuisance_);
   left_without_ = (square_ - nuisance_right_.dot(factor.solve(nuisance_right_))) / count_;
+}
+
+FormRegression::Record FormRegression::record(std::size_t experiment) const {
+  Record record;
+  if (place_.port) {
+    const std::vector<RowFlow>& rows = problem_.flows[experiment].rows;
+    std::ranges::transform(rows, std::back_inserter(record.flow), [&](const RowFlow& row) {
+      return PlaceFlow{row.transition.unaryExpr(&single),
+                       row.response.col(static_cast<int>(*place_.port)).unaryExpr(&single)};
+    });
+  }
+  const Eigen::MatrixXd& left = problem_.left[experiment];
+  for (Eigen::Index c = 0; c < left.cols(); ++c) {
+    const Eigen::MatrixXd& slopes = problem_.sensitivity[experiment][static_cast<std::size_t>(c)];
+    auto& others = record.others.emplace_back(slopes.rows() + 1, left.rows());
+    others << slopes.cast<Single>(), left.col(c).transpose().cast<Single>();
+  }
+  return record;
 }
 
 bool FormRegression::is_explained_by(double left) const {
@@ -147,36 +183,37 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
   const auto [added, largest] =
       scaled_regressors(forms, quantities_, [&](const Form& form, std::size_t e) { return added_by(form, e); });
   // Columns beyond those of the forms are zero: of a fixed size, the flow takes a fraction of the time.
-  using States = Eigen::Matrix<double, kFlowStates, kBatch, Eigen::RowMajor>;
-  using Row = Eigen::Matrix<double, 1, kBatch>;
+  using States = Eigen::Matrix<Single, kFlowStates, kBatch, Eigen::RowMajor>;
+  using Row = Eigen::Matrix<Single, 1, kBatch>;
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns, columns);
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(columns, parameters);
   Eigen::VectorXd own_right = Eigen::VectorXd::Zero(columns);
-  for (std::size_t e = 0; e < quantities_.size(); ++e) {
+  for (std::size_t e = 0; e < records_.size(); ++e) {
     States state = States::Zero();
-    const Eigen::MatrixXd& left = problem_.left[e];
+    const Record& record = records_[e];
     const auto of_record = static_cast<Eigen::Index>(problem_.own[e].size());
-    RowProducts products(columns, of_record + 1);  // the others: a parameter each, then what is left
-    for (Eigen::Index row = 0; row < left.rows(); ++row) {
-      for (Eigen::Index c = 0; c < left.cols(); ++c) {
-        const auto channel = static_cast<std::size_t>(c);
-        if (std::isnan(left(row, c)) || (!place_.port && place_.channel != channel)) {
+    std::vector<Single> unit;  // of a reading over noise, by channel
+    for (std::size_t c = 0; c < record.others.size(); ++c) {
+      const double scale = place_.port ? problem_.scales.state(kReadState[c]) : problem_.scales.reading[c];
+      unit.push_back(place_.port || place_.channel == c ? single(scale / problem_.data.experiments[e].noise[c]) : 0.0F);
+    }
+    RowProducts<Single> products(columns, of_record + 1);  // the others: a parameter each, then what is left
+    for (Eigen::Index row = 0; row < added[e].cols(); ++row) {
+      for (std::size_t c = 0; c < record.others.size(); ++c) {
+        if (std::isnan(record.others[c](of_record, row)) || unit[c] == 0.0F) {
           continue;
         }
-        const double noise = problem_.data.experiments[e].noise[channel];
-        const Row reading = place_.port
-                                ? Row(state.row(kReadState[channel]) * (problem_.scales.state(kReadState[channel]) / noise))
-                                : Row(added[e].col(row).transpose() * (problem_.scales.reading[channel] / noise));
+        const Row reading = unit[c] * (place_.port ? Row(state.row(kReadState[c])) : Row(added[e].col(row).transpose()));
         products.add([&](auto&& values, auto&& others) {
           values = reading.leftCols(columns).transpose();
-          others << problem_.sensitivity[e][channel].col(row), left(row, c);
+          others = record.others[c].col(row);
         });
       }
-      if (place_.port && row + 1 < left.rows()) {
-        const RowFlow& flow = problem_.flows[e].rows[static_cast<std::size_t>(row)];
-        const Row input = 0.5 * (added[e].col(row) + added[e].col(row + 1)).transpose();
+      if (place_.port && row + 1 < added[e].cols()) {
+        const PlaceFlow& flow = record.flow[static_cast<std::size_t>(row)];
+        const Row input = 0.5F * (added[e].col(row) + added[e].col(row + 1)).transpose();
         const States next = flow.transition.lazyProduct(state);
-        state = next + flow.response.col(static_cast<int>(*place_.port)).lazyProduct(input);
+        state = next + flow.response.lazyProduct(input);
       }
     }
     products.flush();

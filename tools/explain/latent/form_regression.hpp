@@ -45,6 +45,22 @@ class FormRegression {
   bool is_explained_by(double left) const;
 
  private:
+  /// Single precision: four of its numbers are added and multiplied in the time of two, and a hundred thousand rows round by
+  /// less than the flow, which is linear, is wrong by.
+  using Single = float;
+  /// From one row of a record to the next: the flow with the input of the place.
+  struct PlaceFlow {
+    Eigen::Matrix<Single, kFlowStates, kFlowStates> transition;
+    Eigen::Matrix<Single, kFlowStates, 1> response;
+  };
+  /// What every form is regressed on in a record.
+  struct Record {
+    std::vector<PlaceFlow> flow;  ///< from every row to the next; empty at a sensor
+    /// By channel, a column a row of the record: how the problem's parameters move the reading, then what is left of it.
+    std::vector<Eigen::Matrix<Single, Eigen::Dynamic, Eigen::Dynamic>> others;
+  };
+
+  Record record(std::size_t experiment) const;
   void score_some(std::span<const Form> forms, std::span<FormScore> scores) const;
   Eigen::MatrixXd added_by(const Form& form, std::size_t experiment) const;
   double to_port(const Form& form) const;
@@ -53,6 +69,7 @@ class FormRegression {
   LatentPlace place_;
   std::vector<Eigen::VectorXd> signal_;
   std::vector<Eigen::MatrixXd> quantities_;  ///< by experiment
+  std::vector<Record> records_;              ///< by experiment
   Eigen::MatrixXd nuisance_;                 ///< normal matrix of the problem's parameters with their prior
   Eigen::VectorXd nuisance_right_;
   double square_ = 0.0;  ///< of what is left

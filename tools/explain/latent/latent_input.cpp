@@ -55,7 +55,8 @@ std::vector<std::size_t> moved_beside(const Fitted& around) {
   return moved;
 }
 
-LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const Fitted& around, unsigned threads) {
+LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const Fitted& around, Resolution resolution,
+                             unsigned threads) {
   const Dataset all_rows = without_zeros(logged);
   const Dataset kept_rows = without_zeros(data);
   const Evaluator evaluator(kept_rows, Resolution::coarse, Resolution::rough);
@@ -106,7 +107,7 @@ LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const F
       }
     }
   }
-  problem.flows = linear_flow(data, parameters, problem.scales, threads);
+  problem.flows = linear_flow(data, parameters, problem.scales, resolution, threads);
   const SignalFilter filter(problem, std::nullopt, {});
   for (std::size_t e = 0; e < problem.flows.size(); ++e) {
     filter.forget_growth(e, problem.flows[e].rows);

@@ -39,7 +39,9 @@ std::vector<std::size_t> moved_beside(const Fitted& around);
 ///
 /// `data`: the rows of the problem, of which it keeps a reference. `logged`: the records that they were thinned from, or the
 /// same. What the model leaves is that of `logged`: a rate limit makes something else of a command that is held longer.
-LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const Fitted& around, unsigned threads);
+/// `resolution`: of the flow.
+LatentProblem latent_problem(const Dataset& logged, const Dataset& data, const Fitted& around, Resolution resolution,
+                             unsigned threads);
 
 /// What a signal is like before it is seen: an Ornstein-Uhlenbeck process.
 struct LatentPrior {

@@ -49,9 +49,9 @@ struct Flow {
   std::vector<double> piston_command;                         ///< R beta_c after the effects of the command [m], a row each
 };
 
-/// The flow of every experiment along its simulation under `parameters`, by dual numbers; what effects remember is held at
-/// what it is there. Empty if a state did not stay finite.
+/// The flow of every experiment along its simulation under `parameters`, by narrow difference quotients; what effects
+/// remember is held at what it is there. Empty if a state did not stay finite.
 std::vector<Flow> linear_flow(const Dataset& data, const model::Simplex<double>::Parameters& parameters,
-                              const FlowScales& scales, unsigned threads);
+                              const FlowScales& scales, Resolution resolution, unsigned threads);
 
 }  // namespace hotfire::explain

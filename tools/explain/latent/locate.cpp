@@ -96,7 +96,7 @@ Located Located::beyond(const Located& other) const {
 Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
   const Dataset thin = thinned_to_rows(data, kMostRows);
   Located located;
-  const LatentProblem problem = latent_problem(data, thin, around, threads);
+  const LatentProblem problem = latent_problem(data, thin, around, Resolution::coarse, threads);
   if (problem.flows.empty()) {
     return located;
   }
@@ -154,7 +154,7 @@ Located locate(const Dataset& data, const Fitted& around, unsigned threads) {
 SignalCost cost_of_signal(const Dataset& data, const Fitted& around, const std::vector<LatentPrior>& near,
                           unsigned threads) {
   const Dataset thin = thinned_to_rows(data, kMostRowsCompared);
-  const LatentProblem problem = latent_problem(data, thin, around, threads);
+  const LatentProblem problem = latent_problem(data, thin, around, Resolution::rough, threads);
   SignalCost signal;
   if (problem.flows.empty()) {
     return signal;

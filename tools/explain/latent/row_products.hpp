@@ -2,11 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <type_traits>
 
 namespace hotfire::explain {
 
 /// Sums over rows of the products of some values among themselves (`own`), and with other values of the same row (`cross`).
-/// A matrix product of many rows takes a fraction of the time of as many outer products.
+/// A matrix product of many rows takes a fraction of the time of as many outer products. Values in single precision are
+/// multiplied in it, and their products are summed in double.
+template <class Scalar = double>
 class RowProducts {
  public:
   explicit RowProducts(Eigen::Index values, Eigen::Index others = 0)
@@ -27,8 +30,15 @@ class RowProducts {
   /// Adds the rows that wait. To be called before the sums are read.
   void flush() {
     const auto values = values_.leftCols(rows_);
-    own.noalias() += values * values.transpose();
-    cross.noalias() += values * others_.leftCols(rows_).transpose();
+    const auto add = [](Eigen::MatrixXd& sum, auto&& product) {
+      if constexpr (std::is_same_v<Scalar, double>) {
+        sum.noalias() += product;
+      } else {
+        sum += Matrix(product).template cast<double>();
+      }
+    };
+    add(own, values * values.transpose());
+    add(cross, values * others_.leftCols(rows_).transpose());
     rows_ = 0;
   }
 
@@ -36,11 +46,12 @@ class RowProducts {
   Eigen::MatrixXd cross;  ///< a row a value, a column one of the others
 
  private:
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
   /// Rows that are multiplied together: enough for a matrix product, few enough for the first cache.
   static constexpr Eigen::Index kTogether = 64;
 
-  Eigen::MatrixXd values_;
-  Eigen::MatrixXd others_;
+  Matrix values_;
+  Matrix others_;
   Eigen::Index rows_ = 0;
 };
 

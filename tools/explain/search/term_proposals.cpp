@@ -277,7 +277,7 @@ std::optional<Screened> without_memory(const Fitted& fitted, const Candidate& te
 std::vector<ScoredForm> propose_terms(const Dataset& data, const Fitted& around, const Located& located, unsigned threads,
                                       const Watch& watch) {
   const Dataset thin = thinned_to_rows(data, located.is_single ? kMostRows : kMostRowsOfOpen);
-  const LatentProblem problem = latent_problem(data, thin, around, threads);
+  const LatentProblem problem = latent_problem(data, thin, around, Resolution::coarse, threads);
   if (problem.flows.empty()) {
     return {};
   }
