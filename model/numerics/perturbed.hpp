@@ -41,20 +41,27 @@ class Perturbed {
   double changed(int change) const noexcept { return lanes_[change + 1]; }
   void set_changed(int change, double value) noexcept { lanes_.set(change + 1, value); }
 
-  Perturbed& operator+=(const Perturbed& y) noexcept { return *this = *this + y; }
-  Perturbed& operator-=(const Perturbed& y) noexcept { return *this = *this - y; }
-  Perturbed& operator*=(const Perturbed& y) noexcept { return *this = *this * y; }
-  Perturbed& operator/=(const Perturbed& y) noexcept { return *this = *this / y; }
+  // Always inlined: a call costs more than the operation.
+  [[gnu::always_inline]] Perturbed& operator+=(const Perturbed& y) noexcept { return *this = *this + y; }
+  [[gnu::always_inline]] Perturbed& operator-=(const Perturbed& y) noexcept { return *this = *this - y; }
+  [[gnu::always_inline]] Perturbed& operator*=(const Perturbed& y) noexcept { return *this = *this * y; }
+  [[gnu::always_inline]] Perturbed& operator/=(const Perturbed& y) noexcept { return *this = *this / y; }
 
-  friend Perturbed operator+(const Perturbed& x, const Perturbed& y) noexcept { return Perturbed(x.lanes_ + y.lanes_); }
-  friend Perturbed operator-(const Perturbed& x, const Perturbed& y) noexcept { return Perturbed(x.lanes_ - y.lanes_); }
-  friend Perturbed operator*(const Perturbed& x, const Perturbed& y) noexcept { return Perturbed(x.lanes_ * y.lanes_); }
-  friend Perturbed operator/(const Perturbed& x, const Perturbed& y) noexcept {
+  [[gnu::always_inline]] friend Perturbed operator+(const Perturbed& x, const Perturbed& y) noexcept {
+    return Perturbed(x.lanes_ + y.lanes_);
+  }
+  [[gnu::always_inline]] friend Perturbed operator-(const Perturbed& x, const Perturbed& y) noexcept {
+    return Perturbed(x.lanes_ - y.lanes_);
+  }
+  [[gnu::always_inline]] friend Perturbed operator*(const Perturbed& x, const Perturbed& y) noexcept {
+    return Perturbed(x.lanes_ * y.lanes_);
+  }
+  [[gnu::always_inline]] friend Perturbed operator/(const Perturbed& x, const Perturbed& y) noexcept {
     return Perturbed(x.lanes_ / y.lanes_).or_along_tangent([&](int lane, double quotient) {
       return (x.lanes_[lane] - quotient * y.lanes_[lane]) / y.value();
     });
   }
-  friend Perturbed operator-(const Perturbed& x) noexcept { return Perturbed(-x.lanes_); }
+  [[gnu::always_inline]] friend Perturbed operator-(const Perturbed& x) noexcept { return Perturbed(-x.lanes_); }
 
   friend bool operator<(const Perturbed& x, const Perturbed& y) noexcept { return x.value() < y.value(); }
   friend bool operator>(const Perturbed& x, const Perturbed& y) noexcept { return x.value() > y.value(); }
@@ -102,10 +109,11 @@ class Perturbed {
 
   /// This result, with `change(lane, number)` added to the number where a change has no finite result.
   template <class Change>
-  Perturbed or_along_tangent(Change&& change) const noexcept {
-    if (everywhere(lanes_ - lanes_ < Lanes<N>(1.0))) {
-      return *this;
-    }
+  [[gnu::always_inline]] Perturbed or_along_tangent(const Change& change) const noexcept {
+    return everywhere(lanes_ - lanes_ < Lanes<N>(1.0)) ? *this : along_tangent(change);
+  }
+  template <class Change>
+  [[gnu::noinline, gnu::cold]] Perturbed along_tangent(const Change& change) const noexcept {
     const double number = value();
     return Perturbed(Lanes<N>::by_lane([&](int lane) {
       return std::isfinite(lanes_[lane]) || !std::isfinite(number) ? lanes_[lane] : number + change(lane, number);

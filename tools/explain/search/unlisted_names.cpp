@@ -18,6 +18,36 @@
 
 namespace hotfire::explain {
 
+namespace {
+
+/// Names that together have to explain half of the error. The first of two effects of equal size explains 0.3 of it.
+constexpr std::size_t kNames = 2;
+
+}  // namespace
+
+void UnlistedStage::replace_names_that_explain_little() {
+  if (result_.kept.size() < kNames || left_by_listed() <= policy().little_explained || !is_worth_a_table() ||
+      options_.watch.interrupted()) {
+    return;
+  }
+  look_instead();
+  if (instead_->best && is_complete(data_, instead_->model)) {
+    take_instead_if_better();
+  }
+}
+
+bool UnlistedStage::replace_name_beside_single_signal() {
+  if (!located().is_single) {
+    return false;
+  }
+  look_instead();
+  if (!instead_->best || !is_complete(data_, instead_->model)) {
+    return false;
+  }
+  take_instead_if_better();
+  return is_complete(data_, result_.explained);
+}
+
 void UnlistedStage::take_out_names(const std::string& why) {
   const int round = result_.next_round();
   for (const Kept& kept : result_.kept) {

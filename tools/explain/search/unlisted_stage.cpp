@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -18,9 +20,6 @@
 namespace hotfire::explain {
 
 namespace {
-
-/// Names that together have to explain half of the error. The first of two effects of equal size explains 0.3 of it.
-constexpr std::size_t kNames = 2;
 
 /// True if names are static laws of the opening that a term of unknown law is a curve over.
 bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names) {
@@ -38,37 +37,16 @@ bool is_curve_of_the_same(const Candidate& term, const std::vector<Kept>& names)
 
 }  // namespace
 
-void UnlistedStage::replace_names_that_explain_little() {
-  if (result_.kept.size() < kNames || left_by_listed() <= policy().little_explained || !is_worth_a_table() ||
-      options_.watch.interrupted()) {
-    return;
-  }
-  look_instead();
-  if (instead_->best && is_complete(data_, instead_->model)) {
-    take_instead_if_better();
-  }
-}
-
-bool UnlistedStage::replace_name_beside_single_signal() {
-  if (!located().is_single) {
-    return false;
-  }
-  look_instead();
-  if (!instead_->best || !is_complete(data_, instead_->model)) {
-    return false;
-  }
-  take_instead_if_better();
-  return is_complete(data_, result_.explained);
-}
-
 void UnlistedStage::finish() {
   if (is_worth_a_table() && !options_.watch.interrupted()) {
     const Found names = found();
     // A term beside the name without which a signal costs most is there only where a term alone explains less.
     if (!has_unlisted()) {
       refuse_misplaced_names();
-      look_instead();
-      take_instead_if_better();
+      if (instead_ || signal_leaves_less()) {
+        look_instead();
+        take_instead_if_better();
+      }
     }
     add_beside(Names::open);
     name_terms();
@@ -88,6 +66,16 @@ void UnlistedStage::finish() {
 
 /// A model at the noise whose parameters are far from their declared values is not what the records are of.
 bool UnlistedStage::is_worth_a_table() const { return data_.knows_unlisted() && !is_complete(data_, result_.explained); }
+
+/// True if an unknown signal at one place leaves less than what was found: no term of unknown law there leaves less than the
+/// signal.
+bool UnlistedStage::signal_leaves_less() {
+  const double found = excess_over_noise(data_, result_.explained);
+  const std::vector<Place>& places = located().places;
+  return result_.kept.empty() || places.empty() || std::ranges::any_of(places, [&](const Place& place) {
+           return place.is_likely && std::ranges::max(place.leaves) < 1.0 + found * found;
+         });
+}
 
 /// True if a model leaves less than `share` of what the explained one leaves beyond noise. Noise itself cannot be explained:
 /// near it the whole error hardly falls.
@@ -357,6 +345,21 @@ void UnlistedStage::take_out(Trial trial, std::string why) {
   result_.trials.push_back(std::move(trial));
 }
 
+UnlistedStage::Exhausted UnlistedStage::as_exhausted() const {
+  Exhausted now{{}, excess_over_noise(data_, result_.explained)};
+  std::ranges::transform(result_.kept, std::back_inserter(now.effects),
+                         [](const Kept& kept) { return label(kept.trial.candidate); });
+  return now;
+}
+
+/// True where the last rounds found nothing beside the same effects: another fit of them leaves the same but for its
+/// scatter.
+bool UnlistedStage::is_exhausted() const {
+  const Exhausted now = as_exhausted();
+  return exhausted_ && exhausted_->effects == now.effects &&
+         std::abs(exhausted_->left - now.left) <= policy().scatter * now.left;
+}
+
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
 void UnlistedStage::add_beside(Names names) {
   while (is_hydraulic_axis(result_.explained.model.base) && !result_.kept.empty() &&
@@ -364,15 +367,14 @@ void UnlistedStage::add_beside(Names names) {
          excess_over_noise(data_, result_.explained) > policy().immaterial && !options_.watch.interrupted()) {
     const Located& left = locate_explained();
     const std::optional<std::size_t> term = term_of_rest(left);
-    if ((has_unlisted() && add_listed_beside(left, term)) || (names == Names::open && replace_misfit(left))) {
+    const bool is_new = !is_exhausted();
+    if ((is_new && has_unlisted() && add_listed_beside(left, term)) || (names == Names::open && replace_misfit(left))) {
       continue;
     }
-    if (term) {
-      return;
-    }
     const std::size_t first = result_.trials.size();
-    const auto beside = better_term(result_.explained, left, !has_unlisted());
+    const auto beside = term || !is_new ? std::nullopt : better_term(result_.explained, left, !has_unlisted());
     if (!beside) {
+      exhausted_ = as_exhausted();
       return;
     }
     keep(*beside, first);

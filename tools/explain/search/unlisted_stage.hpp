@@ -80,13 +80,23 @@ class UnlistedStage {
   void forget() {
     located_.reset();
     instead_.reset();
+    exhausted_.reset();
   }
 
  private:
   /// Whether a term may replace a name that was found.
   enum class Names { open, given };
 
+  /// Effects beside which nothing more was found, and what they leave beyond the noise.
+  struct Exhausted {
+    std::vector<std::string> effects;
+    double left = 0.0;
+  };
+
   bool is_worth_a_table() const;
+  bool signal_leaves_less();
+  Exhausted as_exhausted() const;
+  bool is_exhausted() const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
   bool leaves_as_little(const Assessed& model) const;
   double advantage() const;
@@ -130,6 +140,7 @@ class UnlistedStage {
   std::vector<double> beside_values_;      ///< of that model's free parameters; none: not asked for yet
   std::optional<UnlistedSearch> instead_;  ///< beside the calibrated model, once it was searched for
   std::size_t instead_trials_ = 0;         ///< where its trials are among all
+  std::optional<Exhausted> exhausted_;     ///< the last ones
   std::optional<Found> of_names_;          ///< terms beside names that leave more than noise, for the end of the search
 };
 
