@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -87,6 +90,35 @@ TEST(SearchAtLength, FrictionThatIsFoundShowsThatARecordStartsInMotion) {
 }
 
 // A reading that is held for eight rows is late by half of that on average.
+// Beside a friction, the reading of the engine switches at random: that depends on nothing.
+TEST(SearchAtLength, WhatWasLookedForBesideTheSameEffectsIsNotLookedForAgain) {
+  constexpr int kDahl = static_cast<int>(model::GimbalFriction::Law::dahl);
+  const ModelFile model = test::declared();
+  Record record = test::record_of(test::with_effect<model::GimbalFriction>({1.15e4, 9.2e6}, kDahl));
+  std::minstd_rand random(7);
+  double added = 1e-4;
+  std::size_t left = 0;
+  for (double& reading : std::ranges::find(record.channels, "engine", &Channel::name)->values) {
+    if (left-- == 0) {
+      left = 50 + random() % 400;
+      added = -added;
+    }
+    reading += added;
+  }
+  auto data = explain::make_dataset(model, {record});
+  const auto found = explain::search(data, model, {2, 4, {}});
+  CHECK(found.kept.size() == 1 && found.kept.front().trial.candidate.name == model::GimbalFriction::name);
+  CHECK(explain::excess_over_noise(data, found.explained.prediction) > explain::policy().visible);
+  std::map<int, std::set<std::string>> tried;  // by round
+  for (const explain::Trial& trial : found.trials) {
+    tried[trial.round].insert(label(trial.candidate) + std::to_string(trial.delta_criterion));
+  }
+  std::set<std::set<std::string>> rounds;
+  for (const auto& [round, trials] : tried) {
+    CHECK_TRUE(rounds.insert(trials).second);
+  }
+}
+
 TEST(Search, AListedEffectIsReplacedByTheTermThatItImitates) {
   ModelFile truth = test::with_effect<model::Leakage>({6e-11});
   test::add_effect<model::Term<model::Site::sensor, 1>>(std::get<SimplexParameters>(truth.parameters), [](auto& term) {

@@ -31,7 +31,7 @@ void UnlistedStage::replace_names_that_explain_little() {
     return;
   }
   look_instead();
-  if (instead_->best && is_complete(data_, instead_->model)) {
+  if (instead_ && instead_->best && is_complete(data_, instead_->model)) {
     take_instead_if_better();
   }
 }
@@ -41,7 +41,7 @@ bool UnlistedStage::replace_name_beside_single_signal() {
     return false;
   }
   look_instead();
-  if (!instead_->best || !is_complete(data_, instead_->model)) {
+  if (!instead_ || !instead_->best || !is_complete(data_, instead_->model)) {
     return false;
   }
   take_instead_if_better();
@@ -73,6 +73,9 @@ void UnlistedStage::refuse_misplaced_names() {
 /// curve that does the same. A term alone was compared with the listed effects before. Of several, each was in the way of
 /// the others' laws.
 void UnlistedStage::name_terms() {
+  if (is_as_before(unnamed_)) {
+    return;
+  }
   for (std::size_t i = 0; result_.kept.size() > 1 && i < result_.kept.size() && !options_.watch.interrupted(); ++i) {
     const Candidate term = result_.kept[i].trial.candidate;
     if (!is_unlisted(result_.kept[i])) {
@@ -100,6 +103,7 @@ void UnlistedStage::name_terms() {
       refuse(std::span(result_.trials).subspan(first), words::text(words::Reason::leaves_more));
     }
   }
+  unnamed_ = as_exhausted();
 }
 
 /// A term of unknown law in the place of a listed effect where what is left acts at the effect's own site: its law imitates

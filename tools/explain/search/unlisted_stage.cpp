@@ -43,10 +43,8 @@ void UnlistedStage::finish() {
     // A term beside the name without which a signal costs most is there only where a term alone explains less.
     if (!has_unlisted()) {
       refuse_misplaced_names();
-      if (instead_ || signal_leaves_less()) {
-        look_instead();
-        take_instead_if_better();
-      }
+      look_instead();
+      take_instead_if_better();
     }
     add_beside(Names::open);
     name_terms();
@@ -144,9 +142,10 @@ UnlistedTask UnlistedStage::task_beside(const Assessed& model, const Located& lo
           .round = result_.next_round()};
 }
 
-/// Searches for a term of unknown law instead of the listed effects: once, since it is beside the calibrated model.
+/// Searches for a term of unknown law instead of the listed effects, where it may leave less: once, since it is beside the
+/// calibrated model.
 void UnlistedStage::look_instead() {
-  if (!instead_) {
+  if (!instead_ && signal_leaves_less()) {
     instead_ = search_unlisted(task_beside(result_.calibrated, located()));
     look_elsewhere();
     instead_->mark_tied_sites();
@@ -191,7 +190,7 @@ void UnlistedStage::look_elsewhere() {
 /// A term of unknown law takes the place of the listed effects where it leaves clearly less on held-out data: listed effects
 /// that imitate it would be wrong names.
 void UnlistedStage::take_instead_if_better() {
-  if (!is_better(*instead_)) {
+  if (!instead_ || !is_better(*instead_)) {
     return;
   }
   if (const std::string harm = harm_of(data_, instead_->model.prediction, result_.calibrated.prediction); !harm.empty()) {
@@ -352,12 +351,10 @@ UnlistedStage::Exhausted UnlistedStage::as_exhausted() const {
   return now;
 }
 
-/// True where the last rounds found nothing beside the same effects: another fit of them leaves the same but for its
-/// scatter.
-bool UnlistedStage::is_exhausted() const {
+/// True where rounds found nothing before beside the same effects: another fit of them leaves the same but for its scatter.
+bool UnlistedStage::is_as_before(const std::optional<Exhausted>& before) const {
   const Exhausted now = as_exhausted();
-  return exhausted_ && exhausted_->effects == now.effects &&
-         std::abs(exhausted_->left - now.left) <= policy().scatter * now.left;
+  return before && before->effects == now.effects && std::abs(before->left - now.left) <= policy().scatter * now.left;
 }
 
 /// Terms of unknown law beside what was found, one after the other, as long as each leaves clearly less.
@@ -367,7 +364,7 @@ void UnlistedStage::add_beside(Names names) {
          excess_over_noise(data_, result_.explained) > policy().immaterial && !options_.watch.interrupted()) {
     const Located& left = locate_explained();
     const std::optional<std::size_t> term = term_of_rest(left);
-    const bool is_new = !is_exhausted();
+    const bool is_new = !is_as_before(exhausted_);
     if ((is_new && has_unlisted() && add_listed_beside(left, term)) || (names == Names::open && replace_misfit(left))) {
       continue;
     }

@@ -81,6 +81,7 @@ class UnlistedStage {
     located_.reset();
     instead_.reset();
     exhausted_.reset();
+    unnamed_.reset();
   }
 
  private:
@@ -96,7 +97,7 @@ class UnlistedStage {
   bool is_worth_a_table() const;
   bool signal_leaves_less();
   Exhausted as_exhausted() const;
-  bool is_exhausted() const;
+  bool is_as_before(const std::optional<Exhausted>& before) const;
   double left_by_listed() const { return held_out_ratio(result_.explained, result_.calibrated); }
   bool leaves_as_little(const Assessed& model) const;
   double advantage() const;
@@ -141,6 +142,7 @@ class UnlistedStage {
   std::optional<UnlistedSearch> instead_;  ///< beside the calibrated model, once it was searched for
   std::size_t instead_trials_ = 0;         ///< where its trials are among all
   std::optional<Exhausted> exhausted_;     ///< the last ones
+  std::optional<Exhausted> unnamed_;       ///< the last ones whose terms no listed effect was found for
   std::optional<Found> of_names_;          ///< terms beside names that leave more than noise, for the end of the search
 };
 
