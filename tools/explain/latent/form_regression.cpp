@@ -115,6 +115,10 @@ FormRegression::Record FormRegression::record(std::size_t experiment) const {
     const Eigen::MatrixXd& slopes = problem_.sensitivity[experiment][static_cast<std::size_t>(c)];
     auto& others = record.others.emplace_back(slopes.rows() + 1, left.rows());
     others << slopes.cast<Single>(), left.col(c).transpose().cast<Single>();
+    const auto channel = static_cast<std::size_t>(c);
+    const double scale = place_.port ? problem_.scales.state(kReadState[channel]) : problem_.scales.reading[channel];
+    const bool is_reached = place_.port || place_.channel == channel;
+    record.unit.push_back(is_reached ? single(scale / problem_.data.experiments[experiment].noise[channel]) : 0.0F);
   }
   return record;
 }
@@ -182,7 +186,7 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
   }
   const auto [added, largest] =
       scaled_regressors(forms, quantities_, [&](const Form& form, std::size_t e) { return added_by(form, e); });
-  // Columns beyond those of the forms are zero: of a fixed size, the flow takes a fraction of the time.
+  // Columns beyond those of the forms count for nothing: of a fixed size, the flow takes a fraction of the time.
   using States = Eigen::Matrix<Single, kFlowStates, kBatch, Eigen::RowMajor>;
   using Row = Eigen::Matrix<Single, 1, kBatch>;
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns, columns);
@@ -192,18 +196,14 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
     States state = States::Zero();
     const Record& record = records_[e];
     const auto of_record = static_cast<Eigen::Index>(problem_.own[e].size());
-    std::vector<Single> unit;  // of a reading over noise, by channel
-    for (std::size_t c = 0; c < record.others.size(); ++c) {
-      const double scale = place_.port ? problem_.scales.state(kReadState[c]) : problem_.scales.reading[c];
-      unit.push_back(place_.port || place_.channel == c ? single(scale / problem_.data.experiments[e].noise[c]) : 0.0F);
-    }
     RowProducts<Single> products(columns, of_record + 1);  // the others: a parameter each, then what is left
     for (Eigen::Index row = 0; row < added[e].cols(); ++row) {
       for (std::size_t c = 0; c < record.others.size(); ++c) {
-        if (std::isnan(record.others[c](of_record, row)) || unit[c] == 0.0F) {
+        if (std::isnan(record.others[c](of_record, row)) || record.unit[c] == 0.0F) {
           continue;
         }
-        const Row reading = unit[c] * (place_.port ? Row(state.row(kReadState[c])) : Row(added[e].col(row).transpose()));
+        const Row reading =
+            record.unit[c] * (place_.port ? Row(state.row(kReadState[c])) : Row(added[e].col(row).transpose()));
         products.add([&](auto&& values, auto&& others) {
           values = reading.leftCols(columns).transpose();
           others = record.others[c].col(row);

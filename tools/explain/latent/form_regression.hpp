@@ -58,6 +58,7 @@ class FormRegression {
     std::vector<PlaceFlow> flow;  ///< from every row to the next; empty at a sensor
     /// By channel, a column a row of the record: how the problem's parameters move the reading, then what is left of it.
     std::vector<Eigen::Matrix<Single, Eigen::Dynamic, Eigen::Dynamic>> others;
+    std::vector<Single> unit;  ///< by channel: of a reading over noise; nothing where a signal at a sensor is not read
   };
 
   Record record(std::size_t experiment) const;
