@@ -20,19 +20,20 @@ static_assert(static_cast<Eigen::Index>(model::kUnlistedPoints) + 1 <= kBatch); 
 
 /// Every form's regressors by experiment, a row each and a column a row of the record, each over its largest value: its
 /// coefficient is then what it adds there over the port's scale.
+template <class S>
 struct Regressors {
-  std::vector<Eigen::Matrix<float, kBatch, Eigen::Dynamic>> added;
+  std::vector<Eigen::Matrix<S, kBatch, Eigen::Dynamic>> added;
   Eigen::VectorXd largest;
 };
 
 /// Added to every regressor: a state that dies out would end in numbers that a processor takes a hundred times as long for.
 /// It is as far below a regressor as its square is above such numbers.
-constexpr float kFloor = 1e-15F;
+constexpr double kFloor = 1e-15;
 
-template <class AddedBy>
-Regressors scaled_regressors(std::span<const Form> forms, const std::vector<Eigen::MatrixXd>& quantities,
-                             AddedBy&& added_by) {
-  Regressors all{{}, Eigen::VectorXd::Zero(kBatch)};
+template <class S, class AddedBy>
+Regressors<S> scaled_regressors(std::span<const Form> forms, const std::vector<Eigen::MatrixXd>& quantities,
+                                AddedBy&& added_by) {
+  Regressors<S> all{{}, Eigen::VectorXd::Zero(kBatch)};
   std::vector<std::vector<Eigen::MatrixXd>> columns(quantities.size());
   for (std::size_t e = 0; e < quantities.size(); ++e) {
     Eigen::Index first = 0;
@@ -50,19 +51,23 @@ Regressors scaled_regressors(std::span<const Form> forms, const std::vector<Eige
   }
   const Eigen::VectorXd scale = all.largest.cwiseInverse();
   for (std::size_t e = 0; e < quantities.size(); ++e) {
-    auto& added = all.added.emplace_back(decltype(all.added)::value_type::Constant(kBatch, quantities[e].rows(), kFloor));
+    auto& added =
+        all.added.emplace_back(Eigen::Matrix<S, kBatch, Eigen::Dynamic>::Constant(kBatch, quantities[e].rows(), S(kFloor)));
     Eigen::Index first = 0;
     for (const Eigen::MatrixXd& own : columns[e]) {
       for (Eigen::Index column = 0; column < own.cols(); ++column, ++first) {
-        added.row(first) += (scale(first) * own.col(column)).cast<float>().transpose();
+        added.row(first) += (scale(first) * own.col(column)).template cast<S>().transpose();
       }
     }
   }
   return all;
 }
 
-/// A number of the flow in single precision: nothing where it is far below what rounding leaves.
-float single(double value) { return std::abs(value) < 1e-30 ? 0.0F : static_cast<float>(value); }
+/// A number in the precision of a regression: nothing where it is far below what rounding leaves.
+template <class S>
+S rounded(double value) {
+  return std::abs(value) < 1e-30 ? S(0.0) : static_cast<S>(value);
+}
 
 }  // namespace
 
@@ -95,30 +100,32 @@ FormRegression::FormRegression(const LatentProblem& problem, const LatentPlace& 
     nuisance_right_(problem.own[e]) += own_right;
   }
   for (std::size_t e = 0; e < quantities_.size(); ++e) {
-    records_.push_back(record(e));
+    single_.push_back(record<float>(e));
+    full_.push_back(record<double>(e));
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(nuisance_);
   left_without_ = (square_ - nuisance_right_.dot(factor.solve(nuisance_right_))) / count_;
 }
 
-FormRegression::Record FormRegression::record(std::size_t experiment) const {
-  Record record;
+template <class S>
+FormRegression::Record<S> FormRegression::record(std::size_t experiment) const {
+  Record<S> record;
   if (place_.port) {
     const std::vector<RowFlow>& rows = problem_.flows[experiment].rows;
     std::ranges::transform(rows, std::back_inserter(record.flow), [&](const RowFlow& row) {
-      return PlaceFlow{row.transition.unaryExpr(&single),
-                       row.response.col(static_cast<int>(*place_.port)).unaryExpr(&single)};
+      return PlaceFlow<S>{row.transition.unaryExpr(&rounded<S>),
+                          row.response.col(static_cast<int>(*place_.port)).unaryExpr(&rounded<S>)};
     });
   }
   const Eigen::MatrixXd& left = problem_.left[experiment];
   for (Eigen::Index c = 0; c < left.cols(); ++c) {
     const Eigen::MatrixXd& slopes = problem_.sensitivity[experiment][static_cast<std::size_t>(c)];
     auto& others = record.others.emplace_back(slopes.rows() + 1, left.rows());
-    others << slopes.cast<Single>(), left.col(c).transpose().cast<Single>();
+    others << slopes.template cast<S>(), left.col(c).transpose().template cast<S>();
     const auto channel = static_cast<std::size_t>(c);
     const double scale = place_.port ? problem_.scales.state(kReadState[channel]) : problem_.scales.reading[channel];
     const bool is_reached = place_.port || place_.channel == channel;
-    record.unit.push_back(is_reached ? single(scale / problem_.data.experiments[experiment].noise[channel]) : 0.0F);
+    record.unit.push_back(is_reached ? rounded<S>(scale / problem_.data.experiments[experiment].noise[channel]) : S(0.0));
   }
   return record;
 }
@@ -127,7 +134,7 @@ bool FormRegression::is_explained_by(double left) const {
   return left < policy().left_by_single && left - 1.0 < policy().little_explained * (left_without_ - 1.0);
 }
 
-std::vector<FormScore> FormRegression::score(std::span<const Form> forms, unsigned threads) const {
+std::vector<FormScore> FormRegression::score(std::span<const Form> forms, unsigned threads, Precision precision) const {
   std::vector<std::pair<std::size_t, std::size_t>> batches;
   for (std::size_t first = 0; first < forms.size();) {
     std::size_t last = first;
@@ -142,7 +149,13 @@ std::vector<FormScore> FormRegression::score(std::span<const Form> forms, unsign
   std::vector<FormScore> scores(forms.size());
   parallel_for(batches.size(), threads, [&](std::size_t b) {
     const auto [first, last] = batches[b];
-    score_some(forms.subspan(first, last - first), std::span(scores).subspan(first, last - first));
+    const std::span<const Form> some = forms.subspan(first, last - first);
+    const std::span<FormScore> scores_of_some = std::span(scores).subspan(first, last - first);
+    if (precision == Precision::single) {
+      score_some(single_, some, scores_of_some);
+    } else {
+      score_some(full_, some, scores_of_some);
+    }
   });
   return scores;
 }
@@ -176,7 +189,9 @@ double FormRegression::to_port(const Form& form) const {
   return unit / problem_.scales.input(static_cast<int>(*place_.port));
 }
 
-void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore> scores) const {
+template <class S>
+void FormRegression::score_some(const std::vector<Record<S>>& records, std::span<const Form> forms,
+                                std::span<FormScore> scores) const {
   const Eigen::Index parameters = problem_.expected.size();
   std::vector<Eigen::Index> first;
   Eigen::Index columns = 0;
@@ -185,21 +200,21 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
     columns += form.size();
   }
   const auto [added, largest] =
-      scaled_regressors(forms, quantities_, [&](const Form& form, std::size_t e) { return added_by(form, e); });
+      scaled_regressors<S>(forms, quantities_, [&](const Form& form, std::size_t e) { return added_by(form, e); });
   // Columns beyond those of the forms count for nothing: of a fixed size, the flow takes a fraction of the time.
-  using States = Eigen::Matrix<Single, kFlowStates, kBatch, Eigen::RowMajor>;
-  using Row = Eigen::Matrix<Single, 1, kBatch>;
+  using States = Eigen::Matrix<S, kFlowStates, kBatch, Eigen::RowMajor>;
+  using Row = Eigen::Matrix<S, 1, kBatch>;
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns, columns);
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(columns, parameters);
   Eigen::VectorXd own_right = Eigen::VectorXd::Zero(columns);
-  for (std::size_t e = 0; e < records_.size(); ++e) {
+  for (std::size_t e = 0; e < records.size(); ++e) {
     States state = States::Zero();
-    const Record& record = records_[e];
+    const Record<S>& record = records[e];
     const auto of_record = static_cast<Eigen::Index>(problem_.own[e].size());
-    RowProducts<Single> products(columns, of_record + 1);  // the others: a parameter each, then what is left
+    RowProducts<S> products(columns, of_record + 1);  // the others: a parameter each, then what is left
     for (Eigen::Index row = 0; row < added[e].cols(); ++row) {
       for (std::size_t c = 0; c < record.others.size(); ++c) {
-        if (std::isnan(record.others[c](of_record, row)) || record.unit[c] == 0.0F) {
+        if (std::isnan(record.others[c](of_record, row)) || record.unit[c] == S(0.0)) {
           continue;
         }
         const Row reading =
@@ -210,8 +225,8 @@ void FormRegression::score_some(std::span<const Form> forms, std::span<FormScore
         });
       }
       if (place_.port && row + 1 < added[e].cols()) {
-        const PlaceFlow& flow = record.flow[static_cast<std::size_t>(row)];
-        const Row input = 0.5F * (added[e].col(row) + added[e].col(row + 1)).transpose();
+        const PlaceFlow<S>& flow = record.flow[static_cast<std::size_t>(row)];
+        const Row input = S(0.5) * (added[e].col(row) + added[e].col(row + 1)).transpose();
         const States next = flow.transition.lazyProduct(state);
         state = next + flow.response.lazyProduct(input);
       }

@@ -72,8 +72,15 @@ std::vector<ScoredForm> best_of_each(std::vector<ScoredForm> all, std::size_t mo
   return best;
 }
 
-std::vector<ScoredForm> scored(const FormRegression& regression, std::vector<Form> forms, unsigned threads) {
-  const std::vector<FormScore> scores = regression.score(forms, threads);
+std::vector<Form> forms_of(const std::vector<ScoredForm>& all) {
+  std::vector<Form> forms;
+  std::ranges::transform(all, std::back_inserter(forms), &ScoredForm::form);
+  return forms;
+}
+
+std::vector<ScoredForm> scored(const FormRegression& regression, std::vector<Form> forms, unsigned threads,
+                               Precision precision = Precision::full) {
+  const std::vector<FormScore> scores = regression.score(forms, threads, precision);
   std::vector<ScoredForm> all;
   for (std::size_t i = 0; i < forms.size(); ++i) {
     all.push_back({std::move(forms[i]), scores[i]});
@@ -83,7 +90,8 @@ std::vector<ScoredForm> scored(const FormRegression& regression, std::vector<For
 
 /// Moves the parameters of forms' memories to where their responses explain most. The regression is nearly as fast with
 /// the neighbours of all of them as with those of one.
-void refine(const FormRegression& regression, std::vector<ScoredForm>& forms, unsigned threads) {
+void refine(const FormRegression& regression, std::vector<ScoredForm>& forms, unsigned threads,
+            Precision precision = Precision::full) {
   std::vector<double> factors(forms.size(), 1.25);
   for (int i = 0; i < kFormRefinements; ++i) {
     std::vector<Form> beside;
@@ -93,7 +101,7 @@ void refine(const FormRegression& regression, std::vector<ScoredForm>& forms, un
       of.resize(beside.size(), f);
     }
     std::vector<bool> moved(forms.size());
-    std::vector<ScoredForm> all = scored(regression, std::move(beside), threads);
+    std::vector<ScoredForm> all = scored(regression, std::move(beside), threads, precision);
     for (std::size_t n = 0; n < all.size(); ++n) {
       if (all[n].score.criterion < forms[of[n]].score.criterion) {
         forms[of[n]] = std::move(all[n]);
@@ -179,16 +187,12 @@ std::vector<Form> screened_by_signal(const SignalCorrelation& correlation, std::
         std::ranges::find_if(still, [&](const ScoredForm& other) { return is_of_same(scored.form, other.form); });
     return scored.score.criterion > kClearlyLess * own->score.criterion;
   });
-  std::vector<Form> best;
-  for (ScoredForm& scored : best_of_each(std::move(still), kScreenedStill)) {
-    best.push_back(std::move(scored.form));
-  }
+  std::vector<Form> best = forms_of(best_of_each(std::move(still), kScreenedStill));
   moving = best_of_each(std::move(moving), kTuned);
   parallel_for(moving.size(), threads, [&](std::size_t i) { tune(correlation, moving[i]); });
-  const std::size_t most = best.size() + kScreenedMoving;
   for (ScoredForm& scored : best_of_each(std::move(moving), kTuned)) {
     const auto of_same = std::ranges::count_if(best, [&](const Form& form) { return is_of_same(scored.form, form); });
-    if (best.size() < most && of_same <= kMemoriesOfOne) {
+    if (best.size() < kScreenedStill + kScreenedMoving && of_same <= kMemoriesOfOne) {
       best.push_back(std::move(scored.form));
     }
   }
@@ -200,7 +204,7 @@ std::vector<Form> best_responses(const FormRegression& regression, std::vector<F
                                  unsigned threads) {
   const std::size_t count = forms.size();
   std::vector<ScoredForm> best;
-  for (ScoredForm& form : best_of_each(scored(regression, std::move(forms), threads), count)) {
+  for (ScoredForm& form : best_of_each(scored(regression, std::move(forms), threads, Precision::single), count)) {
     const auto of_same =
         std::ranges::count_if(best, [&](const ScoredForm& other) { return is_of_same(form.form, other.form); });
     if (best.size() == most) {
@@ -210,10 +214,8 @@ std::vector<Form> best_responses(const FormRegression& regression, std::vector<F
       best.push_back(std::move(form));
     }
   }
-  refine(regression, best, threads);
-  std::vector<Form> refined;
-  std::ranges::transform(best, std::back_inserter(refined), &ScoredForm::form);
-  return refined;
+  refine(regression, best, threads, Precision::single);
+  return forms_of(best);
 }
 
 /// Of the memories those whose response explains most of what is left. The smoothed signal is mostly noise where the plant
@@ -256,10 +258,8 @@ std::vector<ScoredForm> with_curves_first(const FormRegression& regression, cons
 /// The forms without a memory over which a rough curve explains most of the readings, with that curve. A gain says nothing
 /// of a curve that is even, and the smoothed signal contains what the problem's parameters move too.
 std::vector<Form> screened_under_curves(const FormRegression& regression, const std::vector<Form>& plain, unsigned threads) {
-  std::vector<ScoredForm> curved = scored(regression, with_rough_curves(regression, plain), threads);
-  std::vector<Form> best;
-  std::ranges::transform(best_of_each(std::move(curved), kScreenedStill), std::back_inserter(best), &ScoredForm::form);
-  return best;
+  std::vector<ScoredForm> curved = scored(regression, with_rough_curves(regression, plain), threads, Precision::single);
+  return forms_of(best_of_each(std::move(curved), kScreenedStill));
 }
 
 /// The forms that go on: by the signal, then by the response those that are not among them.
