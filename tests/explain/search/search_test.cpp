@@ -89,7 +89,6 @@ TEST(SearchAtLength, FrictionThatIsFoundShowsThatARecordStartsInMotion) {
   STRCMP_EQUAL("gimbal_friction", found.kept.front().trial.candidate.name.c_str());
 }
 
-// A reading that is held for eight rows is late by half of that on average.
 // Beside a friction, the reading of the engine switches at random: that depends on nothing.
 TEST(SearchAtLength, WhatWasLookedForBesideTheSameEffectsIsNotLookedForAgain) {
   constexpr int kDahl = static_cast<int>(model::GimbalFriction::Law::dahl);
@@ -119,6 +118,7 @@ TEST(SearchAtLength, WhatWasLookedForBesideTheSameEffectsIsNotLookedForAgain) {
   }
 }
 
+// A reading that is held for eight rows is late by half of that on average.
 TEST(Search, AListedEffectIsReplacedByTheTermThatItImitates) {
   ModelFile truth = test::with_effect<model::Leakage>({6e-11});
   test::add_effect<model::Term<model::Site::sensor, 1>>(std::get<SimplexParameters>(truth.parameters), [](auto& term) {

@@ -25,27 +25,29 @@ constexpr std::size_t kNames = 2;
 
 }  // namespace
 
-void UnlistedStage::replace_names_that_explain_little() {
-  if (result_.kept.size() < kNames || left_by_listed() <= policy().little_explained || !is_worth_a_table() ||
-      options_.watch.interrupted()) {
-    return;
-  }
-  look_instead();
-  if (instead_ && instead_->best && is_complete(data_, instead_->model)) {
-    take_instead_if_better();
-  }
-}
-
-bool UnlistedStage::replace_name_beside_single_signal() {
-  if (!located().is_single) {
-    return false;
-  }
+/// One term of unknown law takes the place of the listed effects where it leaves only noise. Returns whether it does.
+bool UnlistedStage::take_instead_if_complete() {
   look_instead();
   if (!instead_ || !instead_->best || !is_complete(data_, instead_->model)) {
     return false;
   }
   take_instead_if_better();
   return is_complete(data_, result_.explained);
+}
+
+void UnlistedStage::replace_names_that_explain_little() {
+  if (result_.kept.size() < kNames || left_by_listed() <= policy().little_explained || !is_worth_a_table() ||
+      options_.watch.interrupted()) {
+    return;
+  }
+  take_instead_if_complete();
+}
+
+bool UnlistedStage::replace_name_beside_single_signal() {
+  if (!located().is_single) {
+    return false;
+  }
+  return take_instead_if_complete();
 }
 
 void UnlistedStage::take_out_names(const std::string& why) {

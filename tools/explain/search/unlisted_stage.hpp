@@ -113,6 +113,7 @@ class UnlistedStage {
   void look_elsewhere();
   bool is_better(const UnlistedSearch& found) const;
   void take_instead_if_better();
+  bool take_instead_if_complete();
   std::optional<std::size_t> term_of_rest(const Located& left) const;
   void add_beside(Names names);
   RoundResult round_of(const std::vector<Candidate>& candidates, const Assessed& beside, const std::string& what);
